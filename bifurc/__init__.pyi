@@ -58,8 +58,8 @@ from .singular.point import Kind as Kind
 from .singular.point import SingularPoint as SingularPoint
 from .surfaces.chart_atlas import ChartAtlas as ChartAtlas
 from .surfaces.chart_atlas import Covering as Covering
+from .systems.equation_file import EquationFileError as EquationFileError
+from .systems.equation_file import EquationSystem as EquationSystem
 from .systems.equation_file import read_equations as read_equations
-from .systems.system import EquationFileError as EquationFileError
-from .systems.system import EquationSystem as EquationSystem
 
 __version__: str

@@ -18,11 +18,20 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join(shown)
 
 
-def section(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A table below its title; empty where there are no rows."""
+def section(
+    title: str,
+    heads: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    most: int | None = None,
+) -> str:
+    """A table below its title; empty where there are no rows. Of more than ``most`` rows
+    the first are shown, and how many there are besides."""
     if not rows:
         return ""
-    return f"{title}\n{table(heads, rows)}"
+    text = f"{title}\n{table(heads, rows[:most])}"
+    if most is not None and len(rows) > most:
+        text += f"\n  and {len(rows) - most} more"
+    return text
 
 
 def count_of(number: int, noun: str) -> str:

@@ -101,7 +101,7 @@ def _precise_misclosures(
     import mpmath
 
     decomposition = decompose(problem, points)
-    inverses = _inverses(decomposition, rank)
+    inverses = newton_inverses(decomposition, rank)
     measured = []
     with mpmath.workdps(DIGITS):
         for point, inverse in zip(points, inverses, strict=True):
@@ -122,12 +122,12 @@ def _after_steps(
 
     u = [mpmath.mpf(float(x)) for x in point]
     for _ in range(ROUNDS):
-        step = inverse @ _as_floats(residual(u), problem.magnitude)
+        step = inverse @ as_floats(residual(u), problem.magnitude)
         u = [x - mpmath.mpf(float(d)) for x, d in zip(u, step, strict=True)]
-    return _as_floats(residual(u), problem.magnitude)
+    return as_floats(residual(u), problem.magnitude)
 
 
-def _inverses(decomposition: Decomposition, rank: int) -> np.ndarray:
+def newton_inverses(decomposition: Decomposition, rank: int) -> np.ndarray:
     """Matrices (k, n, m) that turn residuals into Gauss-Newton steps of a ``rank``, to
     be subtracted."""
     sigma = decomposition.sigma[:, :rank]
@@ -138,7 +138,7 @@ def _inverses(decomposition: Decomposition, rank: int) -> np.ndarray:
     return inverses
 
 
-def _as_floats(value: Sequence[mpmath.mpf], magnitude: float) -> np.ndarray:
+def as_floats(value: Sequence[mpmath.mpf], magnitude: float) -> np.ndarray:
     """F over the magnitude (m,) in doubles, which keep its leading digits however small
     it is."""
     return np.array([float(part / magnitude) for part in value])

@@ -9,12 +9,12 @@ differences of F. Errors of l and r enter by their squares, so that those of dou
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from bifurc.branch import Branch
+from bifurc.curves.misclosure import as_floats
 from bifurc.numerics.null_spaces import TINY, Decomposition, decompose
 from bifurc.problem import PreciseResidual, Problem
 
@@ -171,7 +171,7 @@ def _station(
     for _ in range(CORRECTIONS):
         at = decompose(problem, np.array([[float(x) for x in point]]))
         inverse = (at.right[0, :rank].T / at.sigma[0, :rank]) @ at.left[0, :, :rank].T
-        missed = _floats(residual(point), problem.magnitude)
+        missed = as_floats(residual(point), problem.magnitude)
         step = inverse @ missed
         point = [x - mpmath.mpf(float(d)) for x, d in zip(point, step, strict=True)]
         size = float(np.linalg.norm(step)) / problem.scale
@@ -202,11 +202,6 @@ def _station(
     mixed = seen(1, 1) - seen(1, -1) - seen(-1, 1) + seen(-1, -1)
     slope = mixed / (4 * h * h * problem.magnitude)
     return _Station(point, tangent, float(value), float(value * slope), size)
-
-
-def _floats(values: Sequence[mpmath.mpf], magnitude: float) -> np.ndarray:
-    """Numbers (m,) over the magnitude, in doubles, which keep their leading digits."""
-    return np.array([float(value / magnitude) for value in values])
 
 
 def _moved(here: _Station, step: float) -> list[mpmath.mpf]:

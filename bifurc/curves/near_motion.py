@@ -7,6 +7,12 @@ long it is and by how much it misses do not depend on where the trace began. Whe
 misclosure passes zero the linkage closes: these are its rigid assemblies there. All
 other points at which it closes to rounding are places of the near motion where doubles
 see no more of the misclosure.
+
+A near surface is a surface all over which a system is nearly solved. A planar loop of
+five joints with one small twist has no configuration, and misses closure by as much all
+over what would be its surface. There is no valley of |F| on it: two and more singular
+values are small beside the root of what is missed, so that no curve on the surface is
+closer to a solution than its neighbours.
 """
 
 from __future__ import annotations
@@ -24,13 +30,14 @@ from bifurc.curves.valley import correct_to_valley
 from bifurc.curves.valley_problem import ValleyProblem
 from bifurc.decisions import (
     closes_to_rounding,
+    is_flat,
     is_same_point,
     is_stretch_short,
     nearly_closes,
 )
 from bifurc.limits import Deadline
 from bifurc.numerics.corrector import correct_across
-from bifurc.numerics.null_spaces import decompose, null_spaces
+from bifurc.numerics.null_spaces import decompose, newton_in_rank, null_spaces
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
@@ -59,13 +66,17 @@ ROUNDS = 30  # of Newton's method for a place where the misclosure passes zero
 NARROWINGS, LOOKS = 5, 33
 UNFINISHED = (Outcome.STALLED, Outcome.STEP_LIMIT, Outcome.TIME_LIMIT)
 LOCATED = 1e-9  # over the scale: error of the places where the misclosure is extreme
+STEPS = 6  # of Newton's method across a surface
+FAR = 0.2  # of the scale: so far beside a point it is seen whether the surface goes on
+STAYS = 0.5  # share of that which correction must leave
+TRIED = 12  # points from which that is looked at
 
 
 @dataclass(frozen=True)
 class NearMotionTrace:
     """A curve along which a system is nearly solved.
 
-    ``branch``: as far as it nearly closes, or all round if it ``is_closed``; where it
+    ``branch``: as far as it nearly closes, or all round if it is closed; where it
     ``is_short`` it counts as none. The least residuals across it go up to
     ``misclosure``, over the magnitude; where it passes a place at which the rank drops
     it ``is_blurred`` there, and what it misses is looked for before and beyond. Where
@@ -81,16 +92,6 @@ class NearMotionTrace:
     is_repeated: bool
     assemblies: np.ndarray
     tolerance: float
-
-    @property
-    def length(self) -> float:
-        """Its arclength."""
-        return self.branch.length
-
-    @property
-    def is_closed(self) -> bool:
-        """Whether it comes back to its start."""
-        return self.branch.closed
 
     @property
     def has_loose_end(self) -> bool:
@@ -192,11 +193,6 @@ class _Course:
     is_blurred: np.ndarray
     bridges: np.ndarray
 
-    @property
-    def is_closed(self) -> bool:
-        """Whether it comes back to its start."""
-        return self.branch.closed
-
     def extremes(self) -> tuple[np.ndarray, np.ndarray]:
         """Points (k, n) at which most is missed, and how much (k,): between ends of the
         curve and of the places where the valley is blurred."""
@@ -215,7 +211,7 @@ class _Course:
         """Arclengths (k,) at which the misclosure is least (``sign`` 1) or largest
         (-1), next to nothing else."""
         s, slopes, blurred = self.arclengths, sign * self.slopes, self.is_blurred
-        if self.is_closed:
+        if self.branch.closed:
             s = np.append(s, s[0] + self.branch.length)
             slopes = np.append(slopes, slopes[0])
             blurred = np.append(blurred, blurred[0])
@@ -233,7 +229,7 @@ class _Course:
         """The ends (k, n) of the curve, if it is open, and of all places where the
         valley is blurred."""
         ends = []
-        if not self.is_closed:
+        if not self.branch.closed:
             ends += list(self.branch(np.array([0.0, self.branch.length])))
         for number in self.bridges:
             ends += self._edges(*self.branch.breaks[number : number + 2])
@@ -325,7 +321,7 @@ def _assemblies(problem: Problem, course: _Course) -> np.ndarray:
         if not kept or _are_apart(problem, heights, zeros, kept[-1], k):
             kept.append(k)
     if (
-        course.is_closed
+        course.branch.closed
         and len(kept) > 1
         and not _are_apart(
             problem, np.append(heights, heights), zeros, kept[-1], kept[0]
@@ -385,3 +381,69 @@ def _solve(problem: Problem, points: np.ndarray, longest: np.ndarray) -> np.ndar
         solutions[is_better] = trial[is_better]
         best = np.minimum(best, gaps)
     return solutions
+
+
+# --- near surfaces --------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class NearSurface:
+    """A component of a ``dimension`` all over which a system is nearly solved.
+
+    The least residuals across it, at the places looked at, go up to ``misclosure``,
+    over the magnitude. ``sample`` (n,) is one of these places.
+    """
+
+    dimension: int
+    misclosure: float
+    sample: np.ndarray
+
+
+def near_surfaces(
+    problem: Problem, points: np.ndarray
+) -> tuple[list[NearSurface], np.ndarray]:
+    """The near surfaces, one for each dimension, on which some of the points (k, n) lie
+    at which the system is nearly solved; and which of the points lie on none (k,)."""
+    surfaces = []
+    is_left = np.ones(len(points), dtype=bool)
+    dimensions = _weak_directions(problem, points)
+    for dimension in range(2, problem.n):
+        own = dimensions == dimension
+        rank = problem.n - dimension
+        places = newton_in_rank(problem, points[own], rank, STEPS)
+        if not len(places) or not _is_surface(problem, places, dimension):
+            continue
+        misclosure = float(problem.gaps(places).max())
+        surfaces.append(NearSurface(dimension, misclosure, places[0]))
+        is_left &= ~own
+    return surfaces, is_left
+
+
+def _weak_directions(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """How many singular values (k,) are small beside the root of what points (k, n)
+    miss."""
+    if not len(points):
+        return np.empty(0, dtype=int)
+    at = decompose(problem, points)
+    values = np.zeros((len(points), problem.n))
+    values[:, : at.sigma.shape[1]] = at.sigma
+    gaps = np.maximum(np.linalg.norm(at.residuals, axis=1), TINY)
+    is_weak = is_flat(values**2, gaps[:, None])
+    counts: np.ndarray = np.count_nonzero(is_weak, axis=1)
+    return counts
+
+
+def _is_surface(problem: Problem, places: np.ndarray, dimension: int) -> bool:
+    """Whether about most of the places (k, n) the system is nearly solved in all weak
+    directions, as far as `FAR`."""
+    tried = places[:TRIED]
+    right = decompose(problem, tried).right[:, problem.n - dimension :]  # (k, d, n)
+    steps = FAR * problem.scale * np.concatenate([right, -right], axis=1)
+    probes = (tried[:, None] + steps).reshape(-1, problem.n)
+    ends = newton_in_rank(problem, probes, problem.n - dimension, STEPS)
+    starts = np.repeat(tried, 2 * dimension, axis=0)
+    moves = np.linalg.norm(ends - starts, axis=1)
+    goes_on = (moves > STAYS * FAR * problem.scale) & nearly_closes(problem.gaps(ends))
+    goes_on &= _weak_directions(problem, ends) >= dimension
+    is_all_round = goes_on.reshape(len(tried), -1).all(axis=1)
+    return bool(np.mean(is_all_round) > 0.5)

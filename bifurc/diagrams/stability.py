@@ -141,15 +141,6 @@ def _places_between(
     return np.unique(np.concatenate([nodes[is_inside], inner, middles]))
 
 
-class _Bracket(NamedTuple):
-    """Two arclengths, and the different numbers of unstable eigenvalues there."""
-
-    low: float
-    high: float
-    before: int
-    after: int
-
-
 def _crossings(
     spectrum: Spectrum, places: np.ndarray, numbers: np.ndarray
 ) -> list[float]:
@@ -157,26 +148,25 @@ def _crossings(
     is ``numbers`` (k,) at ``places`` (k,)."""
     crossings: list[float] = []
     for k in np.flatnonzero(np.diff(numbers)):
-        bracket = _Bracket(places[k], places[k + 1], numbers[k], numbers[k + 1])
-        while bracket.before != bracket.after and bracket.low < bracket.high:
-            crossing = _first_change(spectrum, bracket)
+        low, high = places[k : k + 2]
+        near = ONE_CROSSING * (high - low)
+        before = numbers[k]
+        while before != numbers[k + 1] and low < high:
+            crossing = _first_change(spectrum, low, high, before)
             crossings.append(crossing)
-            width = places[k + 1] - places[k]
-            low = min(crossing + ONE_CROSSING * width, bracket.high)
-            before = int(spectrum.numbers(np.array([low]))[0])
-            bracket = bracket._replace(low=low, before=before)
+            low = min(crossing + near, high)
+            before = spectrum.numbers(np.array([low]))[0]
     return crossings
 
 
-def _first_change(spectrum: Spectrum, bracket: _Bracket) -> float:
-    """The arclength, to rounding, at which the number of unstable eigenvalues first is
-    another than where a bracket begins."""
-    low, high = bracket.low, bracket.high
+def _first_change(spectrum: Spectrum, low: float, high: float, before: int) -> float:
+    """The first arclength between two, to rounding, at which the number of unstable
+    eigenvalues is another than ``before``, which it is at ``low``."""
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         if not low < middle < high:
             break
-        if spectrum.numbers(np.array([middle]))[0] == bracket.before:
+        if spectrum.numbers(np.array([middle]))[0] == before:
             low = middle
         else:
             high = middle

@@ -178,19 +178,27 @@ class SparseBordered:
         columns: np.ndarray | None = None,
         may_be_singular: bool = False,
     ):
-        from scipy.sparse import csr_array, hstack, vstack
+        from scipy.sparse import csc_array
 
         if columns is None:
             columns = np.empty((jacobian.shape[0], 0))
+        entries = jacobian.tocoo()
         # not of all entries: those of the parameter may vanish along a whole branch
-        largest = abs(jacobian).max(axis=1).toarray()
+        largest = np.zeros(jacobian.shape[0])
+        np.maximum.at(largest, entries.row, np.abs(entries.data))
         typical = float(np.median(largest)) or 1.0
         self._below = BORDER * typical / np.abs(rows).max(axis=1)
         self._beside = BORDER * typical / np.abs(columns).max(axis=0)
-        above = hstack([jacobian, csr_array(columns * self._beside)])
-        nothing = csr_array((len(rows), columns.shape[1]))
-        below = hstack([csr_array(self._below[:, None] * rows), nothing])
-        matrix = vstack([above, below]).tocsc()
+        (i, j), (k, q) = np.nonzero(rows), np.nonzero(columns)
+        m, n = jacobian.shape
+        values = [entries.data, (self._below * rows.T).T[i, j]]
+        values.append((columns * self._beside)[k, q])
+        places = (
+            np.concatenate([entries.row, m + i, k]),
+            np.concatenate([entries.col, j, n + q]),
+        )
+        size = n + columns.shape[1]
+        matrix = csc_array((np.concatenate(values), places), shape=(size, size))
         if may_be_singular:
             self._factors = _factors_by_rounding(matrix, typical)
         else:

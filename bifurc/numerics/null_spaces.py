@@ -144,6 +144,16 @@ class Decomposition:
         self.right[rows] = others.right
 
 
+def newton_in_rank(
+    problem: Problem, points: np.ndarray, rank: int, rounds: int
+) -> np.ndarray:
+    """Points (k, n) after so many Gauss-Newton steps of a ``rank``: in the equations
+    that are regular there."""
+    for _ in range(rounds if len(points) else 0):
+        points = points + decompose(problem, points).newton_steps(rank)
+    return points
+
+
 def decompose(problem: Problem, points: np.ndarray) -> Decomposition:
     """F and the singular value decomposition of F' at points (k, n)."""
     residuals = problem.relative_residuals(points)

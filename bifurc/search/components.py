@@ -3,7 +3,7 @@ their singular points.
 
 All along a curve of singular points on a surface F' has one rank, lower than on the
 surface about it. That F = 0 and that F' has no higher rank are equations of which the
-curve is a regular solution (`bifurc.curves.rank_deflation`): it is traced like a form.
+curve is a regular solution (`bifurc.curves.deflation`): it is traced like a form.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 from bifurc.atlas import Surface
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
-from bifurc.curves.rank_deflation import RankDeflated
+from bifurc.curves.deflation import RankDeflated
 from bifurc.decisions import (
     closes_to_rounding,
     is_same_point,

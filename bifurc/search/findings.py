@@ -12,8 +12,7 @@ import numpy as np
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.monitor import Profile
-from bifurc.curves.near_motion import NearMotionTrace
-from bifurc.curves.near_surface import NearSurface
+from bifurc.curves.near_motion import NearMotionTrace, NearSurface
 from bifurc.decisions import (
     Decision,
     is_lost_in_rounding,
@@ -276,7 +275,7 @@ class Findings:
         if near.is_short:
             self.short_stretches.append(near)
             return None
-        points = near.branch(near.length * PLACES)
+        points = near.branch(near.branch.length * PLACES)
         for number, known in self.near_motions.items():
             if np.median(known.runs_through(self.problem, points)) > 0.5:
                 return SeedFate(Fate.ON_NEAR_MOTION, number)

@@ -8,8 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bifurc.curves.near_motion import trace_near_motion
-from bifurc.curves.near_surface import near_surfaces
+from bifurc.curves.near_motion import near_surfaces, trace_near_motion
 from bifurc.decisions import closes_to_rounding, is_same_point, nearly_closes
 from bifurc.limits import Deadline
 from bifurc.numerics.corrector import limited

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.curves.rank_deflation import RankDeflated
+from bifurc.curves.deflation import RankDeflated
 from bifurc.decisions import (
     is_beside_singular,
     is_start_solved,

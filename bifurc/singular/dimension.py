@@ -101,24 +101,15 @@ def local_dimensions(
     return LocalDimensions(dimension, nullity, regular, shaky)
 
 
-class _OfNullity(NamedTuple):
-    """``dimension`` (b,) about points b with null spaces of one dimension, whether they
-    are ``regular`` (b,) and whether they are ``shaky`` (b,)."""
-
-    dimension: np.ndarray
-    regular: np.ndarray
-    shaky: np.ndarray
-
-
 def _dimensions_of_nullity(
     problem: Problem, points: np.ndarray, basis: np.ndarray
-) -> _OfNullity:
+) -> LocalDimensions:
     """What is about points (b, n) whose null spaces (b, k, n) all have dimension k."""
     count, k = basis.shape[:2]
-    shaky = np.zeros(count, dtype=bool)
+    nullity, shaky = np.full(count, k), np.zeros(count, dtype=bool)
     if k == 0:
         regular = np.ones(count, dtype=bool)
-        return _OfNullity(np.zeros(count, dtype=int), regular, shaky)
+        return LocalDimensions(nullity, nullity, regular, shaky)
     probes = _probe(problem, points, basis, RADIUS)
     regular = may_fill_null_space(probes.loss.max(axis=1))
     dimension = np.where(regular, k, -1)
@@ -136,7 +127,7 @@ def _dimensions_of_nullity(
         regular[full] &= is_closed
         # what does not fill all directions of the null space has fewer dimensions
         dimension[full[np.isfinite(missed) & ~is_closed]] = k - 1
-    return _OfNullity(dimension, regular, shaky)
+    return LocalDimensions(dimension, nullity, regular, shaky)
 
 
 def misclosures_beside(

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.decisions import is_located, is_simple, is_singular_point
+from bifurc.numerics.null_spaces import newton_in_rank
 from bifurc.numerics.singular_values import factors_of, values_of
 from bifurc.problem import Problem
 
@@ -37,6 +38,9 @@ HIDDEN = 1e-12
 # Unknowns up to which the germ of the curves at a point is looked for, which takes longer
 # to import than to locate the point: with two 0.6 s, with four 3.4 s, with eight 7 s.
 MOST_FOR_GERM = 4
+# Newton steps in the regular equations after the iteration: at a point of higher order its
+# last steps are poor in these as well.
+SETTLING = 2
 TINY = 1e-300  # keeps a step of zero from being divided by
 
 
@@ -71,7 +75,7 @@ def locate_singular_point(
     run = _iterate(problem, start, nullity, reach)
     if run is None or not is_located(run.moves[-1], problem.scale):
         return None
-    u = _solved_in_regular_equations(problem, run.u[None], nullity)[0]
+    u = newton_in_rank(problem, run.u[None], problem.n - nullity, SETTLING)[0]
     gap = float(problem.gaps(u[None])[0])
     missed = SHARP * gap / _unit(SHARP * misclosure)
     largest_null = float(_largest_null_values(problem, u[None], nullity)[0])
@@ -273,25 +277,6 @@ def _with_error(
 # --- after the iteration --------------------------------------------------------------
 
 
-def _solved_in_regular_equations(
-    problem: Problem, points: np.ndarray, nullity: int
-) -> np.ndarray:
-    """Points (k, n) after two Newton steps in the equations that are regular there.
-
-    At a point of higher order the last steps of the iteration are poor in these
-    equations as well.
-    """
-    rank = problem.n - nullity
-    for _ in range(2):
-        jacobians = problem.relative_jacobians(points)
-        left, sigma, right = factors_of(jacobians, full_matrices=False)
-        residuals = problem.relative_residuals(points)
-        shares = np.einsum("kmr,km->kr", left[:, :, :rank], residuals)
-        shares /= sigma[:, :rank]
-        points = points - np.einsum("krn,kr->kn", right[:, :rank], shares)
-    return points
-
-
 def _largest_null_values(
     problem: Problem, points: np.ndarray, nullity: int
 ) -> np.ndarray:
@@ -336,7 +321,8 @@ def _hidden_stretch(
     ahead = _hidden_length(problem, u, direction, nullity, reach)
     behind = _hidden_length(problem, u, -direction, nullity, reach)
     middle = u + 0.5 * (ahead - behind) * direction
-    middle = _solved_in_regular_equations(problem, middle[None], nullity)[0]
+    rank = problem.n - nullity
+    middle = newton_in_rank(problem, middle[None], rank, SETTLING)[0]
     return _Stretch(middle, 0.5 * (ahead + behind))
 
 
@@ -350,9 +336,8 @@ def _hidden_length(
     regular equations hold.
     """
     distances = reach * np.geomspace(1e-7, 1.0, 120)
-    curve = _solved_in_regular_equations(
-        problem, u + distances[:, None] * direction, nullity
-    )
+    line = u + distances[:, None] * direction
+    curve = newton_in_rank(problem, line, problem.n - nullity, SETTLING)
     gaps = problem.gaps(curve)
     misfits = _largest_null_values(problem, curve, nullity) + gaps
     visible = np.flatnonzero(misfits > HIDDEN)

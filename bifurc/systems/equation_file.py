@@ -27,13 +27,14 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
 
 import sympy
 
+from bifurc.atlas import Atlas
 from bifurc.equations.expression import (
     CONSTANTS,
     FUNCTION_NAMES,
@@ -42,10 +43,12 @@ from bifurc.equations.expression import (
     parse_expression,
 )
 from bifurc.equations.symbolic import SymbolicFunction, SymbolicProblem
-from bifurc.errors import ProblemError
+from bifurc.errors import BifurcError, ProblemError
 from bifurc.files.text_file import TextFileError, read_toml
-from bifurc.systems.system import EquationFileError, EquationSystem
+from bifurc.search.explore import explore
+from bifurc.settings import SearchSettings
 
+DEFAULT_SETTINGS = SearchSettings()
 Content: TypeAlias = Mapping[str, object]
 
 REQUIRED = ("unknowns", "equations")
@@ -55,6 +58,59 @@ NAME = re.compile(r"[^\W\d]\w*")
 EQUALS = re.compile(r"==?")
 RATE = re.compile(r"\s*([^\W\d]\w*)\s*'\s*==?")
 INFINITE = {"inf": math.inf, "+inf": math.inf, "-inf": -math.inf}
+
+
+class EquationFileError(BifurcError, ValueError):
+    """A file of equations that cannot be used: which file, and what in it is wrong."""
+
+    def __init__(self, path: Path | str, message: str):
+        self.path = str(path)
+        self.message = message
+        super().__init__(f"{path}: {message}")
+
+
+@dataclass(frozen=True, eq=False)
+class EquationSystem:
+    """What a file of equations says.
+
+    ``equations`` are their texts by their names, ``values`` the constants by theirs,
+    ``events`` functions of the unknowns (n,) whose zeros are looked for. ``is_flow``:
+    whether the equations are rates, so that stability is defined.
+    """
+
+    name: str
+    problem: SymbolicProblem
+    parameter: str | None
+    equations: Mapping[str, str]
+    values: Mapping[str, float]
+    events: Mapping[str, SymbolicFunction]
+    is_flow: bool
+
+    def explore(
+        self,
+        *,
+        settings: SearchSettings = DEFAULT_SETTINGS,
+        seed: int = 0,
+        progress: Callable[[str, int], None] | None = None,
+    ) -> Atlas:
+        """The atlas of the system, whose ``subject`` says what was solved; see
+        `bifurc.explore`."""
+        atlas = explore(
+            self.problem,
+            settings=settings,
+            seed=seed,
+            progress=progress,
+            parameter=self.parameter,
+            events=dict(self.events) or None,
+            is_flow=self.is_flow,
+        )
+        subject = {
+            "kind": "system",
+            "name": self.name,
+            "equations": dict(self.equations),
+            "parameters": dict(self.values),
+        }
+        return replace(atlas, subject=subject)
 
 
 def read_equations(

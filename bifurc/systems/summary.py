@@ -3,7 +3,6 @@ unknowns."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import chain
 
 import numpy as np
@@ -38,14 +37,6 @@ def make_summary(atlas: Atlas) -> str:
     return "\n\n".join(part for part in parts if part)
 
 
-def _shown(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A table with its first rows, and how many there are besides."""
-    text = section(title, heads, rows[:SHOWN])
-    if len(rows) > SHOWN:
-        text += f"\n  and {len(rows) - SHOWN} more"
-    return text
-
-
 def _equations(atlas: Atlas) -> str:
     equations = atlas.subject.get("equations", {})
     rows = [(name, text) for name, text in equations.items()]
@@ -78,7 +69,7 @@ def _forms(atlas: Atlas) -> str:
     if is_periodic:
         heads.insert(3, "winding")
     rows = [_form_row(form, is_periodic) for form in atlas.forms]
-    return _shown("Forms", heads, rows)
+    return section("Forms", heads, rows, SHOWN)
 
 
 def _end(branch: Branch) -> str:
@@ -112,7 +103,7 @@ def _surfaces(atlas: Atlas) -> str:
             count, area = str(len(charts)), f"{charts.area:.6g}"
         rows.append((surface.name, str(surface.dimension), count, area, surface.note))
     heads = ("name", "dimension", "charts", "area", "remark")
-    return _shown("Surfaces", heads, rows)
+    return section("Surfaces", heads, rows, SHOWN)
 
 
 # --- points ---------------------------------------------------------------------------
@@ -129,7 +120,7 @@ def _points(atlas: Atlas) -> str:
         row += [f"{point.point.error:.0e}", _members(atlas, point), point.note]
         rows.append(row)
     heads = ["name", "kind", *_heads(atlas), "error", "forms", "remark"]
-    return _shown("Singular points", heads, rows)
+    return section("Singular points", heads, rows, SHOWN)
 
 
 def _members(atlas: Atlas, point: MeetingPoint) -> str:
@@ -155,7 +146,7 @@ def _diagram_points(atlas: Atlas, diagram: Diagram, kind: Kind) -> str:
         rows.append([point.name, *own, atlas.forms[point.form].name])
     named = chain.from_iterable(heads.get(column, [column]) for column in kind.columns)
     title = kind.title.format(parameter=diagram.parameter)
-    return _shown(title, ["name", *named, "form"], rows)
+    return section(title, ["name", *named, "form"], rows, SHOWN)
 
 
 def _along_parameter(atlas: Atlas) -> list[str]:
@@ -189,7 +180,7 @@ def _stretches(atlas: Atlas, diagram: Diagram) -> str:
             )
         )
     heads = ("form", "arclength", diagram.parameter, "stability", "unstable")
-    return _shown("Stability", heads, rows)
+    return section("Stability", heads, rows, SHOWN)
 
 
 def _near_misses(atlas: Atlas) -> str:
@@ -198,9 +189,9 @@ def _near_misses(atlas: Atlas) -> str:
         row = [*_numbers(miss.u), f"{miss.value:.6g}", f"{miss.error:.0e}"]
         rows.append([*row, atlas.forms[miss.form].name])
     heads = [*_heads(atlas), "singular value", "error", "form"]
-    return _shown("Near misses (no bifurcation)", heads, rows)
+    return section("Near misses (no bifurcation)", heads, rows, SHOWN)
 
 
 def _isolated(atlas: Atlas) -> str:
     rows = [_numbers(point) for point in atlas.rigid]
-    return _shown("Isolated solutions", _heads(atlas), rows)
+    return section("Isolated solutions", _heads(atlas), rows, SHOWN)

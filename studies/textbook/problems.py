@@ -20,8 +20,7 @@ import numpy as np
 
 from bifurc import Atlas, FunctionProblem, SearchSettings, explore
 from bifurc.seeds import Seeds
-from bifurc.systems.equation_file import read_equations
-from bifurc.systems.system import EquationSystem
+from bifurc.systems.equation_file import EquationSystem, read_equations
 from studies.textbook.discretised import DISCRETISED
 
 DATA = Path(__file__).parents[2] / "data"

@@ -217,7 +217,9 @@ def _near_motions(
         trace = traces[k]
         sample = wrap(trace.branch(0.0), periods)
         near_motions.append(
-            NearMotion(trace.misclosure, trace.length, trace.is_closed, sample)
+            NearMotion(
+                trace.misclosure, trace.branch.length, trace.branch.closed, sample
+            )
         )
     return tuple(near_motions)
 

@@ -20,7 +20,7 @@ from linkages.app.options import (
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
-    from bifurc.systems.system import EquationSystem
+    from bifurc.systems.equation_file import EquationSystem
 
 
 @click.command("solve", epilog=exit_code_table())

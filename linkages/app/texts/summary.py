@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -193,12 +192,12 @@ def _near_misses(atlas: Atlas) -> str:
         value, error = f"{miss.value:.6g}", f"{miss.error:.0e}"
         rows.append((angles, value, error, atlas.forms[miss.form].name))
     heads = (subject_at(atlas).heading(atlas), "singular value", "error", "form")
-    return _beginning("Near misses (no bifurcation)", heads, rows)
+    return section("Near misses (no bifurcation)", heads, rows, SHOWN)
 
 
 def _rigid_assemblies(atlas: Atlas) -> str:
     rows = [(show_configuration(atlas, theta),) for theta in atlas.rigid]
-    return _beginning("Rigid assemblies", (subject_at(atlas).heading(atlas),), rows)
+    return section("Rigid assemblies", (subject_at(atlas).heading(atlas),), rows, SHOWN)
 
 
 def _near_motions(atlas: Atlas) -> str:
@@ -220,15 +219,7 @@ def _near_motions(atlas: Atlas) -> str:
         length,
         "misclosure",
     )
-    return _beginning("Near motions (the loop nearly closes)", heads, rows)
-
-
-def _beginning(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """The first `SHOWN` rows of a table, and how many there are beyond."""
-    text = section(title, heads, rows[:SHOWN])
-    if len(rows) > SHOWN:
-        text += f"\n  and {len(rows) - SHOWN} more"
-    return text
+    return section("Near motions (the loop nearly closes)", heads, rows, SHOWN)
 
 
 def _certificates(atlas: Atlas) -> str:

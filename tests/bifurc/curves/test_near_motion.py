@@ -44,8 +44,8 @@ def drop_missed(error):
 def test_a_near_motion_is_followed_all_round_and_closes_where_it_passes_zero(error):
     problem = circle_missed(error)
     near = trace_near_motion(problem, np.array([0.6, 0.8]), SETTINGS)
-    assert near.is_closed
-    assert near.length == pytest.approx(2 * np.pi, rel=error)
+    assert near.branch.closed
+    assert near.branch.length == pytest.approx(2 * np.pi, rel=error)
     largest = error / np.sqrt(2.0) / problem.magnitude
     assert near.misclosure == pytest.approx(largest, rel=1e-5 + error)
     crossings = near.assemblies[np.argsort(near.assemblies[:, 1])]
@@ -56,13 +56,13 @@ def test_a_near_motion_is_followed_all_round_and_closes_where_it_passes_zero(err
 
 def test_a_near_motion_may_begin_where_the_system_is_solved():
     near = trace_near_motion(circle_missed(1e-4), np.array([0.0, 1.0]), SETTINGS)
-    assert near.is_closed
+    assert near.branch.closed
     assert len(near.assemblies) == 2
 
 
 def test_a_near_motion_that_misses_everywhere_has_no_assembly():
     near = trace_near_motion(circle_missed(1e-6, 3.0), np.array([1.0, 0.0]), SETTINGS)
-    assert near.is_closed
+    assert near.branch.closed
     assert not len(near.assemblies)
 
 
@@ -80,7 +80,7 @@ def test_where_a_near_motion_is_traced_from_makes_no_difference():
         trace_near_motion(problem, np.array(start), SETTINGS)
         for start in ([1.0, -1e-4], [0.3, -4e-4], [0.01, -0.01], [1e-4, -1.0])
     ]
-    lengths = [trace.length for trace in traces]
+    lengths = [trace.branch.length for trace in traces]
     assert lengths == pytest.approx([lengths[0]] * 4, rel=1e-7)
     misclosures = [trace.misclosure for trace in traces]
     assert misclosures == pytest.approx([misclosures[0]] * 4, rel=1e-7)
@@ -96,9 +96,9 @@ def test_a_near_motion_turns_where_forms_crossed_however_little_it_misses(error)
     for x in (1.0, 0.3, -1.0):
         near = trace_near_motion(problem, np.array([x, -error / x]), SETTINGS)
         # it leaves the bounds on either line, and cuts the corner between them
-        ends = np.abs(near.branch(np.array([0.0, near.length])))
+        ends = np.abs(near.branch(np.array([0.0, near.branch.length])))
         assert np.argmax(ends[0]) != np.argmax(ends[1])
-        assert near.length == pytest.approx(4.0, abs=5.0 * np.sqrt(error))
+        assert near.branch.length == pytest.approx(4.0, abs=5.0 * np.sqrt(error))
         assert not near.is_repeated
 
 
@@ -135,7 +135,7 @@ def test_a_near_motion_goes_straight_on_where_the_rank_of_its_form_drops():
     near = trace_near_motion(drop_missed(1e-6), np.array([1.0, 0.0]), SETTINGS)
     assert near.is_blurred
     assert not near.has_loose_end
-    ends = near.branch(np.array([0.0, near.length]))
+    ends = near.branch(np.array([0.0, near.branch.length]))
     assert np.sort(ends[:, 0]) == pytest.approx([-2.0, 2.0], abs=1e-6)
 
 
@@ -144,7 +144,7 @@ def test_a_near_motion_ends_where_it_misses_too_much():
         lambda u: np.array([u[1], u[1] + 1e-3 * u[0] ** 2]), [[-10, 10], [-10, 10]]
     )
     near = trace_near_motion(problem, np.array([0.1, 0.0]), SETTINGS)
-    ends = near.branch(np.array([0.0, near.length]))
+    ends = near.branch(np.array([0.0, near.branch.length]))
     missed = nearly_closes.threshold
     assert problem.gaps(ends) == pytest.approx([missed, missed], rel=1e-6)
     assert near.misclosure == pytest.approx(missed, rel=1e-6)
@@ -178,7 +178,7 @@ def test_a_near_motion_is_followed_with_pieces_of_the_order_that_it_needs():
     # the tolerance is that of the misclosure, for which order 3 is too low
     settings = TraceSettings(order=3, tolerance=1e-7)
     near = trace_near_motion(circle_missed(1e-6), np.array([0.6, 0.8]), settings)
-    assert near.is_closed
+    assert near.branch.closed
     assert near.branch.pieces.shape[1] == 5
 
 
@@ -189,8 +189,8 @@ def test_a_near_motion_ends_where_it_bulges_out_of_the_bounds(height):
         [[-2, 2], [-2, 1 - height]],
     )
     near = trace_near_motion(problem, np.array([0.6, -0.8]), SETTINGS)
-    assert not near.is_closed
-    ends = near.branch(np.array([0.0, near.length]))
+    assert not near.branch.closed
+    ends = near.branch(np.array([0.0, near.branch.length]))
     assert ends[:, 1] == pytest.approx([1 - height] * 2, abs=1e-9)
 
 

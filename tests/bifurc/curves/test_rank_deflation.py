@@ -6,8 +6,8 @@ import pytest
 
 from bifurc import explore
 from bifurc.curves.continuation import trace_branch
+from bifurc.curves.deflation import RankDeflated
 from bifurc.curves.misclosure import largest_misclosure
-from bifurc.curves.rank_deflation import RankDeflated
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.singular_values import singular_values
 from bifurc.settings import SearchSettings
