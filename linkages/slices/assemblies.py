@@ -32,6 +32,7 @@ from linkages.decisions import (
     is_same_end,
     is_singular_end,
 )
+from linkages.kinematics import LinkTable, joint_frames
 from linkages.loop import Loop
 from linkages.values import GeometryError
 
@@ -225,32 +226,17 @@ def _link_between(transform: np.ndarray) -> _LinkBetween:
     directions = np.column_stack([[0.0, 0.0, 1.0], normal, axis])
     offset, length, slide = np.linalg.solve(directions, transform[:3, 3])
     link = np.array([length, twist, offset])
-    straight = _turn_matrix(angle) @ _link_matrix(link)
-    rest = np.linalg.inv(straight) @ transform
+    rest = np.linalg.inv(_link_matrix(link, angle)) @ transform
     turn = np.arctan2(rest[1, 0], rest[0, 0])
     return _LinkBetween(float(angle), link, float(turn), float(slide))
 
 
-def _link_matrix(link: np.ndarray) -> np.ndarray:
-    """Tz(offset) Tx(length) Rx(twist) (4, 4) of a link (length, twist, offset)."""
-    length, twist, offset = link
-    c, s = np.cos(twist), np.sin(twist)
-    return np.array(
-        [
-            [1.0, 0.0, 0.0, length],
-            [0.0, c, -s, 0.0],
-            [0.0, s, c, offset],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
-    )
-
-
-def _turn_matrix(angle: float) -> np.ndarray:
-    """Rz(angle) (4, 4)."""
-    c, s = np.cos(angle), np.sin(angle)
-    out = np.eye(4)
-    out[:2, :2] = [[c, -s], [s, c]]
-    return out
+def _link_matrix(link: np.ndarray, angle: float = 0.0) -> np.ndarray:
+    """Rz(angle) Tz(offset) Tx(length) Rx(twist) (4, 4) of a link (length, twist,
+    offset)."""
+    table = LinkTable(*np.reshape(link, (3, 1)))
+    matrix: np.ndarray = joint_frames(table, np.array([angle]))[-1]
+    return matrix
 
 
 # --- the ends of the paths ------------------------------------------------------------

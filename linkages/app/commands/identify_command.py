@@ -79,7 +79,7 @@ def _loop_of(linkage: Linkage | Mechanism) -> Loop:
     if isinstance(linkage, Linkage):
         return linkage.loop
     from linkages.networks.mechanism import NetworkMechanism
-    from linkages.structure.loop_geometry import loop_geometry
+    from linkages.structure.single_loop import loop_geometry
 
     if isinstance(linkage, NetworkMechanism):
         raise CommandError(
