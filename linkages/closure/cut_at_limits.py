@@ -25,7 +25,8 @@ from bifurc.problem import Problem
 from bifurc.seeds import Audit
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
-from linkages.closure.loop_closure import LARGEST_SLICED, LoopClosure
+from linkages.closure.loop_closure import LoopClosure
+from linkages.slices.elimination import LONGEST
 from linkages.statements import LinkageClaim, estimated
 from linkages.structure.single_loop import SingleLoop, as_single_loop
 from linkages.structure.structure import Structure
@@ -74,7 +75,7 @@ def loop_without_limits(structure: Structure) -> SingleLoop | None:
         return None
     joints = tuple(replace(joint, limits=()) for joint in mechanism.joints)
     single = as_single_loop(Structure(replace(mechanism, joints=joints)))
-    if single is None or single.loop.n > LARGEST_SLICED:
+    if single is None or single.loop.n > LONGEST:
         return None
     return single
 

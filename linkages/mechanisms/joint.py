@@ -22,6 +22,7 @@ from linkages.values import (
     check_angle,
     check_direction,
     check_number,
+    checked_vector,
     quoted,
 )
 
@@ -114,7 +115,7 @@ class Joint:
         for key in ("point", "direction", "second_direction"):
             value = getattr(self, key)
             if value is not None:
-                vector = _checked_vector(f"{key} of joint {self.name}", value)
+                vector = checked_vector(f"{key} of joint {self.name}", value)
                 object.__setattr__(self, key, vector)
         _check_size(self)
         _check_needs(self)
@@ -346,19 +347,6 @@ def _checked_bodies(joint: Joint) -> tuple[str, ...]:
         if bodies.count(body) > 1:
             raise GeometryError(what, list(bodies), f"different; {body} stands twice")
     return bodies
-
-
-def _checked_vector(what: str, row: object) -> Vector:
-    allowed = "a vector [x, y, z]"
-    if isinstance(row, str) or not isinstance(row, Iterable):
-        raise GeometryError(what, quoted(row), allowed)
-    coordinates = list(row)
-    if len(coordinates) != 3:
-        raise GeometryError(what, coordinates, allowed)
-    for k, coordinate in enumerate(coordinates, start=1):
-        check_number(f"{what}[{k}]", coordinate)
-    x, y, z = (float(coordinate) for coordinate in coordinates)
-    return (x, y, z)
 
 
 def _check_size(joint: Joint) -> None:
