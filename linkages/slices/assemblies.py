@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from functools import cache
 from importlib.resources import files
+from typing import NamedTuple
 
 import numpy as np
 
@@ -201,12 +202,9 @@ def _with_six_joints(loop: Loop) -> _LongerLoop:
     return _LongerLoop(table, loop.n, shift, np.array(still))
 
 
-@dataclass(frozen=True)
-class _LinkBetween:
-    """A transform as Rz(angle) Tz(offset) Tx(length) Rx(twist) Rz(turn) Tz(slide).
-
-    ``link`` (3,) holds length, twist and offset.
-    """
+class _LinkBetween(NamedTuple):
+    """A transform as Rz(angle) Tz(offset) Tx(length) Rx(twist) Rz(turn) Tz(slide);
+    ``link`` (3,) holds length, twist and offset."""
 
     angle: float
     link: np.ndarray
@@ -215,20 +213,18 @@ class _LinkBetween:
 
 
 def _link_between(transform: np.ndarray) -> _LinkBetween:
-    """The link from the z-axis of the base to that of ``transform`` (4, 4).
-
-    The axes must not be parallel.
-    """
+    """The link from the z-axis of the base to that of ``transform`` (4, 4), which must
+    not be parallel."""
     axis = transform[:3, 2]
     twist = np.arccos(np.clip(axis[2], -1.0, 1.0))
-    angle = np.arctan2(axis[0], -axis[1])
+    angle = float(np.arctan2(axis[0], -axis[1]))
     normal = np.array([np.cos(angle), np.sin(angle), 0.0])
     directions = np.column_stack([[0.0, 0.0, 1.0], normal, axis])
     offset, length, slide = np.linalg.solve(directions, transform[:3, 3])
     link = np.array([length, twist, offset])
     rest = np.linalg.inv(_link_matrix(link, angle)) @ transform
-    turn = np.arctan2(rest[1, 0], rest[0, 0])
-    return _LinkBetween(float(angle), link, float(turn), float(slide))
+    turn = float(np.arctan2(rest[1, 0], rest[0, 0]))
+    return _LinkBetween(angle, link, turn, float(slide))
 
 
 def _link_matrix(link: np.ndarray, angle: float = 0.0) -> np.ndarray:
