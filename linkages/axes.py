@@ -16,7 +16,7 @@ import numpy as np
 
 from linkages.coordinates import are_near_origin, is_fine, rounding_of_doubles
 from linkages.loop import MAX_JOINTS, MIN_JOINTS, Loop
-from linkages.values import GeometryError, check_direction, check_number, quoted
+from linkages.values import GeometryError, check_direction, checked_vector, quoted
 
 # n points or directions, (n, 3), as lists or as an array
 Vectors: TypeAlias = Iterable[Iterable[float]]
@@ -138,18 +138,10 @@ def _vectors(name: str, rows: Vectors) -> np.ndarray:
     """The vectors as an array (n, 3)."""
     if not isinstance(rows, Iterable):
         raise GeometryError(name, quoted(rows), "a list of vectors [x, y, z]")
-    vectors = [_vector(f"{name}[{i}]", row) for i, row in enumerate(rows, start=1)]
+    vectors = [
+        checked_vector(f"{name}[{i}]", row) for i, row in enumerate(rows, start=1)
+    ]
     return np.array(vectors, dtype=float).reshape(-1, 3)
-
-
-def _vector(name: str, row: Iterable[float]) -> list[float]:
-    is_list = isinstance(row, Iterable) and not isinstance(row, str)
-    coordinates = list(row) if is_list else []
-    if len(coordinates) != 3:
-        raise GeometryError(name, quoted(row), "a vector [x, y, z]")
-    for k, coordinate in enumerate(coordinates, start=1):
-        check_number(f"{name}[{k}]", coordinate)
-    return [float(coordinate) for coordinate in coordinates]
 
 
 # --- common normals -------------------------------------------------------------------

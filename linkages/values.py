@@ -119,6 +119,20 @@ def _are_finite_floats(values: Sequence[Any], largest: float = math.inf) -> bool
     return bool(max(map(abs, values)) <= largest)
 
 
+def checked_vector(name: str, row: object) -> tuple[float, float, float]:
+    """A vector [x, y, z] of finite numbers; raises `GeometryError` for anything else."""
+    allowed = "a vector [x, y, z]"
+    if isinstance(row, str) or not isinstance(row, Iterable):
+        raise GeometryError(name, quoted(row), allowed)
+    coordinates = list(row)
+    if len(coordinates) != 3:
+        raise GeometryError(name, coordinates, allowed)
+    for k, coordinate in enumerate(coordinates, start=1):
+        check_number(f"{name}[{k}]", coordinate)
+    x, y, z = (float(coordinate) for coordinate in coordinates)
+    return (x, y, z)
+
+
 def check_direction(name: str, vector: Sequence[float]) -> None:
     """Raises `GeometryError` for a vector without direction, or one so short or so long
     that its square is none that doubles have."""

@@ -283,7 +283,7 @@ class MechanismSubject(Subject):
 
     def as_loop(self) -> Loop:
         """The loop through the axes of the joints."""
-        from linkages.structure.loop_geometry import loop_geometry
+        from linkages.structure.single_loop import loop_geometry
 
         return loop_geometry(self.readout.mechanism)
 

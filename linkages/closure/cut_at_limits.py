@@ -25,7 +25,8 @@ from bifurc.problem import Problem
 from bifurc.seeds import Audit
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
-from linkages.closure.loop_closure import LARGEST_SLICED, LoopClosure
+from linkages.closure.loop_closure import LoopClosure
+from linkages.slices.elimination import LONGEST
 from linkages.statements import LinkageClaim, estimated
 from linkages.structure.single_loop import SingleLoop, as_single_loop
 from linkages.structure.structure import Structure
@@ -74,7 +75,7 @@ def loop_without_limits(structure: Structure) -> SingleLoop | None:
         return None
     joints = tuple(replace(joint, limits=()) for joint in mechanism.joints)
     single = as_single_loop(Structure(replace(mechanism, joints=joints)))
-    if single is None or single.loop.n > LARGEST_SLICED:
+    if single is None or single.loop.n > LONGEST:
         return None
     return single
 
@@ -161,7 +162,7 @@ class CutMotions:
         for surface in atlas.surfaces:
             points += [*surface.samples]
         angles = np.array(points).reshape(-1, self.single.loop.n)
-        unknowns = _unknowns(self.structure, self.single, angles)
+        unknowns = self.single.to_unknowns(self.structure).points(angles)
         limits = _limits(self.structure)
         lifted = [one for row in unknowns for one in _lifts(row, limits)]
         return np.array(lifted).reshape(-1, unknowns.shape[1])
@@ -185,14 +186,14 @@ def cut_motions(structure: Structure, single: SingleLoop, branch: Branch) -> Str
     limits of a structure, between the places at which a joint is at a limit or turns
     back."""
     limits = _limits(structure)
+    isometry = single.to_unknowns(structure)
 
     def unknowns(places: np.ndarray) -> np.ndarray:
-        return _unknowns(structure, single, branch(places))
+        return isometry.points(branch(places))
 
     cuts = [np.array([0.0, branch.length])]
-    joint_of = {structure.column_of[int(v)]: k for k, v in enumerate(single.variables)}
     for column, ends in limits.items():
-        turning = branch.turning_points(joint_of[column])
+        turning = branch.turning_points(int(isometry.columns[column]))
         edges = np.unique(np.concatenate([cuts[0], turning]))
 
         def unknown(places: np.ndarray, column: int = column) -> np.ndarray:
@@ -270,13 +271,6 @@ def _lifts(
         lifted[list(limits)] += TURN * np.array(counts)
         lifts.append(lifted)
     return lifts
-
-
-def _unknowns(
-    structure: Structure, single: SingleLoop, angles: np.ndarray
-) -> np.ndarray:
-    """The unknowns (k, n) at joint angles (k, n) of the loop, rad."""
-    return single.to_unknowns(structure).points(angles)
 
 
 def _lie_on(

@@ -25,13 +25,8 @@ from bifurc.seeds import Seeds
 from linkages import _core
 from linkages.kinematics import Number
 from linkages.loop import Loop
-from linkages.slices.completeness import SliceAudit
-from linkages.slices.elimination import Slice, slice_configurations
+from linkages.slices.completeness import slice_all_joints
 
-# of every joint: any motion in which a joint turns by more than 15 degrees meets one
-SLICES = 24
-LARGEST_SLICED = 6  # joints of the longest loop with complete slices
-NEARLY_REAL = 0.2  # rad: imaginary parts of configurations whose real part is a start
 ROUNDING = 4e-16  # below this residual norm a projection has nothing left to gain
 PROJECTION_STEPS = 60
 SPHERE_STEPS = 25
@@ -95,13 +90,7 @@ class LoopClosure(NumericalProblem):
         ``curvature_residual`` to spare. K is the largest eigenvalue of the matrix of
         these bounds.
         """
-        return self._curvature_bound
-
-    @cached_property
-    def _curvature_bound(self) -> float:
-        reach_before, reach_after = self._reaches
-        distance = np.minimum(reach_before + self.curvature_residual, reach_after)
-        return _bound_from_distances(distance)
+        return self._curvatures[0]
 
     def complex_curvature(self, reach: np.ndarray) -> np.ndarray:
         """Bounds (k,) on |F''| at all complex points no farther than ``reach`` (k,),
@@ -115,18 +104,12 @@ class LoopClosure(NumericalProblem):
         """
         exponents = np.minimum(np.sqrt(self.n) * reach, LARGEST_EXPONENT)
         growth: np.ndarray = np.exp(exponents)
-        return self._bound_on_products * growth
+        return self._curvatures[1] * growth
 
     @cached_property
-    def _bound_on_products(self) -> float:
-        """A bound on all products of joint screws that are derivatives."""
-        _, reach_after = self._reaches
-        return _bound_from_distances(reach_after)
-
-    @cached_property
-    def _reaches(self) -> tuple[np.ndarray, np.ndarray]:
-        """How far the base point and the end point can be from the axis of every joint
-        (n,), by the links before it and after it."""
+    def _curvatures(self) -> tuple[float, float]:
+        """Both bounds, from how far the base point and the end point can be from the
+        axis of every joint (n,), by the links before it and after it."""
         table = self.loop.arrays
         size = self.loop.characteristic_length
         lengths = np.abs(table.lengths) / size
@@ -137,7 +120,10 @@ class LoopClosure(NumericalProblem):
         before = links_before - offsets + offsets[0]
         # from axis j on to the end of the loop
         after = np.cumsum((lengths + offsets)[::-1])[::-1] - offsets
-        return np.maximum(before, 0.0), after
+        near = np.maximum(before, 0.0) + self.curvature_residual
+        return _bound_from_distances(np.minimum(near, after)), _bound_from_distances(
+            after
+        )
 
     def march(
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
@@ -178,37 +164,21 @@ class LoopClosure(NumericalProblem):
         """Closed configurations to start from: complete slices of every joint of a 4R,
         5R or 6R loop, and what is reached from ``count`` random starts."""
         drawn = random_seeds(self, rng, count)
-        if self.loop.n > LARGEST_SLICED:
+        slices = slice_all_joints(self.loop, rng)
+        if slices is None:
             return drawn
-        slices = self._slices(rng)
-        constructed = np.concatenate(
-            [*(cut.configurations for cut in slices), self._near_nonreal(slices)]
+        near, gaps = self.project(slices.nearly_real)
+        constructed = [slices.configurations, near[is_start_solved(gaps)]]
+        random = np.repeat(
+            [False, True], [sum(map(len, constructed)), len(drawn.points)]
         )
-        random = np.repeat([False, True], [len(constructed), len(drawn.points)])
         return Seeds(
-            points=np.concatenate([constructed, drawn.points]),
+            points=np.concatenate([*constructed, drawn.points]),
             random=random,
             gaps=drawn.gaps,
             missed=drawn.missed,
-            audit=SliceAudit(self.loop, slices),
+            audit=slices,
         )
-
-    def _slices(self, rng: np.random.Generator) -> tuple[Slice, ...]:
-        """Slices of every joint at evenly spaced angles from a random one."""
-        first = rng.uniform(-np.pi, np.pi, self.n)
-        steps = 2 * np.pi / SLICES * np.arange(SLICES)
-        return tuple(
-            slice_configurations(self.loop, joint + 1, first[joint] + steps)
-            for joint in range(self.n)
-        )
-
-    def _near_nonreal(self, slices: Sequence[Slice]) -> np.ndarray:
-        """Closed configurations (k, n) reached from the real parts of those in the
-        slices that are nearly real: a small motion may be near."""
-        nonreal = np.concatenate([cut.nonreal for cut in slices])
-        largest = np.abs(nonreal.imag).max(axis=1, initial=0.0)
-        points, gaps = self.project(nonreal[largest < NEARLY_REAL].real)
-        return points[is_start_solved(gaps)]
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Closed configurations (k, n) near ``starts`` and the residual (k,) left at

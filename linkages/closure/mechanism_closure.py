@@ -37,7 +37,7 @@ from linkages.structure.source import ForSubject, Source
 from linkages.structure.structure import Structure
 from linkages.turns import whole_turns
 from linkages.turns.turn_lattice import TurnLattice, turn_lattice
-from linkages.turns.turned_ends import TurnedEnds
+from linkages.turns.whole_turns import TurnedEnds
 
 if TYPE_CHECKING:
     import mpmath

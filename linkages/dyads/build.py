@@ -11,7 +11,6 @@ from linkages.dyads.geometry import PlaneGeometry
 from linkages.dyads.plan import Contact, Plan, Step
 from linkages.dyads.space import SpaceGeometry
 from linkages.mechanisms.joint import Motion
-from linkages.mechanisms.mechanism import Pair
 from linkages.structure.structure import Structure
 
 MOST = 256  # configurations at one value of the driver
@@ -33,7 +32,8 @@ class Builder:
         self.mechanism = structure.mechanism
         self.geometry = geometry
         self.plan = plan
-        self.numbers = {body: k for k, body in enumerate(self.mechanism.bodies)}
+        # the bodies of every pair, by number
+        self.ends = [ends[:2] for ends in structure.groups.ends.values()]
 
     def configurations(self, values: Sequence[float]) -> list[list[Any]]:
         """The poses of all bodies in every configuration in which the known variables
@@ -52,13 +52,16 @@ class Builder:
             ]
             if len(states) > MOST:
                 raise TooManyError
-        return [self._poses_of_bodies(state, inner) for state in states]
+        parts = list(enumerate(self.plan.part))
+        return [
+            [state[part].after(inner[body]) for body, part in parts] for state in states
+        ]
 
     def is_never_degenerate(self, values: Sequence[float]) -> bool:
         """Whether no dyad can close in a curve of configurations, wherever the parts
         are that it stands on, and whatever the driver's value is; other known
         ``values`` are locks."""
-        if any(self._part_of(pair) != self.plan.start for pair in self._driven()):
+        if self._parts_driven() - {self.plan.start}:
             return False  # lengths within a part that is placed change with the driver
         inner = self._inner_poses(values)
         standing = dict.fromkeys(self.plan.part, self.geometry.rest)
@@ -77,39 +80,33 @@ class Builder:
     def _inner_poses(self, values: Sequence[float]) -> dict[int, Any]:
         """The pose of every body in its part, by number: in the first body of it."""
         poses = dict.fromkeys(self.plan.part, self.geometry.rest)
-        left = [self.mechanism.pairs[number] for number in self.plan.known]
+        left = list(self.plan.known)
         while left:
-            pair = next(pair for pair in left if self._is_reached(pair, poses))
-            left.remove(pair)
-            base, moved = self.numbers[pair.base], self.numbers[pair.moved]
-            motion = self._pair_motion(pair, values)
+            number = next(k for k in left if not poses.keys().isdisjoint(self.ends[k]))
+            left.remove(number)
+            base, moved = self.ends[number]
+            motion = self._pair_motion(number, values)
             if moved not in poses:
                 poses[moved] = poses[base].after(motion)
             elif base not in poses:
                 poses[base] = poses[moved].after(motion.inverse())
         return poses
 
-    def _is_reached(self, pair: Pair, poses: dict[int, Any]) -> bool:
-        """Whether one of the bodies of a pair has its pose."""
-        return self.numbers[pair.base] in poses or self.numbers[pair.moved] in poses
-
-    def _driven(self) -> list[Pair]:
-        """The pairs that move with the driver."""
+    def _parts_driven(self) -> set[int]:
+        """The parts in which a pair moves with the driver."""
         variables = self.mechanism.variables
-        known = [self.mechanism.pairs[number] for number in self.plan.known]
-        return [
-            pair
-            for pair in known
-            if any(variables[number].locked is None for number in pair.variables)
-        ]
+        pairs = self.mechanism.pairs
+        return {
+            self.plan.part[self.ends[known][0]]
+            for known in self.plan.known
+            if any(
+                variables[number].locked is None for number in pairs[known].variables
+            )
+        }
 
-    def _part_of(self, pair: Pair) -> int:
-        """The number of the part in which a known pair is."""
-        return self.plan.part[self.numbers[pair.base]]
-
-    def _pair_motion(self, pair: Pair, values: Sequence[float]) -> Any:
+    def _pair_motion(self, pair: int, values: Sequence[float]) -> Any:
         pose: Any = self.geometry.rest
-        for number in pair.variables:
+        for number in self.mechanism.pairs[pair].variables:
             motion = self.mechanism.variables[number].motion
             pose = pose.after(self.geometry.motion(motion, values[number]))
         return pose
@@ -146,27 +143,19 @@ class Builder:
     def _motion(self, contact: Contact) -> Motion:
         return self.mechanism.variables[contact.variable].motion
 
-    def _poses_of_bodies(
-        self, state: dict[int, Any], inner: dict[int, Any]
-    ) -> list[Any]:
-        return [
-            state[part].after(inner[body]) for body, part in enumerate(self.plan.part)
-        ]
-
     # --- unknowns ---------------------------------------------------------------------
 
     def unknowns(self, poses: Sequence[Any]) -> np.ndarray:
         """The unknowns (n,) of the structure at these poses of all bodies, but for what
         others are coupled to; angles between -pi and pi."""
         result = np.zeros(len(self.structure.unknowns))
-        for pair in self.mechanism.pairs:
+        for pair, (base, moved) in zip(self.mechanism.pairs, self.ends, strict=True):
             if len(pair.variables) != 1:
                 continue
             (number,) = pair.variables
             share = self.structure.share(number)
             if share is None or share.rate != 1.0 or share.offset != 0.0:
                 continue
-            base, moved = self.numbers[pair.base], self.numbers[pair.moved]
             relative = poses[base].inverse().after(poses[moved])
             motion = self.mechanism.variables[number].motion
             unit = 1.0 if motion.is_turn else self.structure.unit

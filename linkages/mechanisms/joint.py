@@ -22,6 +22,7 @@ from linkages.values import (
     check_angle,
     check_direction,
     check_number,
+    checked_vector,
     quoted,
 )
 
@@ -114,7 +115,7 @@ class Joint:
         for key in ("point", "direction", "second_direction"):
             value = getattr(self, key)
             if value is not None:
-                vector = _checked_vector(f"{key} of joint {self.name}", value)
+                vector = checked_vector(f"{key} of joint {self.name}", value)
                 object.__setattr__(self, key, vector)
         _check_size(self)
         _check_needs(self)
@@ -251,65 +252,45 @@ class KindFacets(NamedTuple):
     is_shared: bool = False
 
 
+_AXIS = ("point", "direction")
 _FACETS = {
     JointKind.REVOLUTE: KindFacets(
-        _turn,
-        ("",),
-        required=("point", "direction"),
-        place=Place.ALONG,
-        is_shared=True,
+        _turn, ("",), _AXIS, place=Place.ALONG, is_shared=True
     ),
     JointKind.PRISMATIC: KindFacets(
         _slide,
         ("",),
-        required=("direction",),
-        optional=("point",),
-        place=Place.ANYWHERE,
+        ("direction",),
+        ("point",),
+        Place.ANYWHERE,
         is_point_drawn_only=True,
         shape=Shape.BOX,
         has_rail=True,
     ),
     JointKind.CYLINDRICAL: KindFacets(
-        _turn_and_slide,
-        ("turn", "slide"),
-        required=("point", "direction"),
-        place=Place.ALONG,
-        has_rail=True,
+        _turn_and_slide, ("turn", "slide"), _AXIS, place=Place.ALONG, has_rail=True
     ),
     JointKind.HELICAL: KindFacets(
-        _screw,
-        ("",),
-        required=("point", "direction", "pitch"),
-        place=Place.ALONG,
-        has_rail=True,
+        _screw, ("",), (*_AXIS, "pitch"), place=Place.ALONG, has_rail=True
     ),
     JointKind.UNIVERSAL: KindFacets(
-        _two_turns,
-        ("first", "second"),
-        required=("point", "direction", "second_direction"),
+        _two_turns, ("first", "second"), (*_AXIS, "second_direction")
     ),
     JointKind.SPHERICAL: KindFacets(
-        _nothing, (), required=("point",), shape=Shape.BALL, is_shared=True
+        _nothing, (), ("point",), shape=Shape.BALL, is_shared=True
     ),
     JointKind.PLANAR: KindFacets(
         _plane,
         ("x", "y", "turn"),
-        required=("direction",),
-        optional=("point", "second_direction"),
-        place=Place.ANYWHERE,
+        ("direction",),
+        ("point", "second_direction"),
+        Place.ANYWHERE,
         shape=Shape.PLATE,
     ),
     JointKind.RIGID: KindFacets(
-        _nothing,
-        (),
-        required=(),
-        optional=("point",),
-        place=Place.ANYWHERE,
-        is_point_drawn_only=True,
+        _nothing, (), (), ("point",), Place.ANYWHERE, is_point_drawn_only=True
     ),
 }
-
-
 # kinds whose point is for drawing alone
 DRAWN_ONLY = [kind for kind, facets in _FACETS.items() if facets.is_point_drawn_only]
 
@@ -346,19 +327,6 @@ def _checked_bodies(joint: Joint) -> tuple[str, ...]:
         if bodies.count(body) > 1:
             raise GeometryError(what, list(bodies), f"different; {body} stands twice")
     return bodies
-
-
-def _checked_vector(what: str, row: object) -> Vector:
-    allowed = "a vector [x, y, z]"
-    if isinstance(row, str) or not isinstance(row, Iterable):
-        raise GeometryError(what, quoted(row), allowed)
-    coordinates = list(row)
-    if len(coordinates) != 3:
-        raise GeometryError(what, coordinates, allowed)
-    for k, coordinate in enumerate(coordinates, start=1):
-        check_number(f"{what}[{k}]", coordinate)
-    x, y, z = (float(coordinate) for coordinate in coordinates)
-    return (x, y, z)
 
 
 def _check_size(joint: Joint) -> None:

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from linkages.kinematics import joint_frames
-from linkages.mechanisms.joint import Joint, JointKind, Vector
+from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.networks.network import Network, wrap_angles
 
@@ -67,8 +67,8 @@ class PlacedNetwork:
                 axis,
                 JointKind.REVOLUTE,
                 self.network.plan.bars_at(axis),
-                point=points[axis],
-                direction=directions[axis],
+                point=tuple(points[axis].tolist()),
+                direction=tuple(directions[axis].tolist()),
             )
             if axis in self.locks:
                 count = len(joint.parts)
@@ -85,15 +85,15 @@ class PlacedNetwork:
 
     # --- places -----------------------------------------------------------------------
 
-    def _axes(self) -> tuple[dict[str, Vector], dict[str, Vector]]:
-        """A point of every axis, and its direction."""
-        points: dict[str, Vector] = {}
-        directions: dict[str, Vector] = {}
+    def _axes(self) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+        """A point (3,) of every axis, and its direction (3,)."""
+        points: dict[str, np.ndarray] = {}
+        directions: dict[str, np.ndarray] = {}
         for number, base in self._bases().items():
             frames = base @ self._frames[number]
             for corner, axis in enumerate(self.network.plan.cells[number].axes):
-                points.setdefault(axis, _vector(frames[corner, :3, 3]))
-                directions.setdefault(axis, _vector(frames[corner, :3, 2]))
+                points.setdefault(axis, frames[corner, :3, 3])
+                directions.setdefault(axis, frames[corner, :3, 2])
         return points, directions
 
     @cached_property
@@ -166,11 +166,6 @@ class PlacedNetwork:
                 angle = angle + np.pi + angles[..., corner.cell, corner.number]
                 directions.setdefault((axis, corner.departure), angle)
         return directions
-
-
-def _vector(values: np.ndarray) -> Vector:
-    x, y, z = values.tolist()
-    return (x, y, z)
 
 
 def _turn(angle: float) -> np.ndarray:

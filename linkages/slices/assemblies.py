@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from functools import cache
 from importlib.resources import files
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,6 +33,7 @@ from linkages.decisions import (
     is_same_end,
     is_singular_end,
 )
+from linkages.kinematics import LinkTable, joint_frames
 from linkages.loop import Loop
 from linkages.values import GeometryError
 
@@ -200,12 +202,9 @@ def _with_six_joints(loop: Loop) -> _LongerLoop:
     return _LongerLoop(table, loop.n, shift, np.array(still))
 
 
-@dataclass(frozen=True)
-class _LinkBetween:
-    """A transform as Rz(angle) Tz(offset) Tx(length) Rx(twist) Rz(turn) Tz(slide).
-
-    ``link`` (3,) holds length, twist and offset.
-    """
+class _LinkBetween(NamedTuple):
+    """A transform as Rz(angle) Tz(offset) Tx(length) Rx(twist) Rz(turn) Tz(slide);
+    ``link`` (3,) holds length, twist and offset."""
 
     angle: float
     link: np.ndarray
@@ -214,43 +213,26 @@ class _LinkBetween:
 
 
 def _link_between(transform: np.ndarray) -> _LinkBetween:
-    """The link from the z-axis of the base to that of ``transform`` (4, 4).
-
-    The axes must not be parallel.
-    """
+    """The link from the z-axis of the base to that of ``transform`` (4, 4), which must
+    not be parallel."""
     axis = transform[:3, 2]
     twist = np.arccos(np.clip(axis[2], -1.0, 1.0))
-    angle = np.arctan2(axis[0], -axis[1])
+    angle = float(np.arctan2(axis[0], -axis[1]))
     normal = np.array([np.cos(angle), np.sin(angle), 0.0])
     directions = np.column_stack([[0.0, 0.0, 1.0], normal, axis])
     offset, length, slide = np.linalg.solve(directions, transform[:3, 3])
     link = np.array([length, twist, offset])
-    straight = _turn_matrix(angle) @ _link_matrix(link)
-    rest = np.linalg.inv(straight) @ transform
-    turn = np.arctan2(rest[1, 0], rest[0, 0])
-    return _LinkBetween(float(angle), link, float(turn), float(slide))
+    rest = np.linalg.inv(_link_matrix(link, angle)) @ transform
+    turn = float(np.arctan2(rest[1, 0], rest[0, 0]))
+    return _LinkBetween(angle, link, turn, float(slide))
 
 
-def _link_matrix(link: np.ndarray) -> np.ndarray:
-    """Tz(offset) Tx(length) Rx(twist) (4, 4) of a link (length, twist, offset)."""
-    length, twist, offset = link
-    c, s = np.cos(twist), np.sin(twist)
-    return np.array(
-        [
-            [1.0, 0.0, 0.0, length],
-            [0.0, c, -s, 0.0],
-            [0.0, s, c, offset],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
-    )
-
-
-def _turn_matrix(angle: float) -> np.ndarray:
-    """Rz(angle) (4, 4)."""
-    c, s = np.cos(angle), np.sin(angle)
-    out = np.eye(4)
-    out[:2, :2] = [[c, -s], [s, c]]
-    return out
+def _link_matrix(link: np.ndarray, angle: float = 0.0) -> np.ndarray:
+    """Rz(angle) Tz(offset) Tx(length) Rx(twist) (4, 4) of a link (length, twist,
+    offset)."""
+    table = LinkTable(*np.reshape(link, (3, 1)))
+    matrix: np.ndarray = joint_frames(table, np.array([angle]))[-1]
+    return matrix
 
 
 # --- the ends of the paths ------------------------------------------------------------

@@ -44,7 +44,7 @@ from bifurc.seeds import Audit
 from linkages.decisions import is_same_dead_point
 from linkages.loop import Loop
 from linkages.slices.assemblies import Assemblies, isolated_assemblies
-from linkages.slices.elimination import Slice, slice_configurations
+from linkages.slices.elimination import LONGEST, Slice, slice_configurations
 from linkages.slices.nonreal_tracking import Fold, find_fold, follow_sheets
 from linkages.statements import (
     LinkageClaim,
@@ -53,10 +53,26 @@ from linkages.statements import (
     random_assemblies,
 )
 
+# of every joint: any motion in which a joint turns by more than 15 degrees meets one
+SLICES = 24
+NEARLY_REAL = 0.2  # rad: imaginary parts of configurations whose real part is a start
 FEWEST = 4  # joints that move on a motion, at least
 CUT = 0.3819660112501051  # of its length: where a curve without dead points is cut
 TURN = 2 * np.pi
 SAMPLES = 64  # of a motion, to see whether it turns a joint
+
+
+def slice_all_joints(loop: Loop, rng: np.random.Generator) -> SliceAudit | None:
+    """Complete slices of every joint of a loop at evenly spaced angles, the first one
+    drawn; None where it has too many joints for them."""
+    if loop.n > LONGEST:
+        return None
+    first = rng.uniform(-np.pi, np.pi, loop.n)
+    angles = first[:, None] + TURN / SLICES * np.arange(SLICES)
+    slices = [
+        slice_configurations(loop, joint, own) for joint, own in enumerate(angles, 1)
+    ]
+    return SliceAudit(loop, tuple(slices))
 
 
 @dataclass(frozen=True)
@@ -66,6 +82,20 @@ class SliceAudit:
 
     loop: Loop
     slices: tuple[Slice, ...]
+
+    @property
+    def configurations(self) -> np.ndarray:
+        """All real configurations (k, n) in the slices."""
+        return np.concatenate([cut.configurations for cut in self.slices])
+
+    @property
+    def nearly_real(self) -> np.ndarray:
+        """The real parts (k, n) of configurations in the slices that are nearly real: a
+        small motion may be near."""
+        nonreal = np.concatenate([cut.nonreal for cut in self.slices])
+        largest = np.abs(nonreal.imag).max(axis=1, initial=0.0)
+        nearly_real: np.ndarray = nonreal[largest < NEARLY_REAL].real
+        return nearly_real
 
     def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
         """How sure it is that ``branches`` are all motions, and the isolated assemblies

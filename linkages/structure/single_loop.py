@@ -1,17 +1,22 @@
-"""A mechanism that is one loop of revolute joints, as a `Loop`."""
+"""A mechanism that is one loop of revolute joints, as a `Loop`: one that has the same
+motions, or, whatever limits and locks it has, the same geometry."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from bifurc.isometry import Isometry
 from linkages.axes import loop_from_axes
+from linkages.construction.constructions import lock, locked_angles
 from linkages.loop import MAX_JOINTS, MIN_JOINTS, Loop
+from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.structure.structure import ClosureKind, Structure
 from linkages.values import GeometryError
+
+LOCKED_IN_PLACE = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +86,72 @@ def _has_plain_turns_only(mechanism: Mechanism) -> bool:
         motion = variable.motion
         if not motion.is_turn or motion.advance or variable.limits is not None:
             return False
-        if variable.locked not in (None, 0.0):
+        if variable.locked not in (None, LOCKED_IN_PLACE):
             return False
     return True
+
+
+def loop_geometry(mechanism: Mechanism) -> Loop:
+    """The loop that a mechanism is: limits are left out, and every locked joint is
+    replaced, together with its two links, by one link.
+
+    Unlike `as_single_loop`, whose loop has the same
+    motions, this is for the geometry.
+    Raises `GeometryError`, which says why, for a mechanism that is no single loop of 4
+    to 12 revolute joints.
+    """
+    joints = tuple(_without_bounds(joint) for joint in mechanism.joints)
+    single = turns_as_loop(Structure(replace(mechanism, joints=joints)))
+    if single is None:
+        allowed = f"a single loop of {MIN_JOINTS} to {MAX_JOINTS} revolute joints"
+        value = f"a mechanism with {_obstacle(mechanism)}"
+        raise GeometryError(mechanism.name, value, allowed)
+    return _with_locks(mechanism, single)
+
+
+def _without_bounds(joint: Joint) -> Joint:
+    """A joint without limits, and free where it is locked elsewhere than at 0."""
+    in_place = tuple(
+        value if value == LOCKED_IN_PLACE else None for value in joint.locked
+    )
+    limits = (None,) * len(joint.limits)
+    return replace(joint, limits=limits, locked=in_place)
+
+
+def _with_locks(mechanism: Mechanism, single: SingleLoop) -> Loop:
+    """The loop with all joints replaced that are locked elsewhere than at 0."""
+    loop = single.loop
+    values = [mechanism.variables[int(number)].locked for number in single.variables]
+    turned = np.array([0.0 if value is None else value for value in values])
+    theta = single.reference + single.signs * turned
+    for joint in range(loop.n, 0, -1):
+        if values[joint - 1] is None:
+            continue
+        kink = float(theta[joint - 1])
+        try:
+            theta = locked_angles(loop, joint, kink, theta)
+            loop = lock(loop, joint, kink)
+        except GeometryError as error:
+            number = int(single.variables[joint - 1])
+            name = next(p.joint for p in mechanism.pairs if number in p.variables)
+            value = f"{np.degrees(turned[joint - 1]):g} degrees"
+            allowed = "such that the axes beside it are not the same"
+            raise GeometryError(f"lock of {name}", value, allowed) from error
+    rounding = max(loop.rounding, mechanism.rounding)
+    return replace(loop, name=mechanism.name, rounding=rounding)
+
+
+def _obstacle(mechanism: Mechanism) -> str:
+    """Why a mechanism is no single loop of revolute joints."""
+    if mechanism.independent_loops != 1:
+        return f"{mechanism.independent_loops} independent loops"
+    for pair in mechanism.pairs:
+        motions = [mechanism.variables[number].motion for number in pair.variables]
+        is_of_turns = all(one.is_turn and not one.advance for one in motions)
+        if pair.center is not None or not is_of_turns:
+            kind = mechanism.joint(pair.joint).kind.value
+            return f"a {kind} joint ({pair.joint})"
+    if mechanism.is_coupled:
+        return "joints that are coupled to each other"
+    turns = sum(variable.locked is None for variable in mechanism.variables)
+    return f"{turns} turns that are free, or neighbouring ones about one axis"

@@ -11,7 +11,7 @@ cover.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
@@ -236,9 +236,7 @@ class Structure:
     @cached_property
     def _kept_spherical(self) -> list[int]:
         """The spherical pairs that are not cut: they hold the bodies together."""
-        parts = UnionFind(range(self.body_count))
-        for ends in self._plain.values():
-            parts.union(ends.base, ends.moved)
+        parts = self._joined(self._plain)
         kept = []
         for number in self._spherical:
             base, moved, _ = self.ends[number]
@@ -246,6 +244,13 @@ class Structure:
                 parts.union(base, moved)
                 kept.append(number)
         return kept
+
+    def _joined(self, numbers: Iterable[int]) -> UnionFind:
+        """The bodies as parts that the pairs of these numbers make one."""
+        parts = UnionFind(range(self.body_count))
+        for number in numbers:
+            parts.union(*self.ends[number][:2])
+        return parts
 
     @cached_property
     def point_pairs(self) -> dict[int, FreePoint]:
@@ -256,11 +261,7 @@ class Structure:
     @cached_property
     def free_pairs(self) -> dict[int, FreePair]:
         """Pairs, numbered after those of points, between bodies that only rods join."""
-        parts = UnionFind(range(self.body_count))
-        for ends in self._plain.values():
-            parts.union(ends.base, ends.moved)
-        for number in self._kept_spherical:
-            parts.union(*self.ends[number][:2])
+        parts = self._joined([*self._plain, *self._kept_spherical])
         for point in self.free_points:
             parts.union(point.base, point.body)
         first = len(self.mechanism.pairs) + len(self._joined_at_points)

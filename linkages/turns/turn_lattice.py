@@ -10,7 +10,7 @@ closed configuration to another one. These shifts form a lattice.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -165,10 +165,7 @@ class TurnLattice:
         moved = point + self.translates(point[None]).vectors
         if not len(moved):
             return point
-        low, high = self.limits[self.columns].T
-        places = moved[:, self.columns]
-        depths = np.minimum(places - low, high - places).min(axis=1)
-        inmost: np.ndarray = moved[int(np.argmax(depths))]
+        inmost: np.ndarray = moved[int(np.argmin(self._excess(moved)))]
         return inmost
 
     def count_of_closed(self, points: np.ndarray, reach: float) -> Count:
@@ -208,7 +205,7 @@ class TurnLattice:
         keys = np.round(rest / ALIKE) + 0.0
         for shift, place in zip(shifts.vectors, keys, strict=True):
             key = place.tobytes()
-            if key not in places and self._is_partly_inside(points + shift):
+            if key not in places and self._excess(points + shift).min() <= WITHIN:
                 places.add(key)
         partial = self._partial(points)
         excesses = self._excesses(points, _shortest_first(partial.vectors))
@@ -225,7 +222,7 @@ class TurnLattice:
         shifts = self.shifts_between(-extent, extent).vectors
         for shift in _shortest_first(shifts):
             moved = points + shift
-            inside = moved[self._are_inside(moved)]
+            inside = moved[self._excess(moved) <= WITHIN]
             # one of them tells most shifts apart
             for few in (inside[:1], inside):
                 gaps = few[:, None, columns] - points[None, :, columns]
@@ -259,12 +256,9 @@ class TurnLattice:
     def _excesses(self, points: np.ndarray, shifts: np.ndarray) -> Iterator[np.ndarray]:
         """How far ``points`` (k, n) are beyond the limits after the ``shifts`` (j, n),
         less than 0 within them: arrays (i, k) for some shifts after others."""
-        low, high = self.limits[self.columns].T
-        places = points[:, self.columns]
         for begin in range(0, len(shifts), SHIFTS_AT_ONCE):
-            own = shifts[begin : begin + SHIFTS_AT_ONCE, self.columns]
-            moved = places + own[:, None, :]
-            yield np.maximum(low - moved, moved - high).max(axis=2)
+            own = shifts[begin : begin + SHIFTS_AT_ONCE]
+            yield self._excess(points + own[:, None, :])
 
     def _is_passed(self, points: np.ndarray) -> np.ndarray:
         """Whether a curve with samples (k, n) goes to limits of an unknown (n,)."""
@@ -283,17 +277,13 @@ class TurnLattice:
         most = high - np.where(is_passed, lowest, highest)
         return self.shifts_between(least, most)
 
-    def _is_partly_inside(self, points: np.ndarray) -> bool:
-        """Whether any of the points (k, n) is within the limits."""
-        return bool(np.any(self._are_inside(points)))
-
-    def _are_inside(self, points: np.ndarray) -> np.ndarray:
-        """Whether points (k, n) are within the limits."""
+    def _excess(self, points: np.ndarray) -> np.ndarray:
+        """How far points (..., n) are beyond the limits (...), less than 0 within
+        them."""
         low, high = self.limits[self.columns].T
-        moved = points[:, self.columns]
-        is_inside = (moved >= low - WITHIN) & (moved <= high + WITHIN)
-        are_inside: np.ndarray = np.all(is_inside, axis=1)
-        return are_inside
+        places = points[..., self.columns]
+        excess: np.ndarray = np.maximum(low - places, places - high).max(axis=-1)
+        return excess
 
     def homes(self, points: np.ndarray) -> np.ndarray:
         """Points (k, n), each as near as can be to the middle of the limits."""
@@ -330,13 +320,20 @@ def turn_lattice(structure: Structure) -> TurnLattice:
     advances does not cancel."""
     n = len(structure.unknowns)
     limits = np.array([[one.low, one.high] for one in structure.unknowns])
-    columns = _Columns.of(structure)
-    empty = TurnLattice(np.empty((0, n)), (), limits)
-    if not columns.periods:
-        return empty
+    # what is periodic by itself is left out, and what is not back after any turns
+    own_periods = {
+        column: common_period(rates) if rates else 0.0
+        for column, rates in sorted(turning_rates(structure).items())
+        if not np.isfinite(structure.unknowns[column].period)
+    }
+    sliding = [column for column, period in own_periods.items() if period == 0.0]
+    turning = [
+        column for column, period in own_periods.items() if 0.0 < period < np.inf
+    ]
+    if not turning:
+        return TurnLattice(np.empty((0, n)), (), limits)
     rows = np.array(_advance_rows(structure)).reshape(-1, n)
-    turning, sliding = list(columns.periods), columns.slides
-    periods = np.array(list(columns.periods.values()))
+    periods = np.array([own_periods[column] for column in turning])
     advances, slides = rows[:, turning] * periods, rows[:, sliding]
     left, sigma, _ = np.linalg.svd(slides)
     rank = int(np.count_nonzero(sigma > INDEPENDENT * max(1.0, *sigma, 0.0)))
@@ -351,37 +348,17 @@ def turn_lattice(structure: Structure) -> TurnLattice:
 # --- equations ------------------------------------------------------------------------
 
 
-@dataclass
-class _Columns:
-    """The unknowns, by number, that shifts may change: those that turn joints, with the
-    ``periods`` after which all of these are back, and ``slides``, which may be shifted
-    by any length."""
-
-    periods: dict[int, float] = field(default_factory=dict)
-    slides: list[int] = field(default_factory=list)
-
-    @classmethod
-    def of(cls, structure: Structure) -> _Columns:
-        """Those of a structure. What is periodic by itself is left out."""
-        rates: dict[int, list[float]] = {}
-        for number, variable in enumerate(structure.mechanism.variables):
-            share = structure.share(number)
-            if share is not None:
-                turning = rates.setdefault(share.column, [])
-                if variable.motion.is_turn:
-                    turning.append(share.rate)
-        columns = cls()
-        for column, turning in sorted(rates.items()):
-            unknown = structure.unknowns[column]
-            if np.isfinite(unknown.period):
-                continue
-            if not turning:
-                columns.slides.append(column)
-                continue
-            period = common_period(turning)
-            if np.isfinite(period):
-                columns.periods[column] = period
-        return columns
+def turning_rates(structure: Structure) -> dict[int, list[float]]:
+    """How fast each unknown that moves a joint, by number, turns joints; nothing of one
+    that only slides them."""
+    rates: dict[int, list[float]] = {}
+    for number, variable in enumerate(structure.mechanism.variables):
+        share = structure.share(number)
+        if share is not None:
+            turning = rates.setdefault(share.column, [])
+            if variable.motion.is_turn:
+                turning.append(share.rate)
+    return rates
 
 
 class _Element(NamedTuple):

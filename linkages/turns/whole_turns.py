@@ -10,8 +10,8 @@ that is known: they are looked for from starts at every turn.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from bifurc.seeds import Audit
 from bifurc.torus import common_period
 from linkages.statements import LinkageClaim, estimated, random_assemblies
 from linkages.structure.structure import Structure
-from linkages.turns.turn_lattice import TurnLattice, turn_lattice
+from linkages.turns.turn_lattice import TurnLattice, turn_lattice, turning_rates
 
 MOST_FORMS = 120  # beyond, forms beside them are not looked for
 AT_A_TURN, MOST_STARTS = 50, 2000  # random starts, and those of all turns of a joint
@@ -33,19 +33,16 @@ PLACES = np.array([0.05, 0.35, 0.65, 0.95])  # on a form, of its length
 def turns_that_advance(structure: Structure) -> dict[int, float]:
     """The unknowns, by number, whose turning advances something, and after what angle
     (rad) all that turns with one is back."""
-    advancing: set[int] = set()
-    ratios: dict[int, list[float]] = {}
-    for number, variable in enumerate(structure.mechanism.variables):
-        share = structure.share(number)
-        if share is None:
-            continue
-        motion = variable.motion
-        if motion.advance or not motion.is_turn:
-            advancing.add(share.column)
-        if motion.is_turn:
-            ratios.setdefault(share.column, []).append(share.rate)
-    angles = [number for number in advancing if structure.unknowns[number].is_angle]
-    periods = {number: common_period(ratios[number]) for number in sorted(angles)}
+    variables = structure.mechanism.variables
+    shares = [structure.share(number) for number in range(len(variables))]
+    advancing = {
+        share.column
+        for share, variable in zip(shares, variables, strict=True)
+        if share and (variable.motion.advance or not variable.motion.is_turn)
+    }
+    rates = turning_rates(structure)
+    angles = [one for one in sorted(advancing) if structure.unknowns[one].is_angle]
+    periods = {number: common_period(rates[number]) for number in angles}
     return {n: period for n, period in periods.items() if np.isfinite(period)}
 
 
@@ -115,3 +112,37 @@ class WholeTurns:
         solutions = self.lattice.homes(points[is_start_solved(gaps)])
         inside: np.ndarray = solutions[self.problem.are_inside(solutions)]
         return inside
+
+
+@dataclass(frozen=True, eq=False)
+class TurnedEnds:
+    """The ends of forms of a ``problem`` that shifts of the ``lattice`` bring within
+    the limits, and what ``judge`` says of the forms, if there is one.
+
+    A form that ends at a limit may go on within the limits some whole turns away. What
+    is there is no part of what is listed, not even up to whole turns.
+    """
+
+    problem: Problem
+    lattice: TurnLattice
+    judge: Callable[[Sequence[Branch], float], Audit] | None
+
+    def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
+        """What is said of the ``branches`` in about so many ``seconds``, and the ends of
+        those that are cut off among the starts."""
+        nowhere = np.empty((0, self.problem.n))
+        claim = estimated(LinkageClaim.FOLLOWED_FROM_TURNS)
+        audit = Audit((claim,), nowhere)
+        if self.judge is not None:
+            audit = self.judge(branches, seconds)
+        starts = [self._turned(branch) for branch in branches if not branch.closed]
+        return replace(audit, starts=np.concatenate([audit.starts, *starts]))
+
+    def _turned(self, branch: Branch) -> np.ndarray:
+        """The ends (k, n) of a branch, moved to where they are inside the limits; those
+        that are at a limit everywhere are left out."""
+        ends = branch(np.array([0.0, branch.length]))
+        inmost = np.array([self.lattice.inmost(end) for end in ends])
+        is_inside = self.problem.excess(inmost) < -self.problem.slack
+        turned: np.ndarray = inmost[is_inside]
+        return turned

@@ -15,7 +15,7 @@ from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.of_loop import mechanism_of_loop
 from linkages.networks.entries import NETWORKS
 from linkages.networks.mechanism import lock_network
-from linkages.structure.loop_geometry import loop_geometry
+from linkages.structure.single_loop import loop_geometry
 from linkages.values import GeometryError
 
 
