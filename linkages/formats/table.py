@@ -112,7 +112,7 @@ def _read_sdf(root: Element, name: str) -> Assembly:
 
 
 def _toml_text(mechanism: Mechanism) -> str:
-    from linkages.files.toml_text import mechanism_toml
+    from linkages.files.mechanism_file import mechanism_toml
 
     return mechanism_toml(mechanism)
 
