@@ -22,7 +22,7 @@ from linkages.formats.names import (
     row_text,
     with_names_for,
 )
-from linkages.formats.sdf_couplings import AXES
+from linkages.formats.sdf_reading import AXES
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism, Pair, Variable
 from linkages.mechanisms.size import Size
