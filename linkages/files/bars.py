@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -100,7 +100,7 @@ def _assembled(figure: Bars) -> dict[str, complex]:
     misfit = np.abs(_misfits(figure, places)).max(initial=0.0)
     if misfit == 0.0:
         return places
-    places = _least_squares(figure, figure.free)
+    places = _least_squares(figure)
     misfits = np.abs(_misfits(figure, places))
     if not is_bar_assembled(float(misfits.max()), size):
         given = [bar for bar in figure.pieces if bar.measure is not None]
@@ -123,19 +123,18 @@ def _misfits(figure: Bars, places: Mapping[str, complex]) -> np.ndarray:
     return np.array(misfits)
 
 
-def _least_squares(figure: Bars, free: Sequence[str]) -> dict[str, complex]:
+def _least_squares(figure: Bars) -> dict[str, complex]:
     """The places of all points where the lengths of all bars are best fitted."""
-    if not free:
+    if not figure.free:
         return _places(figure, figure.points)
     from scipy.optimize import least_squares
 
-    shape = _Shape(figure, free)
-    start = _pairs(np.array([figure.points[name] for name in free]))
+    shape = _Shape(figure)
+    start = np.array([figure.points[name] for name in figure.free]).view(float)
     exact = {"ftol": EPSILON, "xtol": EPSILON, "gtol": EPSILON}
     solution = least_squares(shape.gaps, start, shape.derivatives, **exact).x
-    solution = _polished(shape, solution)
-    moved = zip(free, _complex_numbers(solution), strict=True)
-    points = dict(figure.points) | {name: complex(place) for name, place in moved}
+    moved = zip(figure.free, _polished(shape, solution).view(complex), strict=True)
+    points = figure.points | {name: complex(place) for name, place in moved}
     return _places(figure, points)
 
 
@@ -180,29 +179,18 @@ def _singular_assembly(shape: _Shape, near: np.ndarray) -> np.ndarray | None:
     return places if is_near and is_closed else None
 
 
-def _pairs(numbers: np.ndarray) -> np.ndarray:
-    """Complex numbers (k,) as real ones (2 k,)."""
-    return np.column_stack([numbers.real, numbers.imag]).ravel()
-
-
-def _complex_numbers(pairs: np.ndarray) -> np.ndarray:
-    """Real numbers (2 k,) as complex ones (k,)."""
-    numbers: np.ndarray = pairs[::2] + 1j * pairs[1::2]
-    return numbers
-
-
 class _Shape:
-    """The lengths of all bars as functions of the places of the ``free`` points.
+    """The lengths of all bars as functions of the places of the free points.
 
     Every vector along a bar is ``constant`` (b,) + ``factors`` (b, k) @ places (k,), in
     complex numbers.
     """
 
-    def __init__(self, figure: Bars, free: Sequence[str]):
-        at_rest = dict(figure.points) | dict.fromkeys(free, 0j)
+    def __init__(self, figure: Bars):
+        at_rest = figure.points | dict.fromkeys(figure.free, 0j)
         self.constant = _vectors(figure, at_rest)
         columns = []
-        for name in free:
+        for name in figure.free:
             moved = _vectors(figure, at_rest | {name: 1 + 0j})
             columns.append(moved - self.constant)
         self.factors = np.column_stack(columns)
@@ -213,7 +201,7 @@ class _Shape:
         self.lengths = np.where(np.isnan(given), now, given)
 
     def _along(self, values: np.ndarray) -> np.ndarray:
-        along: np.ndarray = self.constant + self.factors @ _complex_numbers(values)
+        along: np.ndarray = self.constant + self.factors @ values.view(complex)
         return along
 
     def gaps(self, values: np.ndarray) -> np.ndarray:
@@ -225,11 +213,7 @@ class _Shape:
         """Derivatives (b, 2 k) of `gaps`."""
         along = self._along(values)
         directions = np.conj(along) / np.maximum(np.abs(along), TINY)
-        rates = directions[:, None] * self.factors
-        derivatives = np.empty((len(along), 2 * self.factors.shape[1]))
-        derivatives[:, ::2] = rates.real
-        derivatives[:, 1::2] = -rates.imag
-        return derivatives
+        return _by_coordinates(directions[:, None] * self.factors)
 
     def stressed(
         self, values: np.ndarray, stress: np.ndarray
@@ -251,12 +235,15 @@ class _Shape:
         (b,): a length grows with the square of the motion across its bar."""
         along = self._along(values)
         lengths = np.maximum(np.abs(along), TINY)
-        across = (1j * np.conj(along) / lengths)[:, None] * self.factors
-        rates = np.empty((len(along), 2 * self.factors.shape[1]))
-        rates[:, ::2] = across.real
-        rates[:, 1::2] = -across.imag
+        rates = _by_coordinates((1j * np.conj(along) / lengths)[:, None] * self.factors)
         bending: np.ndarray = rates.T @ ((stress / lengths)[:, None] * rates)
         return bending
+
+
+def _by_coordinates(rates: np.ndarray) -> np.ndarray:
+    """The real parts (b, 2 k) of rates (b, k) by x + iy, as rates by all x and y."""
+    by_coordinates: np.ndarray = np.conj(rates).view(float)
+    return by_coordinates
 
 
 def _vectors(figure: Bars, points: Mapping[str, complex]) -> np.ndarray:

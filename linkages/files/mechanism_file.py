@@ -1,4 +1,4 @@
-"""Reading a mechanism from the content of a TOML file.
+"""A mechanism from the content of a TOML file, and as the text of one.
 
 Four formats, told apart by their keys: ``[[joints]]``, axes in one closed
 configuration, ``[[loops]]``, tables of Denavit and Hartenberg that share joints
@@ -9,19 +9,21 @@ configuration, ``[[loops]]``, tables of Denavit and Hartenberg that share joints
 
 from __future__ import annotations
 
+import json
 import logging
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 from linkages.files.arcs import read_arcs
 from linkages.files.bars import read_bars
 from linkages.files.loops import read_loops
 from linkages.mechanisms.couplings import Coupling
-from linkages.mechanisms.joint import DRAWN_ONLY, Joint, Motion
+from linkages.mechanisms.joint import DRAWN_ONLY, GEOMETRY, Joint, Limits, Motion
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.origin import Coordinates, counted_from_near, origin_of
+from linkages.mechanisms.subject import joint_values
 from linkages.structure.plane import normal_of_plane
 from linkages.values import GeometryError, check_angle, check_keys, check_number, quoted
 
@@ -31,22 +33,14 @@ OF_FILE = ("name", "angles", "planar", "origin", "rounding", "joints")
 OF_BARS = ("name", "fixed", "bars", "points", "points_on_bars", "origin")
 OF_ARCS = ("name", "angles", "fixed", "arcs", "points", "points_on_arcs")
 OF_LOOPS = ("name", "angles", "loops")
-OF_JOINT = (
-    "name",
-    "kind",
-    "bodies",
-    "point",
-    "direction",
-    "second_direction",
-    "pitch",
-    "limits",
-    "locked",
-    "coupled",
-)
+OF_BODIES = ("name", "kind", "bodies")
 OF_VALUES = ("limits", "locked", "coupled")
+OF_JOINT = (*OF_BODIES, *GEOMETRY, *OF_VALUES)
 OF_COUPLING = ("to", "ratio", "offset")
 UNITS = {"deg": math.pi / 180, "rad": 1.0}
 FREE = "free"  # in a list of locks: a variable that has none
+# what stands for a variable without a value, by key: a TOML list has no null
+NOTHING: dict[str, object] = {"limits": [], "locked": FREE}
 MANY_TURNS = 4 * math.pi  # limits of a turn beyond it, rad, may be meant in degrees
 
 log = logging.getLogger(__name__)
@@ -146,55 +140,141 @@ def _read_joint(number: int, table: object, unit: float) -> Joint:
         if key not in table:
             what = f"{key} of joint {name}"
             raise GeometryError(what, "a missing key", "given for every joint")
-    geometry = {
-        key: table[key] for key in OF_JOINT if key in table and key not in OF_VALUES
-    }
-    joint = Joint(**geometry)
+    joint = Joint(**{key: table[key] for key in table if key not in OF_VALUES})
     motions = joint.motions * (len(joint.bodies) - 1)
-    limits = _read_limits(name, table.get("limits"), motions, unit)
-    locked = _read_locked(name, table.get("locked"), motions, unit)
-    _check_locked(name, locked, limits, motions, unit)
-    coupled = _read_coupled(name, table.get("coupled"), motions, unit)
-    _check_not_locked(name, locked, coupled, motions, unit)
+    variables = _Variables(name, motions, unit)
+    limits = variables.limits(table.get("limits"))
+    locked = variables.locked(table.get("locked"), limits)
+    coupled = variables.coupled(table.get("coupled"), locked)
     return replace(joint, limits=limits, locked=locked, coupled=coupled)
 
 
-def _read_limits(
-    name: str, given: object, motions: tuple[Motion, ...], unit: float
-) -> tuple[tuple[float, float] | None, ...]:
-    """The limits of all variables; an empty list stands for none in a joint of
-    several."""
-    if given is None:
-        return ()
-    what = f"limits of joint {name}"
-    allowed = "a list [low, high], one for each variable"
-    if len(motions) > 1:
-        allowed += ", [] for those without limits"
-    rows = list(given) if isinstance(given, list) else []
-    if len(motions) == 1 and not any(isinstance(row, list) for row in rows):
-        rows = [rows]
-    if len(rows) != len(motions):
-        raise GeometryError(what, quoted(given), allowed)
-    limits: list[tuple[float, float] | None] = []
-    for row, motion in zip(rows, motions, strict=True):
-        if row == [] and len(motions) > 1:
-            limits.append(None)
-            continue
-        if not isinstance(row, list) or len(row) != 2:
+@dataclass(frozen=True)
+class _Variables:
+    """The variables of a joint of a file, which gives their angles in a ``unit``, in
+    rad. What is said of them is a list with an entry for each, or the only entry, and
+    nothing where nothing is said."""
+
+    joint: str
+    motions: tuple[Motion, ...]
+    unit: float
+
+    def limits(self, given: object) -> tuple[Limits | None, ...]:
+        """The limits of all variables; an empty list stands for none in a joint of
+        several."""
+        if given is None:
+            return ()
+        what = f"limits of joint {self.joint}"
+        is_single = len(self.motions) == 1
+        allowed = "a list [low, high], one for each variable"
+        if len(self.motions) > 1:
+            allowed += ", [] for those without limits"
+        rows = list(given) if isinstance(given, list) else []
+        if is_single and not any(isinstance(row, list) for row in rows):
+            rows = [rows]
+        if len(rows) != len(self.motions):
             raise GeometryError(what, quoted(given), allowed)
-        low, high = _in_rad(what, row, motion, unit)
-        if not low < high:
-            allowed = "a smaller number and a larger one"
-            if low == high:
-                allowed += f"; a joint that stands still has locked = {row[0]}"
-            raise GeometryError(what, row, allowed)
-        if motion.is_turn and not motion.advance and unit == 1.0:
-            _warn_of_degrees(what, (low, high))
-        limits.append((low, high))
-    return tuple(limits)
+        limits: list[Limits | None] = []
+        for row, motion in zip(rows, self.motions, strict=True):
+            if row == [] and not is_single:
+                limits.append(None)
+                continue
+            if not isinstance(row, list) or len(row) != 2:
+                raise GeometryError(what, quoted(given), allowed)
+            low, high = (self._in_rad(what, value, motion) for value in row)
+            if not low < high:
+                allowed = "a smaller number and a larger one"
+                if low == high:
+                    allowed += f"; a joint that stands still has locked = {row[0]}"
+                raise GeometryError(what, row, allowed)
+            if motion.is_turn and not motion.advance and self.unit == 1.0:
+                _warn_of_degrees(what, (low, high))
+            limits.append((low, high))
+        return tuple(limits)
+
+    def locked(
+        self, given: object, limits: Sequence[Limits | None]
+    ) -> tuple[float | None, ...]:
+        """The locks of all variables, within their limits; "free" stands for none in a
+        joint of several."""
+        if given is None:
+            return ()
+        what = f"locked of joint {self.joint}"
+        count = len(self.motions)
+        values = given if isinstance(given, list) else [given]
+        if len(values) != count:
+            allowed = "a number"
+            if count > 1:
+                allowed = f'{count} numbers, "{FREE}" for a variable that is not'
+            raise GeometryError(what, quoted(given), allowed)
+        locked = [
+            None if value == FREE and count > 1 else self._in_rad(what, value, motion)
+            for value, motion in zip(values, self.motions, strict=True)
+        ]
+        for value, pair, motion in zip(locked, limits, self.motions, strict=False):
+            if value is None or pair is None or pair[0] <= value <= pair[1]:
+                continue
+            factor = self.unit if motion.is_turn else 1.0
+            low, high = (f"{end / factor:.10g}" for end in pair)
+            shown = self._as_given(value, motion)
+            raise GeometryError(what, shown, f"within the limits [{low}, {high}]")
+        return tuple(locked)
+
+    def coupled(
+        self, given: object, locked: Sequence[float | None]
+    ) -> tuple[Coupling | None, ...]:
+        """The couplings of all variables, of which those are not ``locked``."""
+        if given is None:
+            return ()
+        what = f"coupled of joint {self.joint}"
+        tables = given if isinstance(given, list) else [given]
+        if len(tables) != len(self.motions):
+            count = len(self.motions)
+            allowed = f"{count} tables" if count != 1 else "a table"
+            raise GeometryError(what, quoted(given), f"{allowed} {{to, ratio, offset}}")
+        pairs = zip(tables, self.motions, strict=True)
+        coupled = [self._coupling(what, table, motion) for table, motion in pairs]
+        for value, coupling, motion in zip(locked, coupled, self.motions, strict=False):
+            if value is not None and coupling is not None:
+                shown = self._as_given(value, motion)
+                allowed = f"left out, as the variable is coupled to {coupling.to}"
+                raise GeometryError(f"locked of joint {self.joint}", shown, allowed)
+        return tuple(coupled)
+
+    def _coupling(self, what: str, table: object, motion: Motion) -> Coupling | None:
+        """A coupling from its table; None from an empty one."""
+        if not isinstance(table, Mapping):
+            raise GeometryError(what, quoted(table), "a table {to, ratio, offset}")
+        if not table:
+            return None
+        check_keys(f"key of {what}", table, OF_COUPLING)
+        for key in ("to", "ratio"):
+            if key not in table:
+                raise GeometryError(f"{key} of {what}", "a missing key", "given")
+        offset = self._in_rad(f"offset of {what}", table.get("offset", 0.0), motion)
+        check_number(f"ratio of {what}", table["ratio"])
+        if table["ratio"] == 0:
+            allowed = "other than 0; a joint that stands still is locked"
+            raise GeometryError(f"ratio of {what}", 0, allowed)
+        return Coupling(table["to"], table["ratio"], offset)
+
+    def _in_rad(self, what: str, value: Any, motion: Motion) -> float:
+        """A number of a file in rad, where the motion is a turn; a length as it is."""
+        if not motion.is_turn:
+            check_number(what, value)
+            return float(value)
+        check_angle(what, value, in_degrees=self.unit != 1.0)
+        return self.unit * float(value)
+
+    def _as_given(self, value: float, motion: Motion) -> str:
+        """A value of a variable as the file gives it, angles with their unit."""
+        if not motion.is_turn:
+            return f"{value:.10g}"
+        word = "rad" if self.unit == 1.0 else "degrees"
+        return f"{value / self.unit:.10g} {word}"
 
 
-def _warn_of_degrees(what: str, limits: tuple[float, float]) -> None:
+def _warn_of_degrees(what: str, limits: Limits) -> None:
     """Say in the log that limits, rad, are so wide that degrees may be meant."""
     if max(map(abs, limits)) > MANY_TURNS:
         log.warning(
@@ -205,113 +285,46 @@ def _warn_of_degrees(what: str, limits: tuple[float, float]) -> None:
         )
 
 
-def _read_locked(
-    name: str, given: object, motions: tuple[Motion, ...], unit: float
-) -> tuple[float | None, ...]:
-    """The locks of all variables; "free" stands for none in a joint of several."""
-    if given is None:
-        return ()
-    what = f"locked of joint {name}"
-    values = given if isinstance(given, list) else [given]
-    if len(values) != len(motions):
-        allowed = "a number"
-        if len(motions) > 1:
-            allowed = f'{len(motions)} numbers, "{FREE}" for a variable that is not'
-        raise GeometryError(what, quoted(given), allowed)
-    locked: list[float | None] = []
-    for value, motion in zip(values, motions, strict=True):
-        if value == FREE and len(motions) > 1:
-            locked.append(None)
+# --- writing --------------------------------------------------------------------------
+
+
+def mechanism_toml(mechanism: Mechanism) -> str:
+    """The text of a TOML file that describes the mechanism, angles in rad."""
+    lines = [f"name = {_quoted(mechanism.name)}", 'angles = "rad"']
+    if mechanism.is_planar:
+        lines.append("planar = true")
+    if any(mechanism.origin):
+        lines.append(f"origin = {json.dumps(mechanism.origin)}")
+    if mechanism.rounding:
+        lines.append(f"rounding = {json.dumps(mechanism.rounding)}")
+    for joint in mechanism.joints:
+        lines += ["", "[[joints]]", *_joint_lines(joint)]
+    return "\n".join(lines) + "\n"
+
+
+def _joint_lines(joint: Joint) -> list[str]:
+    lines = []
+    for key, value in joint_values(joint).items():
+        if key == "coupled":
+            lines.append(f"coupled = {_couplings(joint)}")
             continue
-        locked += _in_rad(what, [value], motion, unit)
-    return tuple(locked)
+        if key in NOTHING:
+            value = [NOTHING[key] if one is None else one for one in value]
+        lines.append(f"{key} = {json.dumps(value, ensure_ascii=False)}")
+    return lines
 
 
-def _check_locked(
-    name: str,
-    locked: Sequence[float | None],
-    limits: Sequence[tuple[float, float] | None],
-    motions: Sequence[Motion],
-    unit: float,
-) -> None:
-    """Raise `GeometryError`, in the units of the file, for a lock outside limits."""
-    for value, pair, motion in zip(locked, limits, motions, strict=False):
-        if value is None or pair is None or pair[0] <= value <= pair[1]:
+def _couplings(joint: Joint) -> str:
+    """A list with an inline table for each variable, empty where it is free."""
+    tables = []
+    for coupling in joint.coupled:
+        if coupling is None:
+            tables.append("{}")
             continue
-        factor = unit if motion.is_turn else 1.0
-        low, high = (f"{end / factor:.10g}" for end in pair)
-        given = _as_given(value, motion, unit)
-        allowed = f"within the limits [{low}, {high}]"
-        raise GeometryError(f"locked of joint {name}", given, allowed)
+        numbers = f"ratio = {coupling.ratio!r}, offset = {coupling.offset!r}"
+        tables.append(f"{{to = {_quoted(coupling.to)}, {numbers}}}")
+    return f"[{', '.join(tables)}]"
 
 
-def _as_given(value: float, motion: Motion, unit: float) -> str:
-    """A value of a variable as the file gives it, angles with their unit."""
-    if not motion.is_turn:
-        return f"{value:.10g}"
-    word = "rad" if unit == 1.0 else "degrees"
-    return f"{value / unit:.10g} {word}"
-
-
-def _check_not_locked(
-    name: str,
-    locked: Sequence[float | None],
-    coupled: Sequence[Coupling | None],
-    motions: Sequence[Motion],
-    unit: float,
-) -> None:
-    """Raise `GeometryError`, in the units of the file, for a lock of what is coupled."""
-    for value, coupling, motion in zip(locked, coupled, motions, strict=False):
-        if value is not None and coupling is not None:
-            given = _as_given(value, motion, unit)
-            allowed = f"left out, as the variable is coupled to {coupling.to}"
-            raise GeometryError(f"locked of joint {name}", given, allowed)
-
-
-def _read_coupled(
-    name: str, given: object, motions: tuple[Motion, ...], unit: float
-) -> tuple[Coupling | None, ...]:
-    if given is None:
-        return ()
-    what = f"coupled of joint {name}"
-    tables = given if isinstance(given, list) else [given]
-    if len(tables) != len(motions):
-        allowed = f"{len(motions)} tables" if len(motions) != 1 else "a table"
-        raise GeometryError(what, quoted(given), f"{allowed} {{to, ratio, offset}}")
-    pairs = zip(tables, motions, strict=True)
-    return tuple(_read_coupling(what, table, motion, unit) for table, motion in pairs)
-
-
-def _read_coupling(
-    what: str, table: object, motion: Motion, unit: float
-) -> Coupling | None:
-    """A coupling from its table; None from an empty one."""
-    if not isinstance(table, Mapping):
-        raise GeometryError(what, quoted(table), "a table {to, ratio, offset}")
-    if not table:
-        return None
-    check_keys(f"key of {what}", table, OF_COUPLING)
-    for key in ("to", "ratio"):
-        if key not in table:
-            raise GeometryError(f"{key} of {what}", "a missing key", "given")
-    (offset,) = _in_rad(f"offset of {what}", [table.get("offset", 0.0)], motion, unit)
-    check_number(f"ratio of {what}", table["ratio"])
-    if table["ratio"] == 0:
-        allowed = "other than 0; a joint that stands still is locked"
-        raise GeometryError(f"ratio of {what}", 0, allowed)
-    return Coupling(table["to"], table["ratio"], offset)
-
-
-def _in_rad(
-    what: str, values: Iterable[object], motion: Motion, unit: float
-) -> list[float]:
-    """Numbers of a file in rad, where the motion is a turn; lengths as they are."""
-    numbers = []
-    for value in values:
-        if motion.is_turn:
-            check_angle(what, value, in_degrees=unit != 1.0)
-        else:
-            check_number(what, value)
-        factor = unit if motion.is_turn else 1.0
-        numbers.append(factor * float(value))  # type: ignore[arg-type]
-    return numbers
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False)

@@ -24,8 +24,14 @@ START_DAMPING = 1e-2
 LEAST_DAMPING, MOST_DAMPING = 1e-14, 1e8
 AT_REST = 1e-15  # of the residual: no longer smaller by a step
 RANK = 1e-9  # singular value, over the largest, of a motion: no step along it
-ORIGIN = JointKind.REVOLUTE, JointKind.SPHERICAL, JointKind.UNIVERSAL, JointKind.RIGID
-ORIGIN_OR_SCREW = (*ORIGIN, JointKind.HELICAL)
+ORIGIN_COLUMN = 3  # of a frame
+ONE_POINT = (
+    JointKind.REVOLUTE,
+    JointKind.SPHERICAL,
+    JointKind.UNIVERSAL,
+    JointKind.RIGID,
+    JointKind.HELICAL,
+)
 ACROSS = JointKind.PRISMATIC, JointKind.CYLINDRICAL
 TURNLESS = JointKind.PRISMATIC, JointKind.RIGID, JointKind.HELICAL
 
@@ -46,16 +52,6 @@ class _Rows(NamedTuple):
     the slide of the first and of the second body."""
 
     residuals: np.ndarray
-    by_first: np.ndarray
-    by_second: np.ndarray
-
-
-class _Moving(NamedTuple):
-    """Two vectors (3,), ``first`` of one body and ``second`` of another one, with their
-    derivatives (3, 6)."""
-
-    first: np.ndarray
-    second: np.ndarray
     by_first: np.ndarray
     by_second: np.ndarray
 
@@ -151,66 +147,56 @@ class Closing:
             scaled[:3, 3] /= self.size
             frames.append(pose @ scaled)
         one, other = frames
-        origins = _points(one, other)
-        axes = _axes(one, other, 2)
         parts = []
-        if joint.kind in ORIGIN_OR_SCREW:
-            parts.append(_difference(origins))
+        if joint.kind in ONE_POINT:
+            parts.append(_difference(one, other, ORIGIN_COLUMN))
         elif joint.kind in ACROSS:
-            parts += [_along(origins, one, column) for column in (0, 1)]
+            parts += [_along(one, other, column) for column in (0, 1)]
         elif joint.kind is JointKind.PLANAR:
-            parts.append(_along(origins, one, 2))
+            parts.append(_along(one, other, 2))
         if joint.kind is JointKind.UNIVERSAL:
-            parts.append(_angle(axes, joint.cosine))
+            parts.append(_angle(one, other, joint.cosine))
         elif joint.kind is not JointKind.SPHERICAL:
-            parts.append(_difference(axes))
+            parts.append(_difference(one, other, 2))
         if joint.kind in TURNLESS:
-            parts.append(_difference(_axes(one, other, 0)))
+            parts.append(_difference(one, other, 0))
         return _Rows(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
 # --- pieces of equations --------------------------------------------------------------
 
 
-def _skew(vector: np.ndarray) -> np.ndarray:
-    """The matrix (3, 3) of the cross product with ``vector`` (3,)."""
-    x, y, z = vector
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+def _rates(frame: np.ndarray, column: int) -> np.ndarray:
+    """The derivatives (3, 6) of a column of a frame, an axis or the origin, by the turn
+    and the slide of its body."""
+    x, y, z = frame[:3, column]
+    rates = np.zeros((3, 6))
+    rates[:, :3] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
+    if column == ORIGIN_COLUMN:
+        rates[:, 3:] = np.eye(3)
+    return rates
 
 
-def _points(one: np.ndarray, other: np.ndarray) -> _Moving:
-    points = one[:3, 3], other[:3, 3]
-    rates = [np.hstack([-_skew(point), np.eye(3)]) for point in points]
-    return _Moving(*points, *rates)
+def _difference(one: np.ndarray, other: np.ndarray, column: int) -> _Rows:
+    """A column of the second frame less that of the first one."""
+    difference = other[:3, column] - one[:3, column]
+    return _Rows(difference, -_rates(one, column), _rates(other, column))
 
 
-def _axes(one: np.ndarray, other: np.ndarray, column: int) -> _Moving:
-    axes = one[:3, column], other[:3, column]
-    rates = [np.hstack([-_skew(axis), np.zeros((3, 3))]) for axis in axes]
-    return _Moving(*axes, *rates)
-
-
-def _difference(moving: _Moving) -> _Rows:
-    """The second vector less the first one."""
-    return _Rows(moving.second - moving.first, -moving.by_first, moving.by_second)
-
-
-def _along(origins: _Moving, one: np.ndarray, column: int) -> _Rows:
+def _along(one: np.ndarray, other: np.ndarray, column: int) -> _Rows:
     """How far the second origin is from the first one along an axis of the first
     frame."""
     axis = one[:3, column]
-    gap = origins.second - origins.first
-    by_axis = np.hstack([-_skew(axis), np.zeros((3, 3))])
-    by_first = gap @ by_axis - axis @ origins.by_first
-    by_second = axis @ origins.by_second
-    return _Rows(np.array([axis @ gap]), by_first[None], by_second[None])
+    gap, by_first, by_second = _difference(one, other, ORIGIN_COLUMN)
+    by_first = gap @ _rates(one, column) + axis @ by_first
+    return _Rows(np.array([axis @ gap]), by_first[None], (axis @ by_second)[None])
 
 
-def _angle(axes: _Moving, cosine: float) -> _Rows:
-    residual = np.array([axes.first @ axes.second - cosine])
-    by_first = axes.second @ axes.by_first
-    by_second = axes.first @ axes.by_second
-    return _Rows(residual, by_first[None], by_second[None])
+def _angle(one: np.ndarray, other: np.ndarray, cosine: float) -> _Rows:
+    """The cosine between the third axes, less what it has to be."""
+    first, second = one[:3, 2], other[:3, 2]
+    by_first, by_second = second @ _rates(one, 2), first @ _rates(other, 2)
+    return _Rows(np.array([first @ second - cosine]), by_first[None], by_second[None])
 
 
 def _moved(poses: np.ndarray, step: np.ndarray) -> np.ndarray:

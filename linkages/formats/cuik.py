@@ -7,8 +7,8 @@ out.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -192,58 +192,61 @@ def _whole(cursor: Cursor) -> int:
     return int(cursor.next().text)
 
 
-def _read_two_sides(cursor: Cursor, world: _World, has_axis: bool) -> list[_Side]:
-    return [_read_side(cursor, world, has_axis) for _ in range(2)]
+def _read_sides(
+    cursor: Cursor, world: _World, has_axis: bool
+) -> tuple[tuple[_Side, _Side], tuple[str, str]]:
+    """Both sides of a joint, and the names of their links."""
+    first, second = (_read_side(cursor, world, has_axis) for _ in range(2))
+    return (first, second), (first.link.name, second.link.name)
 
 
-def _bodies(sides: list[_Side]) -> tuple[str, str]:
-    return sides[0].link.name, sides[1].link.name
-
-
-def _axis_frames(sides: list[_Side], name: str) -> tuple[np.ndarray, np.ndarray]:
+def _axis_frames(sides: Iterable[_Side], name: str) -> tuple[np.ndarray, np.ndarray]:
     what = f"joint {name}"
     first, second = (frame_of(s.points[0], s.points[1], what) for s in sides)
     return first, second
 
 
+def _within(
+    joint: BodyJoint, limits: Limits, motion: Callable[[float], np.ndarray]
+) -> BodyJoint:
+    """The joint within ``limits``; a rigid one where they are a single value, at which
+    its ``motion`` is a displacement (4, 4)."""
+    if limits[0] < limits[1]:
+        return replace(joint, limits=(limits,))
+    first, second = joint.frames
+    frames = first @ motion(limits[0]), second
+    return replace(joint, kind=JointKind.RIGID, frames=frames)
+
+
+def _turn(angle: float) -> np.ndarray:
+    return rotation((0.0, 0.0, 1.0), angle)
+
+
+def _slide(length: float) -> np.ndarray:
+    return translation((0.0, 0.0, length))
+
+
 def _read_revolute(cursor: Cursor, world: _World, name: str) -> None:
     """The angle is 0 where the vectors from the second points of the axis to the
     reference points coincide."""
-    sides = _read_two_sides(cursor, world, has_axis=True)
+    sides, bodies = _read_sides(cursor, world, has_axis=True)
     frames = _axis_frames(sides, name)
-    limits: tuple[Limits | None, ...] = ()
-    has_range = cursor.take("range")
-    if has_range:
-        limits = (_read_range(cursor, name),)
-    if has_range or cursor.take("reference"):
+    limits = _read_range(cursor, name) if cursor.take("range") else None
+    if limits is not None or cursor.take("reference"):
         if cursor.token.text in ("(", "+"):
             frames = _referred(cursor, sides, name)
         else:
             world.notes.append(f"left out: the range of joint {name}, without a zero")
-            limits = ()
+            limits = None
     _skip_options(cursor)
-    world.joints.append(_turn(name, _bodies(sides), frames, limits))
-
-
-def _turn(
-    name: str,
-    bodies: tuple[str, str],
-    frames: tuple[np.ndarray, np.ndarray],
-    limits: tuple[Limits | None, ...],
-) -> BodyJoint:
-    """A turn within ``limits``, or without; a rigid joint where there is a single
-    value."""
-    pair = limits[0] if limits else None
-    if pair is None or pair[0] < pair[1]:
-        is_whole = pair is not None and pair[1] - pair[0] >= FULL_TURN
-        given = () if is_whole else limits
-        return BodyJoint(name, JointKind.REVOLUTE, bodies, frames, limits=given)
-    first = frames[0] @ rotation((0.0, 0.0, 1.0), pair[0])
-    return BodyJoint(name, JointKind.RIGID, bodies, (first, frames[1]))
+    joint = BodyJoint(name, JointKind.REVOLUTE, bodies, frames)
+    if limits is not None and limits[1] - limits[0] < FULL_TURN:
+        joint = _within(joint, limits, _turn)
+    world.joints.append(joint)
 
 
 def _referred(
-    cursor: Cursor, sides: list[_Side], name: str
+    cursor: Cursor, sides: Iterable[_Side], name: str
 ) -> tuple[np.ndarray, np.ndarray]:
     """The frames of an axis with their first axes towards the points that stand
     here."""
@@ -276,31 +279,18 @@ def _read_range(cursor: Cursor, name: str) -> Limits:
 def _read_prismatic(cursor: Cursor, world: _World, name: str) -> None:
     """Both links have the same orientation; the slide is from the first point of one to
     that of the other."""
-    sides = _read_two_sides(cursor, world, has_axis=True)
+    sides, bodies = _read_sides(cursor, world, has_axis=True)
     first, second = _axis_frames(sides, name)
     second[:3, :3] = first[:3, :3]
     cursor.expect("range")
     limits = _read_range(cursor, name)
     _skip_options(cursor)
-    bodies = _bodies(sides)
-    world.joints.append(_slide(name, bodies, (first, second), limits))
-
-
-def _slide(
-    name: str,
-    bodies: tuple[str, str],
-    frames: tuple[np.ndarray, np.ndarray],
-    limits: Limits,
-) -> BodyJoint:
-    """A slide within ``limits``; a rigid joint where there is a single value."""
-    if limits[0] < limits[1]:
-        return BodyJoint(name, JointKind.PRISMATIC, bodies, frames, limits=(limits,))
-    first = frames[0] @ translation((0.0, 0.0, limits[0]))
-    return BodyJoint(name, JointKind.RIGID, bodies, (first, frames[1]))
+    joint = BodyJoint(name, JointKind.PRISMATIC, bodies, (first, second))
+    world.joints.append(_within(joint, limits, _slide))
 
 
 def _read_spherical(cursor: Cursor, world: _World, name: str) -> None:
-    sides = _read_two_sides(cursor, world, has_axis=False)
+    sides, bodies = _read_sides(cursor, world, has_axis=False)
     if cursor.take("range"):
         world.notes.append(f"left out: the range of the spherical joint {name}")
         cursor.row("[]", 1)
@@ -308,13 +298,12 @@ def _read_spherical(cursor: Cursor, world: _World, name: str) -> None:
             read_end(cursor, (0.0, 0.0, 0.0))
     _skip_options(cursor)
     first, second = (translation(side.points[0]) for side in sides)
-    joint = BodyJoint(name, JointKind.SPHERICAL, _bodies(sides), (first, second))
-    world.joints.append(joint)
+    world.joints.append(BodyJoint(name, JointKind.SPHERICAL, bodies, (first, second)))
 
 
 def _read_universal(cursor: Cursor, world: _World, name: str) -> None:
     """The axes are at right angles."""
-    sides = _read_two_sides(cursor, world, has_axis=True)
+    sides, bodies = _read_sides(cursor, world, has_axis=True)
     if cursor.is_word("range", "reference"):
         world.notes.append(f"left out: the range of the universal joint {name}")
         cursor.next()
@@ -325,7 +314,7 @@ def _read_universal(cursor: Cursor, world: _World, name: str) -> None:
             read_end(cursor, (0.0, 0.0, 0.0))
     _skip_options(cursor)
     frames = _axis_frames(sides, name)
-    world.joints.append(BodyJoint(name, JointKind.UNIVERSAL, _bodies(sides), frames))
+    world.joints.append(BodyJoint(name, JointKind.UNIVERSAL, bodies, frames))
 
 
 def _read_fix(cursor: Cursor, world: _World, name: str) -> None:
@@ -338,7 +327,7 @@ def _read_fix(cursor: Cursor, world: _World, name: str) -> None:
 
 def _read_rod(cursor: Cursor, world: _World, name: str) -> None:
     """A body between two spherical joints, with a length."""
-    sides = _read_two_sides(cursor, world, has_axis=False)
+    sides, _ = _read_sides(cursor, world, has_axis=False)
     line = cursor.token.line
     cursor.expect("length")
     length = cursor.number()
@@ -353,7 +342,7 @@ def _read_rod(cursor: Cursor, world: _World, name: str) -> None:
 def _read_leg(cursor: Cursor, world: _World, name: str) -> None:
     """Two bodies with a slide between two spherical joints; the slide is their
     distance."""
-    sides = _read_two_sides(cursor, world, has_axis=False)
+    sides, _ = _read_sides(cursor, world, has_axis=False)
     line = cursor.token.line
     cursor.expect("range")
     limits = _read_range(cursor, name)
@@ -364,14 +353,15 @@ def _read_leg(cursor: Cursor, world: _World, name: str) -> None:
     bodies = f"{name}.1", f"{name}.2"
     world.extra_bodies += bodies
     frames = np.eye(4), np.eye(4)
-    world.joints.append(_slide(name, bodies, frames, limits))
+    joint = BodyJoint(name, JointKind.PRISMATIC, bodies, frames)
+    world.joints.append(_within(joint, limits, _slide))
     _add_ends(world, name, sides, bodies, frames)
 
 
 def _add_ends(
     world: _World,
     name: str,
-    sides: list[_Side],
+    sides: Iterable[_Side],
     bodies: tuple[str, str],
     ends: tuple[np.ndarray, np.ndarray],
 ) -> None:

@@ -13,6 +13,7 @@ from __future__ import annotations
 import itertools
 import re
 from dataclasses import dataclass, field, replace
+from typing import TypeAlias
 
 import numpy as np
 
@@ -64,20 +65,23 @@ class _Body:
     frame: np.ndarray
 
 
+_Placed: TypeAlias = tuple[_Body, ExactPose]
+
+
 @dataclass
 class _Model:
-    """What was read so far. ``names`` leads from every <body> to the `_Body` that it is
-    rigid with, ``sites`` to body and pose in the world, ``labels`` from every axis to
-    the label of the variable that it is. Places are counted from the ``origin``;
-    ``places`` are those of all joints, off by ``rounding`` at most."""
+    """What was read so far. ``elements`` leads from every <body>, and ``sites`` from
+    every <site>, to the `_Body` that it is rigid with and its pose in the world,
+    ``labels`` from every axis to the label of the variable that it is. Places are
+    counted from the ``origin``; ``places`` are those of all joints, off by ``rounding``
+    at most."""
 
     settings: Settings
     taken: TakenNames
     origin: Origin
     bodies: list[_Body] = field(default_factory=list)
-    names: dict[str, _Body] = field(default_factory=dict)
-    element_poses: dict[str, ExactPose] = field(default_factory=dict)
-    sites: dict[str, tuple[_Body, ExactPose]] = field(default_factory=dict)
+    elements: dict[str, _Placed] = field(default_factory=dict)
+    sites: dict[str, _Placed] = field(default_factory=dict)
     places: list[ExactPlace] = field(default_factory=list)
     rounding: float = 0.0
     axes: dict[str, Axis] = field(default_factory=dict)
@@ -124,8 +128,7 @@ def _read_model(root: Element, origin: Origin) -> _Model:
     model = _Model(read_settings(root), TakenNames(root), origin)
     world = _Body(WORLD, origin.frame(origin.pose))
     model.bodies.append(world)
-    model.names[WORLD] = world
-    model.element_poses[WORLD] = origin.pose
+    model.elements[WORLD] = (world, origin.pose)
     for worldbody in root.all("worldbody"):
         _read_children(worldbody, world, origin.pose, None, model)
     for equality in root.all("equality"):
@@ -179,9 +182,9 @@ def _read_body(
     childclass = element.attributes.get("childclass", childclass)
     name = element.attributes.get("name")
     if name is None:
-        numbers = itertools.count(len(model.names))
+        numbers = itertools.count(len(model.elements))
         name = model.taken.new_body(f"body{number}" for number in numbers)
-    element.check_new(name, model.names)
+    element.check_new(name, model.elements)
     pose = pose @ pose_of(element, model.settings)
     joints = [
         model.settings.attributes(joint, childclass)
@@ -191,8 +194,7 @@ def _read_body(
     if joints:
         body = _Body(name, model.origin.frame(pose))
         model.bodies.append(body)
-    model.names[name] = body
-    model.element_poses[name] = pose
+    model.elements[name] = (body, pose)
     is_free = any(
         joint.tag == "freejoint" or joint.attributes.get("type") == "free"
         for joint in joints
@@ -395,54 +397,39 @@ class _Anchor:
         return _Anchor(self.name, self.bodies[::-1], self.points[::-1])
 
 
-def _read_bodies(element: Element, model: _Model) -> tuple[_Body, _Body]:
-    allowed = f"one of the bodies {', '.join(model.names)}"
-    first = element.reference("body1", model.names, allowed)
-    second = element.reference("body2", model.names, allowed, default=WORLD)
-    return model.names[first], model.names[second]
-
-
-def _read_sites(
-    element: Element, model: _Model
-) -> tuple[tuple[_Body, ExactPose], tuple[_Body, ExactPose]] | None:
-    """The two sites of an equality; None where it has none."""
-    if "site1" not in element.attributes and "site2" not in element.attributes:
-        return None
-    first, second = (
-        model.sites[element.reference(key, model.sites, "the name of a site")]
-        for key in ("site1", "site2")
-    )
-    return first, second
+def _read_ends(element: Element, model: _Model) -> tuple[_Placed, _Placed, bool]:
+    """What an equality joins, two sites or two bodies; and whether they are sites."""
+    if "site1" in element.attributes or "site2" in element.attributes:
+        allowed = "the name of a site"
+        one = element.reference("site1", model.sites, allowed)
+        other = element.reference("site2", model.sites, allowed)
+        return model.sites[one], model.sites[other], True
+    allowed = f"one of the bodies {', '.join(model.elements)}"
+    one = element.reference("body1", model.elements, allowed)
+    other = element.reference("body2", model.elements, allowed, default=WORLD)
+    return model.elements[one], model.elements[other], False
 
 
 def _read_connect(element: Element, name: str, model: _Model) -> _Anchor:
-    sites = _read_sites(element, model)
-    if sites is not None:
-        (first, one), (second, other) = sites
-        points = model.point(one), model.point(other)
-        return _Anchor(name, (first, second), points)
-    bodies = _read_bodies(element, model)
+    (first, one), (second, other), are_sites = _read_ends(element, model)
+    if are_sites:
+        return _Anchor(name, (first, second), (model.point(one), model.point(other)))
     anchor = element.numbers("anchor", (3,))
     if anchor is None:
         element.refuse("anchor", "missing", "a point in body1, or two sites")
-    pose = model.element_poses[element.attributes["body1"]]
-    point = model.point(pose @ ExactPose.at(anchor))
-    return _Anchor(name, bodies, (point, point))
+    point = model.point(one @ ExactPose.at(anchor))
+    return _Anchor(name, (first, second), (point, point))
 
 
 def _read_weld(element: Element, name: str, model: _Model) -> BodyJoint:
     """Bodies that are joined as they are at qpos0, or in a given pose."""
-    sites = _read_sites(element, model)
-    if sites is not None:
-        (first, one), (second, other) = sites
-    else:
-        first, second = _read_bodies(element, model)
-        one = other = model.element_poses[element.attributes["body1"]]
-        given = element.numbers("relpose", (7,))
-        if given is not None and any(given[3:]):
-            turn = rotation_of_quaternion(np.array(given[3:]))
-            one = one @ ExactPose.at(given[:3], turn)
-            other = model.element_poses[element.attributes.get("body2", WORLD)]
+    (first, one), (second, other), are_sites = _read_ends(element, model)
+    given = None if are_sites else element.numbers("relpose", (7,))
+    if given is not None and any(given[3:]):
+        turn = rotation_of_quaternion(np.array(given[3:]))
+        one = one @ ExactPose.at(given[:3], turn)
+    elif not are_sites:
+        other = one
     if model.origin.place is not None:
         # the same frames of both, brought near
         near = ExactPose(place=other.inverse().place)

@@ -9,13 +9,20 @@ the mechanism stands in the file as it is. A spanning tree of the bodies stands 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable
 from xml.sax.saxutils import quoteattr
 
 import networkx as nx
 import numpy as np
 
-from linkages.formats.names import NameRules, with_names_for
+from linkages.formats.names import (
+    WORLD,
+    NameRules,
+    body_name,
+    pair_name,
+    pair_names,
+    row_text,
+    with_names_for,
+)
 from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism, Pair, Variable
 from linkages.mechanisms.size import Size
@@ -23,7 +30,6 @@ from linkages.mechanisms.size import Size
 CONNECTED = JointKind.REVOLUTE, JointKind.SPHERICAL
 THICKNESS = 0.03  # of a drawn body, over the characteristic length
 LEAST_INERTIA = 1e-12  # MuJoCo takes none of less than 1e-15
-WORLD = "world"
 
 
 def mechanism_mjcf(mechanism: Mechanism) -> str:
@@ -36,9 +42,7 @@ def mechanism_mjcf(mechanism: Mechanism) -> str:
 def _names_of_joint(joint: Joint) -> list[str]:
     """The names that may stand in a file for a joint: of its pairs, of the points that
     close them, of its variables, and of slides with a turn."""
-    pairs = [joint.name]
-    if len(joint.bodies) > 2:
-        pairs = [f"{joint.name}.{body}" for body in joint.bodies[1:]]
+    pairs = pair_names(joint)
     names = [*pairs, *joint.labels]
     for pair in pairs:
         names += [f"{pair}.1", f"{pair}.2"]
@@ -163,19 +167,16 @@ class _Writer:
         center = np.mean(points or [joint.place], axis=0)
         moment = repr(max(self.size**2, LEAST_INERTIA))
         pad = "  " * depth
-        shown = self._body_name(name)
+        shown = body_name(self.mechanism, name)
         return [
             f"{pad}<body name={quoteattr(shown)}>",
-            f'{pad}  <inertial pos="{_row(center)}" mass="1" '
+            f'{pad}  <inertial pos="{row_text(center)}" mass="1" '
             f'diaginertia="{moment} {moment} {moment}"/>',
             *(f"{pad}  {line}" for line in self._axes(pair, parent == pair.base)),
             *(f"{pad}  {line}" for line in self._shapes(points)),
             *inner,
             f"{pad}</body>",
         ]
-
-    def _body_name(self, body: str) -> str:
-        return WORLD if body == self.mechanism.frame else body
 
     def _points(self, body: str) -> list[np.ndarray]:
         joints = [joint for joint in self.mechanism.joints if body in joint.bodies]
@@ -187,7 +188,7 @@ class _Writer:
         lines = []
         for start, end in itertools.pairwise(points):
             if np.linalg.norm(end - start) > radius:
-                ends = f"{_row(start)} {_row(end)}"
+                ends = f"{row_text(start)} {row_text(end)}"
                 lines.append(
                     f'<geom type="capsule" fromto="{ends}" size="{radius!r}" mass="0" '
                     'contype="0" conaffinity="0"/>'
@@ -201,10 +202,7 @@ class _Writer:
         the other way round, of the base."""
         joint = self._joint(pair)
         if pair.center is not None:
-            name = pair.joint
-            if len(joint.bodies) > 2:
-                name = f"{pair.joint}.{pair.moved}"
-            place = _row(pair.center)
+            name, place = pair_name(joint, pair), row_text(pair.center)
             return [f'<joint name={quoteattr(name)} type="ball" pos="{place}"/>']
         lines = []
         for number in pair.variables:
@@ -249,9 +247,7 @@ class _Writer:
         if joint.kind is JointKind.RIGID:
             self._equate("weld", "", pair.base, pair.moved, None)
             return
-        name = pair.joint
-        if len(joint.bodies) > 2:
-            name = f"{pair.joint}.{pair.moved}"
+        name = pair_name(joint, pair)
         if joint.kind is JointKind.SPHERICAL:
             self._equate("connect", name, pair.base, pair.moved, joint.place)
             return
@@ -263,10 +259,10 @@ class _Writer:
     def _equate(
         self, tag: str, name: str, first: str, second: str, anchor: np.ndarray | None
     ) -> None:
-        bodies = f"body1={quoteattr(self._body_name(first))} "
-        bodies += f"body2={quoteattr(self._body_name(second))}"
+        names = [quoteattr(body_name(self.mechanism, one)) for one in (first, second)]
+        bodies = f"body1={names[0]} body2={names[1]}"
         named = f" name={quoteattr(name)}" if name else ""
-        place = "" if anchor is None else f' anchor="{_row(anchor)}"'
+        place = "" if anchor is None else f' anchor="{row_text(anchor)}"'
         self.equalities.append(f"    <{tag}{named} {bodies}{place}/>")
 
 
@@ -278,12 +274,7 @@ def _axis_line(
     limits: tuple[float, float] | None,
 ) -> str:
     line = f'<joint name={quoteattr(label)} type="{kind}" '
-    line += f'pos="{_row(motion.point)}" axis="{_row(sign * motion.direction)}"'
+    line += f'pos="{row_text(motion.point)}" axis="{row_text(sign * motion.direction)}"'
     if limits is not None:
-        line += f' range="{_row(limits)}"'
+        line += f' range="{row_text(limits)}"'
     return line + "/>"
-
-
-def _row(numbers: Iterable[float]) -> str:
-    """Numbers with all their digits."""
-    return " ".join(repr(float(number) + 0.0) for number in numbers)

@@ -21,11 +21,13 @@ from linkages.formats.assembly import BodyJoint
 from linkages.formats.xml_tree import Element
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
-from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.mechanism import Mechanism, Pair
 
 log = logging.getLogger(__name__)
 
 NamesOfJoint: TypeAlias = Callable[[Joint], Iterable[str]]
+
+WORLD = "world"  # what simulators call the body at rest
 
 
 @dataclass(frozen=True)
@@ -38,6 +40,28 @@ class NameRules:
     of_joint: NamesOfJoint
     links_of_joint: NamesOfJoint
     siblings: bool
+
+
+def body_name(mechanism: Mechanism, body: str) -> str:
+    """What a body is called in a file: the body at rest is the world."""
+    return WORLD if body == mechanism.frame else body
+
+
+def pair_name(joint: Joint, pair: Pair) -> str:
+    """What the joint between the two bodies of a pair is called in a file."""
+    return f"{joint.name}.{pair.moved}" if len(joint.bodies) > 2 else joint.name
+
+
+def pair_names(joint: Joint) -> list[str]:
+    """The names of all pairs of a joint."""
+    if len(joint.bodies) == 2:
+        return [joint.name]
+    return [f"{joint.name}.{body}" for body in joint.bodies[1:]]
+
+
+def row_text(numbers: Iterable[float]) -> str:
+    """Numbers with all their digits."""
+    return " ".join(repr(float(number) + 0.0) for number in numbers)
 
 
 def with_names_for(mechanism: Mechanism, rules: NameRules) -> Mechanism:

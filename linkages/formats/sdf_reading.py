@@ -2,13 +2,19 @@
 
 Links are posed in their model, or in what ``relative_to`` names, joints in their child
 link. Masses, shapes, sensors and plugins are left out.
+
+An axis with ``<mimic>`` is at multiplier * (leader - reference) + offset. A joint of
+type ``gearbox`` joins no links: of two links that revolute joints hold on a third one,
+the reference, the child turns by -ratio times what the parent turns by.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,20 +28,17 @@ from linkages.formats.assembly import (
 )
 from linkages.formats.composites import with_joints_of_chains
 from linkages.formats.exact_poses import ExactPose, Origin
-from linkages.formats.sdf_couplings import (
-    AXES,
-    GEARBOX,
-    Gearbox,
-    with_gearboxes,
-    with_mimics,
-)
 from linkages.formats.xml_tree import Element
+from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import JointKind, Limits
 from linkages.values import quoted
 
 OLDEST, NEWEST = (1, 5), (1, 11)
 FRAMES_SINCE = (1, 7)  # relative_to and expressed_in
 PITCH_SINCE = (1, 10)  # screw_thread_pitch, in length a turn
+GEARBOX = "gearbox"
+MIMIC_SINCE = (1, 11)
+AXES = ("axis", "axis2")
 WORLD, MODEL = "world", "__model__"
 UNLIMITED = 1e16  # SDF's word for no limit
 KINDS = {
@@ -47,6 +50,16 @@ KINDS = {
     "screw": JointKind.HELICAL,
     "fixed": JointKind.RIGID,
 }
+
+
+class _Gearbox(NamedTuple):
+    """A gearbox: its ``element``, the link ``reference``, the two ``links`` that turn
+    on it, and the directions (3,) in the model about which their angles are counted."""
+
+    element: Element
+    reference: str
+    links: tuple[str, str]
+    directions: tuple[np.ndarray, np.ndarray]
 
 
 @dataclass
@@ -148,17 +161,24 @@ def _version(root: Element) -> tuple[int, int]:
 
 def _read_joints(model: _Model) -> tuple[BodyJoint, ...]:
     """All joints, coupled where they follow others."""
-    joints, gearboxes = [], []
-    elements = {}
+    joints: dict[str, BodyJoint] = {}
+    gearboxes = []
     for element in model.element.all("joint"):
         if element.attributes.get("type") == GEARBOX:
             gearboxes.append(_read_gearbox(element, model))
-            continue
-        joints.append(_read_joint(element, model))
-        elements[element.attributes["name"]] = element
-    joints = with_mimics(joints, elements, model.version)
-    joints = with_gearboxes(joints, gearboxes, model.frame)
-    return with_joints_of_chains(joints, model.frame)
+        else:
+            joints[element.attributes["name"]] = _read_joint(element, model)
+    coupled = {name: _mimics(joint, joints, model) for name, joint in joints.items()}
+    for gearbox in gearboxes:
+        leader, follower, rate = _geared(gearbox, joints, model)
+        if coupled[follower]:
+            allowed = "a joint that is coupled once"
+            gearbox.element.refuse("<child>", f"on joint {follower}", allowed)
+        coupled[follower] = {follower: Coupling(leader, rate)}
+    followers = [
+        replace(joint, coupled=coupled[name]) for name, joint in joints.items()
+    ]
+    return with_joints_of_chains(followers, model.frame)
 
 
 # --- poses ----------------------------------------------------------------------------
@@ -288,14 +308,14 @@ def _read_joint(element: Element, model: _Model) -> BodyJoint:
     return BodyJoint(name, kind, (first, second), frames, cosine, pitch, limits)
 
 
-def _read_gearbox(element: Element, model: _Model) -> Gearbox:
+def _read_gearbox(element: Element, model: _Model) -> _Gearbox:
     first, second, reference = (
         _body(element, tag, model)
         for tag in ("parent", "child", "gearbox_reference_body")
     )
     pose = _pose(element.attributes["name"], model)
     one, other = (_axis(element, tag, pose, model) for tag in AXES)
-    return Gearbox(element, reference, (first, second), (one, other))
+    return _Gearbox(element, reference, (first, second), (one, other))
 
 
 def _body(joint: Element, tag: str, model: _Model) -> str:
@@ -371,10 +391,92 @@ def _pitch(element: Element, model: _Model) -> float:
     """The advance of a screw in a full turn."""
     new, old = element.first("screw_thread_pitch"), element.first("thread_pitch")
     if new is not None and model.version >= PITCH_SINCE:
-        return element.parsed_numbers("<screw_thread_pitch>", new.text, (1,))[0]
+        return _number(element, "screw_thread_pitch", None)
     if old is None:
         element.refuse("<thread_pitch>", "missing", "given for a screw")
-    turn = element.parsed_numbers("<thread_pitch>", old.text, (1,))[0]
+    turn = _number(element, "thread_pitch", None)
     if turn == 0:
         element.refuse("<thread_pitch>", turn, "other than 0")
     return -2 * math.pi / turn  # rad a length, left-handed
+
+
+# --- couplings ------------------------------------------------------------------------
+
+
+def _mimics(
+    joint: BodyJoint, joints: Mapping[str, BodyJoint], model: _Model
+) -> dict[str, Coupling]:
+    """What ``<mimic>`` says of the variables of a joint, by their labels."""
+    element = model.posed[joint.name].element
+    coupled = {}
+    for number, tag in enumerate(AXES):
+        axis = element.first(tag)
+        mimic = None if axis is None else axis.first("mimic")
+        if mimic is None:
+            continue
+        if model.version < MIMIC_SINCE:
+            mimic.refuse("version", "older", "1.11 for a file with <mimic>")
+        if number >= len(joint.labels):
+            mimic.refuse(f"<{tag}>", "of no variable", f"left out of {joint.name}")
+        coupled[joint.labels[number]] = _coupling(mimic, joints)
+    return coupled
+
+
+def _coupling(mimic: Element, joints: Mapping[str, BodyJoint]) -> Coupling:
+    allowed = f"one of the joints {', '.join(joints)}"
+    leader = joints[mimic.reference("joint", joints, allowed)]
+    number = AXES.index(mimic.choice("axis", AXES, AXES[0]))
+    if number >= len(leader.labels):
+        shown = f"{AXES[number]} of {leader.name}"
+        mimic.refuse("axis", shown, "an axis that the joint has")
+    ratio = _number(mimic, "multiplier", None)
+    if ratio == 0.0:
+        mimic.refuse("<multiplier>", 0, "other than 0; what stands still is fixed")
+    offset = _number(mimic, "offset", 0.0) - ratio * _number(mimic, "reference", 0.0)
+    return Coupling(leader.labels[number], ratio, offset)
+
+
+def _number(element: Element, tag: str, default: float | None) -> float:
+    """The number in a child of this tag."""
+    child = element.first(tag)
+    if child is not None:
+        return element.parsed_numbers(f"<{tag}>", child.text, (1,))[0]
+    if default is None:
+        element.refuse(f"<{tag}>", "missing", "a number")
+    return default
+
+
+def _geared(
+    gearbox: _Gearbox, joints: Mapping[str, BodyJoint], model: _Model
+) -> tuple[str, str, float]:
+    """The joints that hold the links of a gearbox, and how much the second one turns
+    for a turn of the first one."""
+    rate = -_number(gearbox.element, "gearbox_ratio", 1.0)
+    if rate == 0.0:
+        gearbox.element.refuse("<gearbox_ratio>", 0, "other than 0")
+    (first, sign), (second, other) = (
+        _hinge(gearbox, number, joints.values(), model) for number in range(len(AXES))
+    )
+    return first, second, rate * sign * other
+
+
+def _hinge(
+    gearbox: _Gearbox, number: int, joints: Iterable[BodyJoint], model: _Model
+) -> tuple[str, float]:
+    """The revolute joint that holds a link of a gearbox, by number, on the reference;
+    and 1 where its angle is that of the gearbox, -1 where it has the other sign."""
+    link, direction = gearbox.links[number], gearbox.directions[number]
+    along = direction / np.linalg.norm(direction)
+    for joint in joints:
+        if joint.kind is not JointKind.REVOLUTE:
+            continue
+        axis = (model.frame(joint.bodies[0]) @ joint.frames[0])[:3, 2]
+        is_along = is_one_direction(float(np.linalg.norm(np.cross(axis, along))))
+        if is_along and set(joint.bodies) == {link, gearbox.reference}:
+            break
+    else:
+        value = quoted(gearbox.reference)
+        allowed = f"a link that a revolute joint along <{AXES[number]}> joins to {link}"
+        gearbox.element.refuse("<gearbox_reference_body>", value, allowed)
+    sign = float(np.sign(axis @ along))
+    return joint.name, sign if joint.bodies[1] == link else -sign

@@ -13,14 +13,20 @@ from collections.abc import Iterable
 from xml.sax.saxutils import escape, quoteattr
 
 from linkages.formats.composites import link_behind
-from linkages.formats.names import NameRules, with_names_for
-from linkages.formats.sdf_couplings import AXES
-from linkages.mechanisms.joint import Joint, JointKind, Motion
+from linkages.formats.names import (
+    WORLD,
+    NameRules,
+    body_name,
+    pair_name,
+    pair_names,
+    row_text,
+    with_names_for,
+)
+from linkages.formats.sdf_reading import AXES
+from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism, Pair, Variable
 from linkages.mechanisms.size import Size
 from linkages.values import GeometryError
-
-WORLD = "world"
 
 
 def mechanism_sdf(mechanism: Mechanism) -> str:
@@ -42,7 +48,7 @@ def mechanism_sdf(mechanism: Mechanism) -> str:
         f"  <model name={quoteattr(_model_name(mechanism))}>",
     ]
     for link in links:
-        lines += _link(_body_name(mechanism, link), moment)
+        lines += _link(body_name(mechanism, link), moment)
     return "\n".join([*lines, *joints, "  </model>", "</sdf>"]) + "\n"
 
 
@@ -55,10 +61,11 @@ def _is_allowed(name: str) -> bool:
 def _names_of_joint(joint: Joint) -> list[str]:
     """The names that may stand in a file for a joint: of its pairs, of its variables,
     and of the links between these."""
-    pairs = [joint.name]
-    if len(joint.bodies) > 2:
-        pairs = [f"{joint.name}.{body}" for body in joint.bodies[1:]]
-    return [*pairs, *joint.labels, *(link_behind(label) for label in joint.labels)]
+    return [
+        *pair_names(joint),
+        *joint.labels,
+        *(link_behind(label) for label in joint.labels),
+    ]
 
 
 # links are among the names of joints: all are siblings
@@ -68,10 +75,6 @@ NAMES = NameRules(
     links_of_joint=lambda joint: (),
     siblings=True,
 )
-
-
-def _body_name(mechanism: Mechanism, body: str) -> str:
-    return WORLD if body == mechanism.frame else body
 
 
 def _model_name(mechanism: Mechanism) -> str:
@@ -100,8 +103,8 @@ def _pair(mechanism: Mechanism, pair: Pair) -> tuple[list[str], list[str]]:
             if variable.motion.is_turn:
                 value = f"{math.degrees(variable.locked):.10g} degrees"
             raise GeometryError(what, value, allowed)
-    base, moved = (_body_name(mechanism, body) for body in (pair.base, pair.moved))
-    name = _joint_name(mechanism, pair)
+    base, moved = (body_name(mechanism, body) for body in (pair.base, pair.moved))
+    name = pair_name(joint, pair)
     place = joint.place
     if joint.kind is JointKind.SPHERICAL:
         return _joint(name, "ball", base, moved, place, []), []
@@ -140,9 +143,9 @@ def _axis(tag: str, variable: Variable, mechanism: Mechanism, sign: float) -> li
     locked."""
     if variable.locked is not None:
         return []
-    direction, limit = _direction(variable.motion, sign), _limit(variable)
-    mimic = _mimic(variable, mechanism)
-    return [f"<{tag}>{direction}{limit}{mimic}</{tag}>"]
+    direction = row_text(sign * variable.motion.direction)
+    more = _limit(variable) + _mimic(variable, mechanism)
+    return [f"<{tag}><xyz>{direction}</xyz>{more}</{tag}>"]
 
 
 def _mimic(variable: Variable, mechanism: Mechanism) -> str:
@@ -164,7 +167,7 @@ def _axis_of_variable(mechanism: Mechanism, number: int) -> tuple[str, str]:
     for pair in mechanism.pairs:
         if number in pair.variables and _has_two_axes(mechanism, pair):
             tag = AXES[pair.variables.index(number)]
-            return _joint_name(mechanism, pair), tag
+            return pair_name(mechanism.joint(pair.joint), pair), tag
     return mechanism.variables[number].label, AXES[0]
 
 
@@ -175,17 +178,6 @@ def _has_two_axes(mechanism: Mechanism, pair: Pair) -> bool:
     if pair.moved == mechanism.frame:
         return False
     return all(mechanism.variables[number].locked is None for number in pair.variables)
-
-
-def _joint_name(mechanism: Mechanism, pair: Pair) -> str:
-    """What the joint of a pair is called in the file, where it is one."""
-    if len(mechanism.joint(pair.joint).bodies) > 2:
-        return f"{pair.joint}.{pair.moved}"
-    return pair.joint
-
-
-def _direction(motion: Motion, sign: float) -> str:
-    return f"<xyz>{_row(sign * motion.direction)}</xyz>"
 
 
 def _limit(variable: Variable) -> str:
@@ -209,14 +201,9 @@ def _joint(
         parent, child = child, parent
     return [
         f'    <joint name={quoteattr(name)} type="{kind}">',
-        f"      <pose>{_row(place)} 0 0 0</pose>",
+        f"      <pose>{row_text(place)} 0 0 0</pose>",
         f"      <parent>{escape(parent)}</parent>",
         f"      <child>{escape(child)}</child>",
         *(f"      {line}" for line in axes),
         "    </joint>",
     ]
-
-
-def _row(numbers: Iterable[float]) -> str:
-    """Numbers with all their digits."""
-    return " ".join(repr(float(number) + 0.0) for number in numbers)

@@ -18,7 +18,8 @@ MOST_BYTES = 50_000_000  # of a file of another program
 
 
 class FileFormat(NamedTuple):
-    """A format of files whose names have one of these ``endings``.
+    """A format of files whose names have one of these ``endings``; ``words`` is what
+    the help of commands says of it, if anything.
 
     ``read`` takes the path of a file, and raises `GeometryError`, `OSError` or
     `bifurc.files.text_file.TextFileError`; without it files are TOML of this project,
@@ -27,6 +28,7 @@ class FileFormat(NamedTuple):
     """
 
     endings: tuple[str, ...]
+    words: str = ""
     read: Callable[[Path], Mechanism] | None = None
     write: Callable[[Mechanism], str] | None = None
     root: str = ""
@@ -112,7 +114,7 @@ def _read_sdf(root: Element, name: str) -> Assembly:
 
 
 def _toml_text(mechanism: Mechanism) -> str:
-    from linkages.files.toml_text import mechanism_toml
+    from linkages.files.mechanism_file import mechanism_toml
 
     return mechanism_toml(mechanism)
 
@@ -130,11 +132,27 @@ def _sdf_text(mechanism: Mechanism) -> str:
 
 
 FORMATS = (
-    FileFormat((".toml",), write=_toml_text),
-    FileFormat((".xml", ".mjcf"), _read_xml, _mjcf_text, "mujoco", _read_mjcf),
-    FileFormat((".sdf",), _read_xml, _sdf_text, "sdf", _read_sdf),
-    FileFormat((".world",), _read_world),
-    FileFormat((".fold",), _read_fold),
+    FileFormat((".toml",), ".toml", write=_toml_text),
+    FileFormat(
+        (".xml", ".mjcf"),
+        ".xml or .mjcf (MJCF)",
+        read=_read_xml,
+        write=_mjcf_text,
+        root="mujoco",
+        read_root=_read_mjcf,
+    ),
+    FileFormat(
+        (".sdf",),
+        ".sdf",
+        read=_read_xml,
+        write=_sdf_text,
+        root="sdf",
+        read_root=_read_sdf,
+    ),
+    FileFormat((".world",), ".world (CUIK)", read=_read_world),
+    FileFormat((".fold",), read=_read_fold),
 )
 ENDINGS = tuple(ending for one in FORMATS for ending in one.endings)
 WRITTEN = tuple(ending for one in FORMATS if one.write for ending in one.endings)
+READ_WORDS = ", ".join(one.words for one in FORMATS if one.words)
+WRITTEN_WORDS = ", ".join(one.words for one in FORMATS if one.write)

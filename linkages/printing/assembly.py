@@ -13,7 +13,6 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 from functools import cache, cached_property
-from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -23,7 +22,7 @@ from linkages.loop import Loop
 from linkages.values import GeometryError, told_apart
 
 RODS = 3  # of a link: an arm, the rod in between, an arm
-FIRST_ARM, LAST_ARM = 0, RODS - 1
+NO_JOINT = -1  # at which the rod between two arms is
 PARALLEL = 1e-9  # of a length: what is less has no direction
 
 PIN_SHARE = 0.5  # of the diameter of rods; 3 mm, an M3 bolt, for rods of 6 mm
@@ -151,13 +150,6 @@ class Seats:
         return Seats(self.heights[which], self.sides[which])
 
 
-class _Rod(NamedTuple):
-    """A segment of a part; ``place`` numbers those of a link."""
-
-    part: Part
-    place: int
-
-
 @dataclass(frozen=True, eq=False)
 class Assembly:
     """The segments of all parts of a loop, mm: first three of each link, then one of
@@ -201,7 +193,10 @@ class Assembly:
 
     def part(self, segment: int) -> Part:
         """What a segment belongs to."""
-        return _rods_of(self.loop.n)[segment].part
+        rods = RODS * self.loop.n
+        if segment < rods:
+            return Part(Kind.LINK, int(segment // RODS))
+        return Part(Kind.HINGE, int(segment - rods))
 
     def placed(self, theta: np.ndarray) -> np.ndarray:
         """The segments (..., k, 4 n, 2, 3) at joint angles (k, n), rad, in the frame of
@@ -272,34 +267,14 @@ def _across(way: np.ndarray, axis: np.ndarray) -> np.ndarray:
 
 @cache
 def pairs_that_may_meet(n: int) -> np.ndarray:
-    """Pairs (p, 2) of segments of a loop of n joints, but for those that are joined or
-    turn on each other about one axis, whose distance the dimensions give."""
-    rods = _rods_of(n)
-    pairs = []
-    for first, second in combinations(range(len(rods)), 2):
-        if not _is_at_one_hinge(rods[first], rods[second], n):
-            pairs.append((first, second))
-    return np.array(pairs)
-
-
-def _rods_of(n: int) -> list[_Rod]:
-    rods = []
-    for i in range(n):
-        rods += [_Rod(Part(Kind.LINK, i), place) for place in range(RODS)]
-    return rods + [_Rod(Part(Kind.HINGE, i), 0) for i in range(n)]
-
-
-def _is_at_one_hinge(first: _Rod, second: _Rod, n: int) -> bool:
-    """Whether two segments are of one part, or both are a hinge or an arm at one
-    joint."""
-    if first.part == second.part:
-        return True
-    joint = _joint_of(first, n)
-    return joint is not None and joint == _joint_of(second, n)
-
-
-def _joint_of(rod: _Rod, n: int) -> int | None:
-    """The joint at which a hinge or an arm is, None for a rod in between."""
-    if rod.part.kind is Kind.HINGE or rod.place == FIRST_ARM:
-        return rod.part.joint
-    return (rod.part.joint + 1) % n if rod.place == LAST_ARM else None
+    """Pairs (p, 2) of segments of a loop of n joints, but for those of one link, and
+    those at one joint, hinges and arms, whose distance the dimensions give."""
+    joints = np.arange(n)
+    arms = np.column_stack([joints, np.full(n, NO_JOINT), (joints + 1) % n])
+    joint_of = np.concatenate([arms.ravel(), joints])
+    part_of = np.concatenate([np.repeat(joints, RODS), n + joints])
+    first, second = np.triu_indices(len(part_of), 1)
+    is_at_one = (joint_of[first] == joint_of[second]) & (joint_of[first] != NO_JOINT)
+    may_meet = ~is_at_one & (part_of[first] != part_of[second])
+    pairs: np.ndarray = np.column_stack([first, second])[may_meet]
+    return pairs

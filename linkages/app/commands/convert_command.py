@@ -10,28 +10,29 @@ import click
 from linkages.app.exit_codes import exit_code_table
 from linkages.app.options import FILE, HoldOptions, hold_options
 from linkages.app.output import require_ending, require_writable, say, writing_to
-from linkages.formats.table import WRITTEN, mechanism_text
+from linkages.formats.table import READ_WORDS, WRITTEN, WRITTEN_WORDS, mechanism_text
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
 TARGET = "OUT"
+HELP = f"""Write a mechanism to a file of another format.
+
+\b
+IN   {READ_WORDS}, or a network by name
+OUT  {WRITTEN_WORDS}
+
+The configuration written is the reference configuration, where all joint variables
+are 0; that of a network is one with its locks.
+"""
 
 
-@click.command("convert", epilog=exit_code_table())
+@click.command("convert", help=HELP, epilog=exit_code_table())
 @click.argument("source", metavar="IN")
 @click.argument("out", metavar="OUT", type=FILE)
 @hold_options
 def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
-    """Write a mechanism to a file of another format.
-
-    \b
-    IN   .toml, .xml or .mjcf (MJCF), .sdf, .world (CUIK), or a network by name
-    OUT  .toml, .xml or .mjcf (MJCF), .sdf
-
-    The configuration written is the reference configuration, where all joint variables
-    are 0; that of a network is one with its locks.
-    """
+    """Write a mechanism to a file of another format."""
     require_ending(TARGET, out, *WRITTEN)
     from bifurc.files.atomic import replace_file
     from bifurc.tables import count_of

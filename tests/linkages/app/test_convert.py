@@ -5,7 +5,7 @@ from click.testing import CliRunner
 
 from linkages import load
 from linkages.app.cli import main
-from linkages.files.toml_text import mechanism_toml
+from linkages.files.mechanism_file import mechanism_toml
 from tests.linkages.formats.examples import EXAMPLES
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 

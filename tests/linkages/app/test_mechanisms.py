@@ -13,7 +13,7 @@ from linkages.app.cli import main
 from linkages.app.commands.map_command import write_numbers
 from linkages.app.texts import mechanism_text
 from linkages.app.texts.mechanism_text import describe_joints
-from linkages.files.toml_text import mechanism_toml
+from linkages.files.mechanism_file import mechanism_toml
 from linkages.linkage import load
 from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Joint

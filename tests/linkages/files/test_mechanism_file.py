@@ -5,7 +5,7 @@ import pytest
 
 import linkages
 from linkages.file import LinkageFileError
-from linkages.files.toml_text import mechanism_toml
+from linkages.files.mechanism_file import mechanism_toml
 
 JOINT = """
 [[joints]]

@@ -10,7 +10,7 @@ import pytest
 from linkages import load
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.file import LinkageFileError
-from linkages.files.toml_text import mechanism_toml
+from linkages.files.mechanism_file import mechanism_toml
 from linkages.formats.mjcf_writing import mechanism_mjcf
 from linkages.formats.sdf_writing import mechanism_sdf
 from linkages.mechanisms.mechanism import Mechanism

@@ -11,7 +11,7 @@ from linkages.closure.curvature import CurvatureBounds
 from linkages.closure.driving import joints_to_hold
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.file import LinkageFileError
-from linkages.files.toml_text import mechanism_toml
+from linkages.files.mechanism_file import mechanism_toml
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism

@@ -10,7 +10,7 @@ from bifurc.completeness import Level
 from bifurc.files.dataset import load_atlas, save_atlas
 from linkages.app.texts.summary import make_summary
 from linkages.file import LinkageFileError, read_file
-from linkages.files.toml_text import mechanism_toml
+from linkages.files.mechanism_file import mechanism_toml
 from linkages.labels import loop_of
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism

@@ -9,7 +9,7 @@ from linkages.app.choice import choose_precisely
 from linkages.app.cli import main
 from linkages.app.reports.confirmation import confirm_points
 from linkages.catalogue import entry
-from linkages.files.toml_text import mechanism_toml
+from linkages.files.mechanism_file import mechanism_toml
 from linkages.linkage import load
 from linkages.mapping import map_linkage
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case

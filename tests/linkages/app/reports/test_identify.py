@@ -11,7 +11,7 @@ from linkages.app.cli import main
 from linkages.app.exit_codes import ExitCode
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
-from linkages.files.toml_text import mechanism_toml
+from linkages.files.mechanism_file import mechanism_toml
 from linkages.mechanisms.of_loop import mechanism_of_loop
 
 BENNETT = """
