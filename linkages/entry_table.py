@@ -113,7 +113,7 @@ def _parameter(name: str, fields: dict[str, Any]) -> Parameter:
 
 
 def _number(value: float | str) -> float:
-    return evaluate(value) if isinstance(value, str) else value
+    return float(evaluate(value) if isinstance(value, str) else value)
 
 
 def _condition(
