@@ -216,6 +216,13 @@ class Atlas:
         return tuple(p for p in self.points if p.kind is Kind.RANK_DROP)
 
     @property
+    def mobility(self) -> int:
+        """The largest dimension of a component; 0 where nothing moves."""
+        dimensions = [surface.dimension for surface in self.surfaces]
+        dimensions += [1] * bool(self.forms)
+        return max(dimensions, default=0)
+
+    @property
     def components(self) -> int:
         """Number of connected components made of forms."""
         return len({form.component for form in self.forms})

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum, StrEnum
-from typing import Any, TypedDict
+from typing import Any
 
 from bifurc.text_tables import count_of
 
@@ -147,37 +147,7 @@ class Completeness:
         return f"in doubt: {doubts}; {claims}"
 
 
-class ClaimDocument(TypedDict):
-    """A claim in values that JSON can hold."""
-
-    kind: str
-    scope: str
-    level: str | None
-    data: dict[str, Any]
-    text: str
-
-
-class DoubtDocument(TypedDict):
-    """A doubt in values that JSON can hold."""
-
-    kind: str
-    subject: str
-    amount: float
-    data: dict[str, Any]
-    text: str
-
-
-class CompletenessDocument(TypedDict):
-    """All that is known of completeness, in values that JSON can hold."""
-
-    level: str
-    claims: list[ClaimDocument]
-    doubts: list[DoubtDocument]
-    statement: str
-    missed_probability: float
-
-
-def completeness_document(completeness: Completeness) -> CompletenessDocument:
+def completeness_document(completeness: Completeness) -> dict[str, Any]:
     """What JSON documents say of completeness: every claim and every doubt with its
     numbers and its text, and all of it in one sentence."""
     return {

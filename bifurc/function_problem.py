@@ -21,7 +21,7 @@ from bifurc.decisions import (
 from bifurc.equations.constants import rounding_of_constants
 from bifurc.equations.recording import Recording, record
 from bifurc.equations.system import LARGEST_DENSE, ScaledTape
-from bifurc.equations.tape import Operation, Tape
+from bifurc.equations.tape import Operation
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.bordered import as_dense
@@ -60,6 +60,7 @@ COMPLEX_STEP = 1e-100  # its square vanishes beside 1, and it costs no digits
 DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences of F
 HESSIAN_STEP = 1e-5  # the same for F'
 TINY = 1e-300  # keeps what is zero from being divided by
+NOT_RECORDED = Recording(None, "not asked for")
 EXACT_HESSIAN = 1e-14  # how far off, over a bound on it, rounding leaves an exact F''
 
 
@@ -115,186 +116,44 @@ class NumericalProblem(Problem):
         return random_seeds(self, rng, count, deadline=deadline)
 
 
-class _FirstPoints(NamedTuple):
-    """Random ``points`` (k, n) within the bounds, and ``probes`` (j, n) where a function
-    has finite values."""
+class EquationProblem(NumericalProblem):
+    """The equations of a ``function``: (n,) -> (m,), of which the ``recording`` is a tape
+    or the reason why there is none.
 
-    points: np.ndarray
-    probes: np.ndarray
-
-
-class FunctionProblem(NumericalProblem):
-    """A problem from a plain Python callable ``function``: (n,) -> (m,).
-
-    The function is called once with arguments that record what is done with them. Where
-    that succeeds, and the recording is equal to the function at random points, all
-    values and derivatives come from it, compiled and exact; a function that changes
-    afterwards is not noticed. `recording` holds it, or the reason why there is none;
-    ``is_recorded=False`` does without.
-
-    Otherwise derivatives come from ``jacobian``: (n,) -> (m, n), dense or sparse, where
-    given, else by complex step where the function lets complex numbers through, else by
-    central differences. ``derivatives`` says which.
-
-    ``bounds`` (n, 2) is the region from which `explore` draws starts and in which
-    curves are followed. An unknown with a period among the ``periods`` (n,) is a circle
-    where its bounds are one period or more apart, or infinite; bounds that are closer
-    are limits on the circle. An unknown without bounds or a period is followed as far
-    as a hundred times the size of the solutions that are reached from starts about 0;
-    `bounds` holds what was taken. Raises `ProblemError` for bounds out of order, for a function
-    that gives no finite vector, for a ``jacobian`` that is not its derivative, and for
-    a period that is none of the function.
+    All values and derivatives come from the tape where there is one, compiled and exact.
+    Otherwise F' comes from ``jacobian``: (n,) -> (m, n), dense or sparse, where given,
+    else by complex step or by central differences; ``derivatives`` says which.
     """
+
+    _scaled: ScaledTape | None = None
 
     def __init__(
         self,
         function: Callable[[np.ndarray], Sequence[float] | np.ndarray],
-        bounds: Sequence[Sequence[float]],
-        *,
-        jacobian: Callable[[np.ndarray], np.ndarray | sparray] | None = None,
-        names: Sequence[str] | None = None,
-        units: Sequence[str] | None = None,
-        periods: Sequence[float] | None = None,
-        is_recorded: bool = True,
+        jacobian: Callable[[np.ndarray], np.ndarray | sparray] | None,
+        recording: Recording = NOT_RECORDED,
+        rows: int = 0,
     ):
-        check_callable("function", function)
-        if jacobian is not None:
-            check_callable("jacobian", jacobian)
-        self._set_unknowns(bounds, names, units, periods)
         self._function = function
         self._jacobian = jacobian
+        self.recording = recording
+        self._rows = rows
 
-        points, probes = self._first_points()
-        self._rows = len(self._value(probes[0]))
-        self.recording = Recording(None, "not asked for")
-        if is_recorded:
-            self.recording = record(function, points)
-        self._measure(probes)
-        self._check_periods(probes)
-        self._settle_open_bounds()
-
-    def _set_unknowns(
-        self,
-        bounds: Sequence[Sequence[float]],
-        names: Sequence[str] | None,
-        units: Sequence[str] | None,
-        periods: Sequence[float] | None,
+    def _take_magnitude(
+        self, magnitude: float, region: np.ndarray | None = None
     ) -> None:
-        """Take the unknowns as the user describes them; raises `ProblemError`."""
-        self.bounds = _checked_bounds(bounds)
-        n = len(self.bounds)
-        default_names = [f"u{i + 1}" for i in range(n)]
-        self.names = _checked_texts("names", default_names if names is None else names)
-        self.units = _checked_texts("units", [""] * n if units is None else units)
-        if len(set(self.names)) < len(self.names):
-            raise ProblemError("names", self.names, "all different")
-        self.periods = np.full(n, np.inf)
-        if periods is not None:
-            self.periods = floats_of("periods", periods)
-        self._check_lengths(n)
-        self._is_assumed = np.zeros((n, 2), dtype=bool)
-        self.bounds = _without_limits_of_circles(self.bounds, self.periods)
-        low, high = self._finite_bounds
-        self.scale = float(np.median(high - low)) / 4.0
-
-    @property
-    def has_assumed_bounds(self) -> np.ndarray:
-        """Which ends of the bounds (n, 2) were chosen, as none were given."""
-        return self._is_assumed
-
-    @property
-    def _finite_bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper ends (n,); where the bounds are infinite, half a period about
-        0, or from -1 to 1, or as far from the other end as that is from 0 and 1 more."""
-        low, high = self.bounds.T
-        half = np.where(np.isfinite(self.periods), 0.5 * self.periods, 1.0)
-        from_high = np.where(np.isfinite(high), np.minimum(-half, 2 * high - 1), -half)
-        low = np.where(np.isfinite(low), low, from_high)
-        from_low = np.where(np.isfinite(low), np.maximum(half, 2 * low + 1), half)
-        return low, np.where(np.isfinite(high), high, from_low)
-
-    def _first_points(self) -> _FirstPoints:
-        """Points at which the equations are looked at; many are tried where a function
-        is defined on a small part of the bounds only.
-
-        Raises `ProblemError` as `_probes_with_value` does.
-        """
-        points = self._random_points()
-        probes = points[:PROBES]
-        with np.errstate(all="ignore"):
-            values = [self._value(probe) for probe in probes]
-        if any(np.all(np.isfinite(value)) for value in values):
-            return _FirstPoints(points, self._probes_with_value(probes))
-        trials = self._probes_with_value(self._random_points(MOST_TRIALS))
-        return _FirstPoints(trials[: PROBES + CHECKS], trials[:PROBES])
-
-    def _random_points(self, count: int = PROBES + CHECKS) -> np.ndarray:
-        """Points (k, n) within the bounds at which the equations are looked at."""
-        rng = np.random.default_rng(0)
-        low, high = self._finite_bounds
-        return rng.uniform(low, high, (count, self.n))
-
-    def _settle_open_bounds(self) -> None:
-        """Take the scale of unknowns without bounds or a period, and bounds for them,
-        from solutions that are reached from starts about 0."""
-        is_open = ~np.isfinite(self.bounds) & ~np.isfinite(self.periods)[:, None]
-        if not np.any(is_open):
-            return
-        size = self._size_of_solutions(is_open.any(axis=1))
-        known_ends = self.bounds[np.isfinite(self.bounds) & is_open[:, ::-1]]
-        size = max(size, float(np.abs(known_ends).max(initial=0.0)))
-        half = np.where(np.isfinite(self.periods), 0.5 * self.periods, size)
-        about_zero = half[:, None] * np.array([-1.0, 1.0])
-        low, high = np.where(np.isfinite(self.bounds), self.bounds, about_zero).T
-        self.scale = float(np.median(high - low)) / 4.0
-        self.bounds = np.where(is_open, FARTHEST * about_zero, self.bounds)
-        self._is_assumed = is_open
-        rng = np.random.default_rng(0)
-        points = rng.uniform(low, high, (PROBES, self.n))
-        self._measure(self._probes_with_value(points))
-
-    def _size_of_solutions(self, is_open: np.ndarray) -> float:
-        """The typical size of the open unknowns (n,) at solutions, 1 where none are
-        found."""
-        starts = self._random_points()
-        for size in START_SIZES:
-            sized = np.where(is_open, size * starts, starts)
-            with np.errstate(all="ignore"):
-                points, _ = self.project(sized)
-            sizes = np.abs(points[:, is_open]).max(axis=1)
-            residuals = np.linalg.norm(self.residuals(points), axis=1)
-            slopes = np.linalg.norm(self.jacobians(points), axis=(1, 2))
-            is_solved = is_solved_from_afar(residuals, slopes * sizes)
-            if np.any(is_solved & (sizes > 0.0)):
-                return float(np.median(sizes[is_solved]))
-        return 1.0
-
-    def _measure(self, probes: np.ndarray) -> None:
-        """Choose how F' is made, check it at the probes (k, n), and take its typical
-        size."""
-        self._scaled: ScaledTape | None = None
+        """Take F' to be of this ``magnitude``; solutions are looked for in a ``region``
+        (n, 2), that of the bounds unless given."""
+        self.magnitude = magnitude
         tape = self.recording.tape
-        if tape is not None:
-            self._scaled = self._scaled_tape(tape, 1.0)
-        self.equations = str(self.recording)
-        with np.errstate(all="ignore"):
-            self.derivatives = self._choose_derivatives(probes[0])
-        with np.errstate(all="ignore"):
-            for probe in probes:
-                self._check_jacobian(probe)
-            sizes = [_spectral_norm(self.jacobian(probe)) for probe in probes]
-        known = [size for size in sizes if math.isfinite(size)]
-        if not known:
-            allowed = "finite somewhere inside the bounds"
-            raise ProblemError("derivative of the function", np.nan, allowed)
-        self.magnitude = float(np.median(known)) or 1.0
         if tape is not None:
             self.hessian_error = EXACT_HESSIAN
             self.is_exact = True
-            self._scaled = self._scaled_tape(tape, self.magnitude)
+            self._scaled = ScaledTape(
+                tape, magnitude, self.scale, self.bounds, self.periods, region
+            )
 
-    def _scaled_tape(self, tape: Tape, magnitude: float) -> ScaledTape:
-        return ScaledTape(tape, magnitude, self.scale, self.bounds, self.periods)
+    # --- values and derivatives -------------------------------------------------------
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
@@ -383,11 +242,6 @@ class FunctionProblem(NumericalProblem):
     # --- curves and solutions ---------------------------------------------------------
 
     @property
-    def is_compiled(self) -> bool:
-        """Whether curves and solutions come from the recorded equations."""
-        return self._compiled is not None
-
-    @property
     def _compiled(self) -> ScaledTape | None:
         """The recorded equations, where they are few enough for the methods that are
         compiled."""
@@ -423,29 +277,6 @@ class FunctionProblem(NumericalProblem):
             return self._compiled.project_to_sphere(starts, center, radius)
         return super().project_to_sphere(starts, center, radius)
 
-    # --- derivatives ------------------------------------------------------------------
-
-    def _choose_derivatives(self, probe: np.ndarray) -> str:
-        """How F' is made: from the recording or as it is given, else by complex step,
-        if that agrees with differences at a point.
-
-        A function may also drop imaginary parts without a word.
-        """
-        if self._scaled is not None:
-            return "recorded"
-        if self._jacobian is not None:
-            return "given"
-        try:
-            by_complex = self._complex_step(probe)
-        except (TypeError, ValueError, np.exceptions.ComplexWarning):
-            return "central differences"
-        by_difference = self._central_difference(probe)
-        if by_complex.shape != by_difference.shape:
-            return "central differences"
-        error = np.abs(by_complex - by_difference).max()
-        size = 1.0 + np.abs(by_difference).max()
-        return "complex step" if error < 1e-5 * size else "central differences"
-
     def _given_jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
         assert self._jacobian is not None
         jacobian = self._jacobian(point)
@@ -473,6 +304,192 @@ class FunctionProblem(NumericalProblem):
     def _value(self, point: np.ndarray) -> np.ndarray:
         """F (m,) at one point (n,)."""
         return floats_of("value of the function", self._function(point))
+
+
+class _FirstPoints(NamedTuple):
+    """Random ``points`` (k, n) within the bounds, and ``probes`` (j, n) where a function
+    has finite values."""
+
+    points: np.ndarray
+    probes: np.ndarray
+
+
+class FunctionProblem(EquationProblem):
+    """A problem from a plain Python callable ``function``: (n,) -> (m,).
+
+    The function is called once with arguments that record what is done with them. Where
+    that succeeds, and the recording is equal to the function at random points, all
+    values and derivatives come from it, compiled and exact; a function that changes
+    afterwards is not noticed. `recording` holds it, or the reason why there is none;
+    ``is_recorded=False`` does without.
+
+    Otherwise derivatives come from ``jacobian``: (n,) -> (m, n), dense or sparse, where
+    given, else by complex step where the function lets complex numbers through, else by
+    central differences. ``derivatives`` says which.
+
+    ``bounds`` (n, 2) is the region from which `explore` draws starts and in which
+    curves are followed. An unknown with a period among the ``periods`` (n,) is a circle
+    where its bounds are one period or more apart, or infinite; bounds that are closer
+    are limits on the circle. An unknown without bounds or a period is followed as far
+    as a hundred times the size of the solutions that are reached from starts about 0;
+    `bounds` holds what was taken. Raises `ProblemError` for bounds out of order, for a function
+    that gives no finite vector, for a ``jacobian`` that is not its derivative, and for
+    a period that is none of the function.
+    """
+
+    def __init__(
+        self,
+        function: Callable[[np.ndarray], Sequence[float] | np.ndarray],
+        bounds: Sequence[Sequence[float]],
+        *,
+        jacobian: Callable[[np.ndarray], np.ndarray | sparray] | None = None,
+        names: Sequence[str] | None = None,
+        units: Sequence[str] | None = None,
+        periods: Sequence[float] | None = None,
+        is_recorded: bool = True,
+    ):
+        check_callable("function", function)
+        if jacobian is not None:
+            check_callable("jacobian", jacobian)
+        super().__init__(function, jacobian)
+        self._set_unknowns(bounds, names, units, periods)
+        points, probes = self._first_points()
+        self._rows = len(self._value(probes[0]))
+        if is_recorded:
+            self.recording = record(function, points)
+        self._measure(probes)
+        self._check_periods(probes)
+        self._settle_open_bounds()
+
+    def _set_unknowns(
+        self,
+        bounds: Sequence[Sequence[float]],
+        names: Sequence[str] | None,
+        units: Sequence[str] | None,
+        periods: Sequence[float] | None,
+    ) -> None:
+        """Take the unknowns as the user describes them; raises `ProblemError`."""
+        self.bounds = _checked_bounds(bounds)
+        n = len(self.bounds)
+        default_names = [f"u{i + 1}" for i in range(n)]
+        self.names = _checked_texts("names", default_names if names is None else names)
+        self.units = _checked_texts("units", [""] * n if units is None else units)
+        if len(set(self.names)) < len(self.names):
+            raise ProblemError("names", self.names, "all different")
+        self.periods = np.full(n, np.inf)
+        if periods is not None:
+            self.periods = floats_of("periods", periods)
+        self._check_lengths(n)
+        self.bounds = _without_limits_of_circles(self.bounds, self.periods)
+        low, high = self._finite_bounds
+        self.scale = float(np.median(high - low)) / 4.0
+
+    @property
+    def _finite_bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper ends (n,); where the bounds are infinite, half a period about
+        0, or from -1 to 1, or as far from the other end as that is from 0 and 1 more."""
+        low, high = self.bounds.T
+        half = np.where(np.isfinite(self.periods), 0.5 * self.periods, 1.0)
+        from_high = np.where(np.isfinite(high), np.minimum(-half, 2 * high - 1), -half)
+        low = np.where(np.isfinite(low), low, from_high)
+        from_low = np.where(np.isfinite(low), np.maximum(half, 2 * low + 1), half)
+        return low, np.where(np.isfinite(high), high, from_low)
+
+    def _first_points(self) -> _FirstPoints:
+        """Points at which the equations are looked at; many are tried where a function
+        is defined on a small part of the bounds only.
+
+        Raises `ProblemError` as `_probes_with_value` does.
+        """
+        points = self._random_points()
+        probes = points[:PROBES]
+        with np.errstate(all="ignore"):
+            values = [self._value(probe) for probe in probes]
+        if any(np.all(np.isfinite(value)) for value in values):
+            return _FirstPoints(points, self._probes_with_value(probes))
+        trials = self._probes_with_value(self._random_points(MOST_TRIALS))
+        return _FirstPoints(trials[: PROBES + CHECKS], trials[:PROBES])
+
+    def _random_points(self, count: int = PROBES + CHECKS) -> np.ndarray:
+        """Points (k, n) within the bounds at which the equations are looked at."""
+        rng = np.random.default_rng(0)
+        low, high = self._finite_bounds
+        return rng.uniform(low, high, (count, self.n))
+
+    def _settle_open_bounds(self) -> None:
+        """Take the scale of unknowns without bounds or a period, and bounds for them,
+        from solutions that are reached from starts about 0."""
+        is_open = ~np.isfinite(self.bounds) & ~np.isfinite(self.periods)[:, None]
+        if not np.any(is_open):
+            return
+        size = self._size_of_solutions(is_open.any(axis=1))
+        known_ends = self.bounds[np.isfinite(self.bounds) & is_open[:, ::-1]]
+        size = max(size, float(np.abs(known_ends).max(initial=0.0)))
+        half = np.where(np.isfinite(self.periods), 0.5 * self.periods, size)
+        about_zero = half[:, None] * np.array([-1.0, 1.0])
+        low, high = np.where(np.isfinite(self.bounds), self.bounds, about_zero).T
+        self.scale = float(np.median(high - low)) / 4.0
+        self.bounds = np.where(is_open, FARTHEST * about_zero, self.bounds)
+        self.has_assumed_bounds = is_open
+        rng = np.random.default_rng(0)
+        points = rng.uniform(low, high, (PROBES, self.n))
+        self._measure(self._probes_with_value(points))
+
+    def _size_of_solutions(self, is_open: np.ndarray) -> float:
+        """The typical size of the open unknowns (n,) at solutions, 1 where none are
+        found."""
+        starts = self._random_points()
+        for size in START_SIZES:
+            sized = np.where(is_open, size * starts, starts)
+            with np.errstate(all="ignore"):
+                points, _ = self.project(sized)
+            sizes = np.abs(points[:, is_open]).max(axis=1)
+            residuals = np.linalg.norm(self.residuals(points), axis=1)
+            slopes = np.linalg.norm(self.jacobians(points), axis=(1, 2))
+            is_solved = is_solved_from_afar(residuals, slopes * sizes)
+            if np.any(is_solved & (sizes > 0.0)):
+                return float(np.median(sizes[is_solved]))
+        return 1.0
+
+    def _measure(self, probes: np.ndarray) -> None:
+        """Choose how F' is made, check it at the probes (k, n), and take its typical
+        size."""
+        self._take_magnitude(1.0)
+        self.equations = str(self.recording)
+        with np.errstate(all="ignore"):
+            self.derivatives = self._choose_derivatives(probes[0])
+        with np.errstate(all="ignore"):
+            for probe in probes:
+                self._check_jacobian(probe)
+            sizes = [_spectral_norm(self.jacobian(probe)) for probe in probes]
+        known = [size for size in sizes if math.isfinite(size)]
+        if not known:
+            allowed = "finite somewhere inside the bounds"
+            raise ProblemError("derivative of the function", np.nan, allowed)
+        self._take_magnitude(float(np.median(known)) or 1.0)
+
+    # --- derivatives ------------------------------------------------------------------
+
+    def _choose_derivatives(self, probe: np.ndarray) -> str:
+        """How F' is made: from the recording or as it is given, else by complex step,
+        if that agrees with differences at a point.
+
+        A function may also drop imaginary parts without a word.
+        """
+        if self._scaled is not None:
+            return "recorded"
+        if self._jacobian is not None:
+            return "given"
+        try:
+            by_complex = self._complex_step(probe)
+        except (TypeError, ValueError, np.exceptions.ComplexWarning):
+            return "central differences"
+        by_difference = self._central_difference(probe)
+        if by_complex.shape != by_difference.shape:
+            return "central differences"
+        error = np.abs(by_complex - by_difference).max()
+        size = 1.0 + np.abs(by_difference).max()
+        return "complex step" if error < 1e-5 * size else "central differences"
 
     # --- checks -----------------------------------------------------------------------
 

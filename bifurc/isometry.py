@@ -1,23 +1,47 @@
-"""An atlas in other unknowns, which are those that it has in another order, with other
-signs, and counted from elsewhere.
+"""An atlas in other unknowns: those that it has in another order, with other signs, and
+counted from elsewhere; or in other units.
 
-All lengths stay what they are, so that curves keep their arclengths and pieces: no
-piece is made again.
+In an isometry all lengths stay what they are, so that curves keep their arclengths and
+pieces: no piece is made again.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, NearMotion, Surface
 from bifurc.branch import Branch
 from bifurc.errors import ProblemError
-from bifurc.singular.point import SingularPoint
-from bifurc.surfaces.chart_atlas import ChartAtlas
 from bifurc.torus import whole_turns, wrap
+
+
+class Course(NamedTuple):
+    """A curve in other unknowns, and what gives its arclengths (...) where the former
+    ones are (...)."""
+
+    branch: Branch
+    arclengths: Callable[[np.ndarray], np.ndarray]
+
+
+@dataclass(frozen=True)
+class Unknowns:
+    """Other unknowns of an atlas, and what gives in them points (..., n), unit vectors
+    (..., n), orthonormal bases (..., n, k), one a column, curves, and the number, from 0,
+    of a former unknown. Lengths are at most ``size`` times as large in them."""
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    periods: np.ndarray
+    points: Callable[[np.ndarray], np.ndarray]
+    directions: Callable[[np.ndarray], np.ndarray]
+    bases: Callable[[np.ndarray], np.ndarray]
+    course: Callable[[Branch], Course]
+    index: Callable[[int], int]
+    size: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,68 +120,99 @@ def recount_atlas(atlas: Atlas, isometry: Isometry, names: Sequence[str]) -> Atl
     if len(isometry.columns) != len(atlas.names) or len(names) != len(atlas.names):
         allowed = f"names and an isometry of {len(atlas.names)} unknowns"
         raise ProblemError("names", list(names), allowed)
-    recount = _Recount(isometry, atlas.periods[isometry.columns])
+    columns, signs = isometry.columns, isometry.signs
+    periods = atlas.periods[columns]
+    unknowns = Unknowns(
+        names=tuple(names),
+        units=tuple(atlas.units[column] for column in columns),
+        periods=periods,
+        points=lambda points: wrap(isometry.points(points), periods),
+        directions=isometry.directions,
+        bases=lambda bases: signs[:, None] * np.take(bases, columns, axis=-2),
+        course=lambda branch: Course(isometry.branch(branch), lambda s: s),
+        index=isometry.index,
+    )
+    return atlas_in(atlas, unknowns)
+
+
+# --- what an atlas is made of ---------------------------------------------------------
+
+
+def atlas_in(atlas: Atlas, unknowns: Unknowns) -> Atlas:
+    """An atlas in other unknowns."""
+    courses = [unknowns.course(form.branch) for form in atlas.forms]
+    forms = zip(atlas.forms, courses, strict=True)
     return replace(
         atlas,
-        names=tuple(names),
-        units=tuple(atlas.units[column] for column in isometry.columns),
-        periods=recount.periods,
-        forms=tuple(recount.form(form) for form in atlas.forms),
-        points=tuple(recount.meeting_point(point) for point in atlas.points),
-        near_misses=tuple(recount.event(event) for event in atlas.near_misses),
-        dead_points=tuple(recount.event(event) for event in atlas.dead_points),
-        rigid=recount.points(atlas.rigid),
-        surfaces=tuple(recount.surface(surface) for surface in atlas.surfaces),
-        near_motions=tuple(recount.near_motion(near) for near in atlas.near_motions),
+        names=unknowns.names,
+        units=unknowns.units,
+        periods=unknowns.periods,
+        forms=tuple(_form(form, course, unknowns.size) for form, course in forms),
+        points=tuple(_meeting_point(p, courses, unknowns) for p in atlas.points),
+        near_misses=tuple(_event(e, courses, unknowns) for e in atlas.near_misses),
+        dead_points=tuple(_event(e, courses, unknowns) for e in atlas.dead_points),
+        rigid=unknowns.points(atlas.rigid),
+        surfaces=tuple(_surface(surface, unknowns) for surface in atlas.surfaces),
+        near_motions=tuple(_near_motion(near, unknowns) for near in atlas.near_motions),
     )
 
 
-@dataclass(frozen=True, eq=False)
-class _Recount:
-    """The parts of an atlas in the new unknowns of an ``isometry``, with these
-    ``periods`` (n,)."""
-
-    isometry: Isometry
-    periods: np.ndarray
-
-    def points(self, points: np.ndarray) -> np.ndarray:
-        """Points (..., n), periodic unknowns within half a period of 0."""
-        return wrap(self.isometry.points(points), self.periods)
-
-    def form(self, form: Form) -> Form:
-        return replace(form, branch=self.isometry.branch(form.branch))
-
-    def event(self, event: Event) -> Event:
-        index = event.index if event.index < 0 else self.isometry.index(event.index)
-        return replace(event, u=self.points(event.u), index=index)
-
-    def meeting_point(self, point: MeetingPoint) -> MeetingPoint:
-        tangents = self.isometry.directions(point.tangents)
-        return replace(point, point=self.singular_point(point.point), tangents=tangents)
-
-    def singular_point(self, point: SingularPoint) -> SingularPoint:
-        directions = self.isometry.directions
-        return replace(
-            point,
-            u=self.points(point.u),
-            null_space=directions(point.null_space.T).T,
-            half_branches=directions(point.half_branches),
-            tangents=directions(point.tangents),
+def _form(form: Form, course: Course, size: float) -> Form:
+    certificate = form.certificate
+    if certificate is not None:
+        # a bound is known in units of one size only
+        certificate = replace(
+            certificate,
+            gaps=course.arclengths(certificate.gaps),
+            blurred=course.arclengths(certificate.blurred),
+            bound=certificate.bound / size,
         )
+    arclength = course.arclengths(form.profile.arclength)
+    profile = replace(form.profile, arclength=arclength)
+    return replace(form, branch=course.branch, profile=profile, certificate=certificate)
 
-    def surface(self, surface: Surface) -> Surface:
-        charts = None if surface.charts is None else self.charts(surface.charts)
-        return replace(surface, samples=self.points(surface.samples), charts=charts)
 
-    def charts(self, charts: ChartAtlas) -> ChartAtlas:
-        bases = self.isometry.directions(np.swapaxes(charts.bases, 1, 2))
-        return replace(
+def _event(event: Event, courses: Sequence[Course], unknowns: Unknowns) -> Event:
+    index = event.index if event.index < 0 else unknowns.index(event.index)
+    s = _arclength(courses[event.form], event.s)
+    return replace(event, s=s, u=unknowns.points(event.u), index=index)
+
+
+def _arclength(course: Course, s: float) -> float:
+    return float(course.arclengths(np.array(s)))
+
+
+def _meeting_point(
+    meeting: MeetingPoint, courses: Sequence[Course], unknowns: Unknowns
+) -> MeetingPoint:
+    passes = [(form, _arclength(courses[form], s)) for form, s in meeting.passes]
+    point = replace(
+        meeting.point,
+        u=unknowns.points(meeting.point.u),
+        null_space=unknowns.bases(meeting.point.null_space),
+        error=unknowns.size * meeting.point.error,
+        half_branches=unknowns.directions(meeting.point.half_branches),
+        tangents=unknowns.directions(meeting.point.tangents),
+        radius=unknowns.size * meeting.point.radius,
+    )
+    tangents = unknowns.directions(meeting.tangents)
+    return replace(meeting, point=point, passes=tuple(passes), tangents=tangents)
+
+
+def _surface(surface: Surface, unknowns: Unknowns) -> Surface:
+    charts = surface.charts
+    if charts is not None:
+        charts = replace(
             charts,
-            centers=self.points(charts.centers),
-            bases=np.swapaxes(bases, 1, 2),
-            vertices=self.points(charts.vertices),
-            periods=self.periods,
+            centers=unknowns.points(charts.centers),
+            bases=unknowns.bases(charts.bases),
+            radii=unknowns.size * charts.radii,
+            vertices=unknowns.points(charts.vertices),
+            periods=unknowns.periods,
         )
+    return replace(surface, samples=unknowns.points(surface.samples), charts=charts)
 
-    def near_motion(self, near: NearMotion) -> NearMotion:
-        return replace(near, sample=self.points(near.sample))
+
+def _near_motion(near: NearMotion, unknowns: Unknowns) -> NearMotion:
+    sample = unknowns.points(near.sample)
+    return replace(near, length=unknowns.size * near.length, sample=sample)

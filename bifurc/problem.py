@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from scipy.sparse import sparray
 
 
+LARGE = 64  # unknowns of a problem beyond which it is large
+
 # Maps a right-hand side to the solution (n,) of one linear system.
 Solver: TypeAlias = Callable[[np.ndarray], np.ndarray]
 
@@ -189,7 +191,8 @@ class Problem(ABC):
     and why not. ``is_exact``: its equations are what is meant, and not made of numbers that
     are rounded. ``data_rounding``: how far off F may be, over the magnitude and the
     scale, as those numbers are rounded; 0 where that is not known. ``hessian_error`` is
-    how far off `hessian` may be, over a bound on F''.
+    how far off `hessian` may be, over a bound on F''. ``has_assumed_bounds`` (n, 2): which
+    ends of the bounds were chosen, as none were given; a single False for none of them.
     """
 
     names: tuple[str, ...]
@@ -204,16 +207,18 @@ class Problem(ABC):
     equations: str = ""
     is_exact: bool = False
     data_rounding: float = 0.0
-
-    @property
-    def has_assumed_bounds(self) -> np.ndarray:
-        """Which ends of the bounds (n, 2) were chosen, as none were given."""
-        return np.zeros((self.n, 2), dtype=bool)
+    has_assumed_bounds: np.ndarray = np.array(False)
 
     @property
     def n(self) -> int:
         """Number of unknowns."""
         return len(self.names)
+
+    @property
+    def is_large(self) -> bool:
+        """Whether it has so many unknowns that F' is bordered instead of decomposed, and
+        F'' is not formed."""
+        return self.n > LARGE
 
     @property
     def stride(self) -> float:

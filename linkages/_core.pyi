@@ -21,7 +21,6 @@ def march(
     periods: np.ndarray,
     bounds: np.ndarray,
     length: float,
-    coupling: np.ndarray | None = None,
 ) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
 def project(
     starts: np.ndarray, geometry: np.ndarray, noise: float, iterations: int

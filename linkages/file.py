@@ -16,15 +16,15 @@ or the joint axes in one configuration, in loop order, in any unit and frame:
 
 What has ``[[joints]]``, ``[[loops]]``, or ``bars`` or ``arcs`` between ``[points]`` is a
 mechanism (`linkages.files.mechanism_file`), and so are crease patterns and the files of
-other programs, told by the endings of their names (`linkages.files.fold`,
-`linkages.formats`).
+other programs, told by the endings of their names (`linkages.formats.table`).
 """
 
 from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
@@ -33,8 +33,9 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 import numpy as np
 
 from bifurc.errors import BifurcError
-from bifurc.files.text_file import TextFileError, read_text, read_toml
+from bifurc.files.text_file import TextFileError, read_toml
 from linkages.axes import Vectors, loop_from_axes
+from linkages.formats.table import format_of
 from linkages.loop import MAX_JOINTS, MIN_JOINTS, Loop
 from linkages.mechanisms.origin import WrittenNumber, counted_from_near
 from linkages.values import GeometryError, check_angle, check_keys, check_number, quoted
@@ -48,10 +49,8 @@ Content: TypeAlias = Mapping[str, object]
 
 TABLE = ("lengths", "twists", "offsets")
 AXES = ("points", "directions")
-FOLD = ".fold"
 OF_MECHANISMS = ("joints", "bars", "arcs", "loops")
 KEYS = ("name", "angles", *TABLE, *AXES)
-FOREIGN_ENDINGS = (".world", ".xml", ".mjcf", ".sdf")  # of other programs
 FULL_TURN = 2 * math.pi
 
 
@@ -71,48 +70,35 @@ class LinkageFileError(BifurcError, ValueError):
         super().__init__(f"{path}: {message}")
 
 
-def read_file(path: Path | str) -> Loop | Mechanism:
-    """The loop or the mechanism that a file describes; without a name it is called
-    after the file. Raises `LinkageFileError`."""
-    path = Path(path)
-    ending = path.suffix.lower()
-    if ending == FOLD:
-        return _read_fold_file(path)
-    if ending in FOREIGN_ENDINGS:
-        return _read_foreign(path)
-    content = _parse(path, WrittenNumber)
-    if not _is_of_mechanism(content):
-        loop, _ = read_linkage(path)
-        return loop
-    from linkages.files.mechanism_file import read_mechanism
-
+@contextmanager
+def _errors_about(path: Path) -> Iterator[None]:
+    """Errors of reading as `LinkageFileError` that names the file."""
     try:
-        return read_mechanism(content, path.stem)
+        yield
+    except TextFileError as error:
+        raise LinkageFileError(path, error.reason) from None
     except GeometryError as error:
         raise LinkageFileError(path, str(error)) from None
-
-
-def _read_fold_file(path: Path) -> Mechanism:
-    from linkages.files.fold import read_fold
-
-    try:
-        return read_fold(_text(path), path.stem)
-    except GeometryError as error:
-        raise LinkageFileError(path, str(error)) from None
-
-
-def _read_foreign(path: Path) -> Mechanism:
-    """The mechanism in a file of another program."""
-    from linkages.formats.reading import read_foreign_file
-
-    try:
-        return read_foreign_file(path)
     except FileNotFoundError:
         raise LinkageFileError(path, "there is no such file") from None
     except OSError as error:
         raise LinkageFileError(path, f"cannot be read: {error.strerror}") from None
-    except GeometryError as error:
-        raise LinkageFileError(path, str(error)) from None
+
+
+def read_file(path: Path | str) -> Loop | Mechanism:
+    """The loop or the mechanism that a file describes; without a name it is called
+    after the file. Raises `LinkageFileError`."""
+    path = Path(path)
+    known = format_of(path)
+    with _errors_about(path):
+        if known is not None and known.read is not None:
+            return known.read(path)
+        content = read_toml(path, WrittenNumber)
+        if not _is_of_mechanism(content):
+            return _read_loop(content, path.stem)[0]
+        from linkages.files.mechanism_file import read_mechanism
+
+        return read_mechanism(content, path.stem)
 
 
 def _is_of_mechanism(content: Content) -> bool:
@@ -130,23 +116,14 @@ def read_linkage(path: Path | str) -> tuple[Loop, np.ndarray | None]:
     file that says radians are used as they stand, with a warning in the log.
     """
     path = Path(path)
-    is_foreign = path.suffix.lower() in FOREIGN_ENDINGS
-    content: Content = {} if is_foreign else _parse(path, WrittenNumber)
-    if is_foreign or _is_of_mechanism(content):
-        message = (
-            "describes a mechanism, and this takes a single loop of revolute joints"
-        )
-        raise LinkageFileError(path, message)
-    try:
-        _check_keys(content)
-        name = content.get("name", path.stem)
-        if not isinstance(name, str):
-            raise GeometryError("name", quoted(name), "a text in quotes")
-        if _is_of_axes(content):
-            return _read_axes(content, name)
-        return _read_table(content, name), None
-    except GeometryError as error:
-        raise LinkageFileError(path, str(error)) from None
+    known = format_of(path)
+    is_toml = known is None or known.read is None
+    with _errors_about(path):
+        content = read_toml(path, WrittenNumber) if is_toml else {}
+        if is_toml and not _is_of_mechanism(content):
+            return _read_loop(content, path.stem)
+    message = "describes a mechanism, and this takes a single loop of revolute joints"
+    raise LinkageFileError(path, message)
 
 
 def read_precisely(path: Path | str) -> Loop:
@@ -162,7 +139,8 @@ def read_precisely(path: Path | str) -> Loop:
     loop, configuration = read_linkage(path)
     if configuration is not None:
         return loop
-    content = cast(Mapping[str, Any], _parse(Path(path), mpmath.mpf))
+    with _errors_about(Path(path)):
+        content: Mapping[str, Any] = read_toml(Path(path), mpmath.mpf)
     lengths = tuple(mpmath.mpf(length) for length in content["lengths"])
     twists = tuple(mpmath.mpf(twist) for twist in content["twists"])
     offsets = tuple(mpmath.mpf(offset) for offset in content["offsets"])
@@ -171,24 +149,19 @@ def read_precisely(path: Path | str) -> Loop:
     return Loop(lengths, twists, offsets, loop.name)
 
 
-# --- the file and its keys ------------------------------------------------------------
+# --- keys -----------------------------------------------------------------------------
 
 
-def _parse(
-    path: Path, parse_float: Callable[[str], object] = float
-) -> dict[str, object]:
-    """What a TOML file holds, decimals as ``parse_float`` reads them."""
-    try:
-        return read_toml(path, parse_float)
-    except TextFileError as error:
-        raise LinkageFileError(path, error.reason) from None
-
-
-def _text(path: Path) -> str:
-    try:
-        return read_text(path)
-    except TextFileError as error:
-        raise LinkageFileError(path, error.reason) from None
+def _read_loop(content: Content, name: str) -> tuple[Loop, np.ndarray | None]:
+    """A loop, called as the content says or else by ``name``, and its joint angles (n,),
+    rad, where axes are given."""
+    _check_keys(content)
+    given = content.get("name", name)
+    if not isinstance(given, str):
+        raise GeometryError("name", quoted(given), "a text in quotes")
+    if any(key in content for key in AXES):
+        return _read_axes(content, given)
+    return _read_table(content, given), None
 
 
 def _check_keys(content: Content) -> None:
@@ -206,10 +179,6 @@ def _check_keys(content: Content) -> None:
         if key not in content:
             others = " and ".join(other for other in wanted if other != key)
             raise GeometryError(key, "a missing list", f"given together with {others}")
-
-
-def _is_of_axes(content: Content) -> bool:
-    return any(key in content for key in AXES)
 
 
 # --- the two formats ------------------------------------------------------------------

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from linkages.catalogue import UnknownLinkageError, entry
 from linkages.entry import FormPattern
-from linkages.file import FOLD, FOREIGN_ENDINGS, LinkageFileError, read_file
+from linkages.file import LinkageFileError, read_file
+from linkages.formats.table import ENDINGS
 from linkages.geometry_table import geometry_html, geometry_rows
 from linkages.loop import Loop
 from linkages.networks.entries import NETWORKS
@@ -30,6 +31,11 @@ class Linkage:
     def name(self) -> str:
         """What the linkage is called, in the catalogue or in its file."""
         return self.loop.name
+
+    @property
+    def extent(self) -> float:
+        """The characteristic length."""
+        return self.loop.characteristic_length
 
     def __repr__(self) -> str:
         if not self.patterns:
@@ -92,8 +98,7 @@ def is_linkage_file(source: str | Path) -> bool:
     if isinstance(source, Path):
         return True
     try:
-        has_ending = source.lower().endswith((".toml", FOLD, *FOREIGN_ENDINGS))
-        return has_ending or Path(source).is_file()
+        return source.lower().endswith(ENDINGS) or Path(source).is_file()
     except OSError:  # a text that no file can be called, such as one far too long
         return False
 

@@ -95,14 +95,14 @@ def _spherical_scene(directions: np.ndarray) -> Scene:
 
 def best_view(scene: Scene) -> View:
     """The view in which joints lie furthest apart and no axis is seen end on."""
-    looks = _looks()
+    looks = looks_around(DIRECTIONS)
     return _view_along(looks[np.argmax(_clarities(scene, looks))])
 
 
 def clearest_view(clarity: Callable[[np.ndarray], float]) -> View:
     """The view along a unit vector (3,), towards the eye, whose ``clarity`` is
     largest."""
-    return _view_along(max(_looks(), key=clarity))
+    return _view_along(max(looks_around(DIRECTIONS), key=clarity))
 
 
 def _view_along(look: np.ndarray) -> View:
@@ -111,11 +111,11 @@ def _view_along(look: np.ndarray) -> View:
     return View(float(elevation), float(azimuth))
 
 
-def _looks() -> np.ndarray:
-    """Unit vectors (k, 3) on a spiral over the upper half of the sphere, the pole left
-    out."""
-    k = np.arange(DIRECTIONS)
-    z = (k + 0.5) / DIRECTIONS * 0.9
+def looks_around(count: int) -> np.ndarray:
+    """Unit vectors (count, 3) on a spiral over the upper half of the sphere, the pole
+    left out."""
+    k = np.arange(count)
+    z = (k + 0.5) / count * 0.9
     turn = k * np.pi * (3 - np.sqrt(5))
     ring = np.sqrt(1 - z**2)
     return np.column_stack([ring * np.cos(turn), ring * np.sin(turn), z])
@@ -153,11 +153,11 @@ def _clearances(
     gaps = joints[..., first, :] - joints[..., second, :]
     own = np.eye(n, dtype=bool)
     following = np.eye(n, k=-1, dtype=bool) | np.eye(n, k=n - 1, dtype=bool)
-    to_links = _distances_to_segments(joints, normals)[..., ~(own | following)]
+    to_links = distances_to_segments(joints, normals)[..., ~(own | following)]
     return np.linalg.norm(gaps, axis=-1).min(axis=-1), to_links.min(axis=-1)
 
 
-def _distances_to_segments(points: np.ndarray, segments: np.ndarray) -> np.ndarray:
+def distances_to_segments(points: np.ndarray, segments: np.ndarray) -> np.ndarray:
     """Distances (..., p, q) of points (..., p, k) from line segments (..., q, 2, k)."""
     starts = segments[..., 0, :]
     along = segments[..., 1, :] - starts

@@ -30,7 +30,7 @@ def closure_with_errors(
     if isinstance(linkage, Loop):
         return LoopClosure(make_with_errors(linkage, error, rng))
     structure = Structure(linkage)
-    return MechanismClosure(linkage, draw_errors(structure, error, rng))
+    return MechanismClosure(linkage, draw_errors(structure, error, rng), structure)
 
 
 def make_with_errors(loop: Loop, error: float, rng: np.random.Generator) -> Loop:

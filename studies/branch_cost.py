@@ -3,11 +3,10 @@ bifurcation.
 
     python -m studies.branch_cost [--out DIR]
 
-A loop has at most rank 6, so a single motion curve has at most seven unknowns: from
-eight joints on, each joint more is geared to another one, 1 : 1 either way, with a
-random phase. Times are processor times: of `trace_branch`, and of its compiled part
-alone for as many pieces. The gap is that of a four-bar which misses the parallelogram:
-the smallest regular singular value.
+A loop has at most rank 6, so a single motion curve has at most seven unknowns. Times
+are processor times: of `trace_branch`, and of its compiled part alone for as many
+pieces. The gap is that of a four-bar which misses the parallelogram: the smallest
+regular singular value.
 """
 
 from __future__ import annotations
@@ -30,11 +29,12 @@ from bifurc.curves.monitor import profile_branch
 from bifurc.problem import MarchSettings
 from linkages.app.options import FOLDER
 from linkages.catalogue import entry
-from linkages.closure.coupled import CoupledClosure
 from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import MAX_JOINTS, Loop
+from linkages.loop import Loop
 from linkages.values import GeometryError
 from studies.bench import median_time
+
+MOST_JOINTS = 7  # of a loop that moves along curves
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ PARTS: dict[str, Callable[[Cost], float]] = {
 }
 
 
-def cost_of(series: str, problem: LoopClosure | CoupledClosure) -> list[Cost]:
+def cost_of(series: str, problem: LoopClosure) -> list[Cost]:
     """Cost of the closed branches through a few random closed configurations."""
     rng = np.random.default_rng(1)
     points, gaps = problem.project(rng.uniform(-np.pi, np.pi, (8, problem.n)))
@@ -72,7 +72,7 @@ def cost_of(series: str, problem: LoopClosure | CoupledClosure) -> list[Cost]:
 
 def _measure(
     series: str,
-    problem: LoopClosure | CoupledClosure,
+    problem: LoopClosure,
     point: np.ndarray,
     branch: Branch,
 ) -> Cost:
@@ -96,23 +96,18 @@ def _measure(
     )
 
 
-def random_loop(joints: int, rng: np.random.Generator) -> LoopClosure | CoupledClosure:
-    """A general loop; its joints from the eighth on are geared to the first ones."""
+def random_loop(joints: int, rng: np.random.Generator) -> LoopClosure:
+    """A general loop."""
     lengths = rng.uniform(0.5, 1.5, joints)
     twists = rng.uniform(0.6, 2.5, joints)
     offsets = rng.uniform(0.0, 0.4, joints)
     loop = Loop(tuple(lengths), tuple(twists), tuple(offsets), f"general {joints}R")
-    extra = joints - 7
-    if extra <= 0:
-        return LoopClosure(loop)
-    gears = rng.choice([-1.0, 1.0], extra)[:, None] * np.eye(extra, 7)
-    phases = np.concatenate([np.zeros(7), rng.uniform(-np.pi, np.pi, extra)])
-    return CoupledClosure(loop, np.vstack([np.eye(7), gears]), phases)
+    return LoopClosure(loop)
 
 
 def cost_of_loops(rng: np.random.Generator) -> list[Cost]:
-    """Branches of 4R, 5R and 6R members of the catalogue and of general loops of 7 to
-    12 joints, at random."""
+    """Branches of 4R, 5R and 6R members of the catalogue and of general loops of 7
+    joints, at random."""
     costs = []
     for name in ("bennett", "goldberg-5r", "double-subtractive-goldberg"):
         family = entry(name)
@@ -122,9 +117,8 @@ def cost_of_loops(rng: np.random.Generator) -> list[Cost]:
             except GeometryError:  # the constructor refuses these parameters
                 continue
             costs += cost_of("loops", LoopClosure(loop))
-    for joints in range(7, MAX_JOINTS + 1):
-        for _ in range(6):
-            costs += cost_of("loops", random_loop(joints, rng))
+    for _ in range(12):
+        costs += cost_of("loops", random_loop(MOST_JOINTS, rng))
     return costs
 
 
@@ -191,7 +185,7 @@ def _draw_pieces(axes: Axes, costs: list[Cost]) -> None:
         xlabel="joints",
         ylabel="processor time per piece (us)",
         ylim=(0, None),
-        xticks=range(4, MAX_JOINTS + 1),
+        xticks=range(4, MOST_JOINTS + 1),
     )
     axes.legend(frameon=False)
 

@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from bifurc import Scope
-from linkages.app.answer.document import MapDocument
+from linkages.app.answer.document import Document
 
 Json: TypeAlias = Any  # a value that JSON can hold
 
@@ -27,7 +27,7 @@ NEAR_MISS = 1e-6
 ERRORS = 4.0  # the places of one point agree to as many of their stated errors
 
 
-def differences(one: MapDocument, other: MapDocument) -> list[str]:
+def differences(one: Document, other: Document) -> list[str]:
     """Where two documents differ, one line for each place."""
     lines: list[str] = []
     for key in one:

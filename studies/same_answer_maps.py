@@ -17,7 +17,7 @@ from pathlib import Path
 import click
 
 from bifurc.search.explore import explore
-from linkages.app.answer.document import MapDocument, make_document
+from linkages.app.answer.document import Document, make_document
 from linkages.app.options import NamedPath
 from linkages.catalogue import catalogue
 from linkages.linkage import load_linkage
@@ -41,12 +41,12 @@ class Comparison:
     lines: list[str]
 
 
-def map_document(name: str, seed: int) -> MapDocument:
+def map_document(name: str, seed: int) -> Document:
     """The document of the map of a linkage of the catalogue."""
     return make_document(map_linkage(load_linkage(name), seed=seed))
 
 
-def noisy_document(name: str, draw: int) -> MapDocument:
+def noisy_document(name: str, draw: int) -> Document:
     """The document of its map seen through rounding noise; ``draw`` is also the seed of
     the random starts."""
     linkage = load_linkage(name)
@@ -55,7 +55,7 @@ def noisy_document(name: str, draw: int) -> MapDocument:
 
 
 def compare_maps(
-    name: str, reference: MapDocument, seeds: int, draws: int
+    name: str, reference: Document, seeds: int, draws: int
 ) -> Iterator[Comparison]:
     """The maps of a linkage with so many seeds and draws of noise, against a reference
     map."""

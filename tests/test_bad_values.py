@@ -12,7 +12,6 @@ import linkages
 from bifurc import BifurcError, FunctionProblem, SearchSettings, TraceSettings
 from bifurc.seeds import Seeds
 from linkages import Loop, LoopClosure
-from linkages.closure.coupled import CoupledClosure
 
 NAN = float("nan")
 INF = float("inf")
@@ -123,10 +122,6 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
             np.zeros((1, 4)), np.zeros(4), 0.0
         ),
         "radius",
-    ),
-    "a coupling of text": (
-        lambda: CoupledClosure(BENNETT.loop, "x"),
-        "coupling matrix",
     ),
     "one name for two unknowns": (lambda: problem(names=["a"]), "number of names"),
     "names that are no texts": (lambda: problem(names=3), "names"),

@@ -19,6 +19,7 @@ from bifurc.graphs import transition_graph
 from linkages.app.cli import main
 from linkages.linkage import load
 from linkages.mapping import map_linkage
+from tests.linkages.app.sweep.same_process import pool_at_once
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -64,6 +65,7 @@ def check_output(output, expected):
 def test_the_examples_of_a_page_do_what_it_says(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     matplotlib.use("Agg")
+    monkeypatch.setattr("linkages.app.sweep.run.open_pool", pool_at_once)
     for text in blocks(page, "toml"):
         name = re.match(r"# (\S+\.toml)\n", text)
         assert name, "the first line of a TOML block names its file"

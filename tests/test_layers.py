@@ -4,6 +4,7 @@ its own row of the table in docs/architecture.md and the rows above it."""
 
 import ast
 import re
+from functools import cache
 from pathlib import Path
 
 import networkx as nx
@@ -19,6 +20,7 @@ def name_of(path):
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
+@cache
 def source(path):
     return ast.parse(path.read_text(encoding="utf-8"))
 
@@ -30,8 +32,13 @@ MODULES = {
 }
 
 
+@cache
 def imported_modules(path):
     """Modules named by any import in a file, also inside functions and for types."""
+    return list(_imported_modules(path))
+
+
+def _imported_modules(path):
     for node in ast.walk(source(path)):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
@@ -127,6 +134,18 @@ def test_a_library_package_never_prints(package):
         calls = [node for node in ast.walk(source(path)) if isinstance(node, ast.Call)]
         printing = [n.lineno for n in calls if getattr(n.func, "id", "") == "print"]
         assert not printing, path
+
+
+def test_tests_of_bifurc_know_no_linkage_by_any_chain_of_imports():
+    tests = {name_of(path): path for path in (ROOT / "tests").glob("**/*.py")}
+    graph = nx.DiGraph(
+        (name, "linkages" if module.startswith("linkages.") else module)
+        for name, path in (tests | MODULES).items()
+        for module in imported_modules(path)
+    )
+    knowing = nx.ancestors(graph, "linkages")
+    assert "tests.linkages.conftest" in knowing
+    assert not [name for name in knowing if name.startswith("tests.bifurc.")]
 
 
 @pytest.mark.parametrize("package", ("bifurc", "linkages"))

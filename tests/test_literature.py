@@ -4,7 +4,6 @@ their singular points."""
 import numpy as np
 import pytest
 
-from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from bifurc.singular.classify import classify_singular_point
@@ -12,6 +11,7 @@ from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.point import Kind
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
+from tests.bifurc.known_curves import double_watt
 
 
 def test_cyclohexane_has_one_flexible_form_and_two_rigid_chairs():
@@ -46,34 +46,6 @@ def test_a_flat_folding_vertex_has_four_half_branches_flat_and_folded():
     )
     np.testing.assert_allclose(flat, 0.0, atol=1e-12)
     np.testing.assert_allclose(np.abs(folded), np.pi, atol=1e-12)
-
-
-APART = 3.0  # of the two Watt linkages
-
-
-def double_watt(arm, half, room):
-    """Two Watt linkages with couplers 2 half, mirror images, whose middles are joined
-    by a bar (Connelly and Servatius 1994), within ``room`` of the configuration in the
-    middle; and that."""
-    pivots = np.array(
-        [[-arm, half], [arm, -half], [APART + arm, half], [APART - arm, -half]]
-    )
-    middle = np.array([0.0, half, 0.0, -half, APART, half, APART, -half])
-
-    def lengths(u):
-        p, q, r, s = u.reshape(4, 2)
-        bars = [
-            (p, pivots[0], arm),
-            (p, q, 2 * half),
-            (q, pivots[1], arm),
-            (r, pivots[2], arm),
-            (r, s, 2 * half),
-            (s, pivots[3], arm),
-            ((p + q) / 2, (r + s) / 2, APART),
-        ]
-        return np.array([(a - b) @ (a - b) - length**2 for a, b, length in bars])
-
-    return FunctionProblem(lengths, [(x - room, x + room) for x in middle]), middle
 
 
 @pytest.mark.parametrize("seed", range(2))

@@ -1,4 +1,4 @@
-// Whether a traced curve is one of solutions all along: `bifurc.search.stretches`.
+// Whether a traced curve is one of solutions all along: `bifurc.search.subdivision`.
 #pragma once
 
 #include <array>

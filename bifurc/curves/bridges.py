@@ -8,7 +8,7 @@ from bifurc.curves.misclosure import visible_misclosure
 from bifurc.curves.track import Bridge, BridgeRule, Place, Track
 from bifurc.decisions import is_solution
 from bifurc.numerics.collocation import bridge_by_collocation
-from bifurc.numerics.null_spaces import LARGE, decompose
+from bifurc.numerics.null_spaces import decompose
 from bifurc.numerics.singular_values import singular_values
 from bifurc.pieces import points_on_piece
 from bifurc.problem import Piece, Problem
@@ -107,7 +107,7 @@ def _piece_across(
 def _is_near_singular(problem: Problem, point: np.ndarray, misclosure: float) -> bool:
     """Whether a singular point can be located near ``point``, so that a bridge is worth
     trying."""
-    if problem.n > LARGE:
+    if problem.is_large:
         return False
     values = singular_values(problem, point)
     small = problem.n - int(np.count_nonzero(values > 1e-2))

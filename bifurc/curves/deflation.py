@@ -9,16 +9,22 @@ unknown,
 
 with a and t from the null space at the start of a run. The curve of (u, v) is regular
 where the double component is of first order.
+
+Where others meet such a curve F' does not say: it has rank n - 2 all along. The matrix
+of the deflated system is regular where the curve is a double one, as z = 0 = (z - y)^2
+is, and singular where others meet it.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.decisions import is_shaky, may_be_shaky
+from bifurc.curves.monitor import Profile
+from bifurc.decisions import is_shaky, is_zero_along, may_be_crossed, may_be_shaky
 from bifurc.function_problem import NumericalProblem
 from bifurc.numerics.collocation import march_by_collocation, reparametrised
 from bifurc.numerics.null_spaces import null_spaces
@@ -28,9 +34,18 @@ from bifurc.singular.sphere import section
 
 RUN = 4  # pieces made with one choice of a and t, before both are renewed
 SECTION_RADIUS = 1e-2  # of the sphere on which half-branches are looked for, in scales
+DIP = 0.5  # of the typical value, below which a minimum at the nodes is looked at
+NARROWER, ROUNDS = 4.0, 16  # by which the places about a minimum close in on it
+STEPS = (
+    1e-3,
+    1e-5,
+    1e-7,
+)  # over the scale, to both sides of where two slopes are to meet
+UNKNOWN = 0
+TINY = 1e-300  # keeps what vanishes on both sides from being divided by
 
 
-class _WithNullVector(NumericalProblem):
+class WithNullVector(NumericalProblem):
     """The deflated system in the unknowns (u, v), for one choice of a and t."""
 
     def __init__(self, problem: Problem, a: np.ndarray, t: np.ndarray):
@@ -97,7 +112,7 @@ class Deflated(NumericalProblem):
         the deflated system."""
         t, a = _tangent_and_normal(self._problem, start, tangent)
         march = march_by_collocation(
-            _WithNullVector(self._problem, a, t),
+            WithNullVector(self._problem, a, t),
             np.concatenate([start, a]),
             np.concatenate([t, np.zeros(self.n)]),
             replace(settings, count=min(settings.count, RUN)),
@@ -139,7 +154,7 @@ def deflated_singular_values(
     points, tangents = branch(s), branch(s, 1)
     for k, (point, tangent) in enumerate(zip(points, tangents, strict=True)):
         t, a = _tangent_and_normal(problem, point, tangent)
-        system = _WithNullVector(problem, a, t)
+        system = WithNullVector(problem, a, t)
         matrix = system.jacobians(np.concatenate([point, a])[None])[0]
         matrix[:, : problem.n] *= problem.scale
         matrix[: len(matrix) // 2 - 1] /= problem.scale  # F' itself
@@ -169,3 +184,67 @@ def lower_rank_direction(problem: Problem, point: np.ndarray) -> np.ndarray | No
     length = np.linalg.norm(chord)
     are_opposite = length > SECTION_RADIUS * problem.scale
     return chord / length if are_opposite else None
+
+
+# --- what meets such a curve ----------------------------------------------------------
+
+
+class LowerRank(NamedTuple):
+    """The ``multiplicity`` of a curve, of one of lower rank 2 or, not known, 0, and
+    the arclengths ``crossings`` (k,) at which the deflated system is singular."""
+
+    multiplicity: int
+    crossings: np.ndarray
+
+
+ORDINARY = LowerRank(1, np.empty(0))  # that of a curve of full rank
+
+
+def lower_rank_along(problem: Problem, branch: Branch, profile: Profile) -> LowerRank:
+    """What deflation says of a branch on which F' has a ``profile`` of rank n - 2 or
+    less; of less it says nothing."""
+    unknown = LowerRank(UNKNOWN, np.empty(0))
+    if profile.rank < problem.n - 2:
+        return unknown
+    nodes = profile.arclength.ravel()
+    values = deflated_singular_values(problem, branch, nodes)
+    typical = float(np.median(values))
+    if is_zero_along(typical):
+        return unknown
+    are_low = _are_dips(values, branch.closed) & (values < DIP * typical)
+    dips = np.flatnonzero(are_low).tolist()
+    places = np.array([_bottom(problem, branch, nodes, k) for k in dips])
+    depths = deflated_singular_values(problem, branch, places)
+    return LowerRank(2, places[may_be_crossed(depths, typical)])
+
+
+def _are_dips(values: np.ndarray, is_closed: bool) -> np.ndarray:
+    """Which of a row of values (k,) are not above their neighbours; the ends of an open
+    row are none."""
+    is_dip: np.ndarray = (values <= np.roll(values, 1)) & (values < np.roll(values, -1))
+    if not is_closed:
+        is_dip[[0, -1]] = False
+    return is_dip
+
+
+def _bottom(problem: Problem, branch: Branch, nodes: np.ndarray, k: int) -> float:
+    """The arclength of the minimum about node ``k``; where it is a zero, to rounding."""
+    reach = float(np.max(np.diff(nodes[max(k - 1, 0) : k + 2])))
+    middle = float(nodes[k])
+    for _ in range(ROUNDS):
+        trial = middle + reach * np.linspace(-1.0, 1.0, 9)
+        values = deflated_singular_values(problem, branch, _within(branch, trial))
+        middle = float(trial[np.argmin(values)])
+        reach /= NARROWER
+    for step in STEPS:  # about a zero the two slopes are as steep as each other
+        sides = middle + step * problem.scale * np.array([-1.0, 1.0])
+        left, right = deflated_singular_values(problem, branch, _within(branch, sides))
+        middle += step * problem.scale * float((left - right) / (left + right + TINY))
+    return float(_within(branch, np.array([middle]))[0])
+
+
+def _within(branch: Branch, s: np.ndarray) -> np.ndarray:
+    """Arclengths on the branch: modulo its length, or none beyond its ends."""
+    if branch.closed:
+        return np.asarray(s % branch.length)
+    return np.asarray(np.clip(s, 0.0, branch.length))

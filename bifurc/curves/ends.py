@@ -11,7 +11,6 @@ from bifurc.branch import Outcome
 from bifurc.curves.track import End, Track
 from bifurc.decisions import is_back, is_nearly_back, is_other_way, is_solution
 from bifurc.numerics.blur import same_reach
-from bifurc.numerics.null_spaces import LARGE
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.pieces import points_on_piece, points_on_pieces
 from bifurc.problem import Problem
@@ -118,7 +117,7 @@ def _is_same_pass(
 def _known_to(problem: Problem, point: np.ndarray) -> float:
     """How far, over the scale, from a point (n,) of a curve it may be found again; of a
     large problem singular values are not taken."""
-    if problem.n > LARGE:
+    if problem.is_large:
         return NEAR
     return max(float(same_reach(problem, point[None])[0]), NEAR)
 

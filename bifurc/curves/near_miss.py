@@ -1,15 +1,25 @@
-"""The value of a near miss, and how far it may be off."""
+"""The value of a near miss, and how far it may be off.
+
+Beside a crossing that forms miss by little, doubles know a place on the curve to
+rounding over the singular value, and that value no better than by its square. With F in
+many digits the curve is as well known as one likes. With l and r the singular vectors,
+the singular value is l . F'(r), its slope along the unit tangent t is l . F''(r, t), both
+differences of F. Errors of l and r enter by their squares, so that those of doubles do.
+"""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.curves.precise_near_miss import precise_near_miss
 from bifurc.numerics.null_spaces import TINY, Decomposition, decompose
-from bifurc.problem import Problem
+from bifurc.problem import PreciseResidual, Problem
+
+if TYPE_CHECKING:
+    import mpmath
 
 # Rounding of F and of the singular values of F', over the magnitude.
 RESIDUAL_ROUNDING, VALUE_ROUNDING = 2e-15, 4e-15
@@ -19,6 +29,20 @@ LONGEST_STEP = 1e-3
 # for those below the root of rounding: geometry in doubles makes redundant equations
 # disagree by that, and with them such values.
 PRECISE, SMALLEST = 1e-9, 2e-8
+DIGITS = 40
+STEP = "1e-10"  # of differences, over the scale: they are exact to its square
+CORRECTIONS = 40  # Gauss-Newton steps, at most, onto the curve,
+# until the last one is so short, over the scale, or, below the second number, shrinks no
+# more: the geometry itself is rounded, and its redundant equations disagree by that.
+ON_CURVE, STAGNANT = 1e-24, 1e-14
+ASIDE = 3e-8  # scales beside the minimum: from there on secants lead,
+SHORT = 0.6  # of the singular value, in scales: none of them longer than that,
+ROUNDS = 60  # of them at most,
+ENOUGH = 1e-12  # until the value changes by so little, as a share
+# Rounding of the value; of F' in doubles, which turns its singular vectors by that over
+# the singular value.
+ROUNDING, TURNED = 4e-16, 1e-15
+FARTHEST = 1e-2  # scales from where it was found at which the minimum may lie
 
 
 class NearMissValue(NamedTuple):
@@ -65,10 +89,10 @@ def _refined(
     problem: Problem, branch: Branch, s: float, rough: NearMissValue
 ) -> NearMissValue:
     """The value in many digits, where it is within the error of that of doubles."""
-    precise = precise_near_miss(problem, branch, problem.n - 1, s)
+    precise = _precise_near_miss(problem, branch, problem.n - 1, s)
     if precise is None or abs(precise.value - rough.value) > rough.error:
         return rough
-    return NearMissValue(precise.value, precise.error)
+    return precise
 
 
 def _visible_step(decomposition: Decomposition, rank: int) -> np.ndarray:
@@ -80,3 +104,132 @@ def _visible_step(decomposition: Decomposition, rank: int) -> np.ndarray:
     shares = components[is_visible] / sigma
     step: np.ndarray = -shares @ decomposition.right[0, :rank][is_visible]
     return step
+
+
+# --- in many digits -------------------------------------------------------------------
+
+
+class _Station(NamedTuple):
+    """A point (n,) of a curve in many digits, the unit tangent (n,) there, the singular
+    value, half the slope of its square along the tangent, and how far the point may be
+    off, over the scale."""
+
+    point: list[mpmath.mpf]
+    tangent: np.ndarray
+    value: float
+    half_slope: float
+    error: float
+
+
+def _precise_near_miss(
+    problem: Problem, branch: Branch, rank: int, s: float
+) -> NearMissValue | None:
+    """Singular value number ``rank`` of F' at its minimum on a branch next to
+    arclength ``s``; None where F is known in doubles only, or no minimum is reached.
+
+    It begins a little aside, where the curve is known to less than its distance from
+    the next one, and goes to the minimum by steps that are short beside that distance.
+    """
+    residual = problem.precise_residual()
+    if residual is None:
+        return None
+    import mpmath
+
+    with mpmath.workdps(DIGITS):
+        start = branch(s + ASIDE * problem.scale)
+        place = [mpmath.mpf(float(x)) for x in start]
+        before = _station(problem, residual, place, rank)
+        if before is None:
+            return None
+        step = SHORT * before.value * problem.scale
+        if branch(s + ASIDE * problem.scale, 1) @ before.tangent > 0:
+            step = -step
+        for _ in range(ROUNDS):
+            here = _station(problem, residual, _moved(before, step), rank)
+            if here is None or not _is_near(problem, here, start):
+                return None
+            change = abs(here.value - before.value) + here.error
+            if change <= max(ENOUGH * here.value, 10 * here.error):
+                turned = (TURNED / here.value) ** 2
+                error = change + (ROUNDING + turned) * here.value
+                return NearMissValue(here.value, error)
+            longest = SHORT * here.value * problem.scale
+            step = float(np.clip(_secant(before, here), -longest, longest))
+            before = here
+    return None
+
+
+def _station(
+    problem: Problem, residual: PreciseResidual, place: list[mpmath.mpf], rank: int
+) -> _Station | None:
+    """The point of the curve next to a place (n,), and the singular value there; None
+    where no correction leads to one."""
+    import mpmath
+
+    point = list(place)
+    last = np.inf
+    for _ in range(CORRECTIONS):
+        at = decompose(problem, np.array([[float(x) for x in point]]))
+        inverse = (at.right[0, :rank].T / at.sigma[0, :rank]) @ at.left[0, :, :rank].T
+        missed = _floats(residual(point), problem.magnitude)
+        step = inverse @ missed
+        point = [x - mpmath.mpf(float(d)) for x, d in zip(point, step, strict=True)]
+        size = float(np.linalg.norm(step)) / problem.scale
+        if size < ON_CURVE or (size < STAGNANT and size > 0.5 * last):
+            break
+        last = size
+    else:
+        return None
+    at = decompose(problem, np.array([[float(x) for x in point]]))
+    left, right = at.left[0, :, rank - 1], at.right[0, rank - 1]
+    tangent = at.right[0, rank]
+    h = mpmath.mpf(STEP) * mpmath.mpf(problem.scale)
+
+    def seen(along_right: int, along_tangent: int) -> mpmath.mpf:
+        """l . F a step or none beside the point."""
+        beside = [
+            x
+            + h
+            * (
+                along_right * mpmath.mpf(float(r))
+                + along_tangent * mpmath.mpf(float(t))
+            )
+            for x, r, t in zip(point, right, tangent, strict=True)
+        ]
+        return mpmath.fdot([mpmath.mpf(float(x)) for x in left], residual(beside))
+
+    value = (seen(1, 0) - seen(-1, 0)) / (2 * h * problem.magnitude)
+    mixed = seen(1, 1) - seen(1, -1) - seen(-1, 1) + seen(-1, -1)
+    slope = mixed / (4 * h * h * problem.magnitude)
+    return _Station(point, tangent, float(value), float(value * slope), size)
+
+
+def _floats(values: Sequence[mpmath.mpf], magnitude: float) -> np.ndarray:
+    """Numbers (m,) over the magnitude, in doubles, which keep their leading digits."""
+    return np.array([float(value / magnitude) for value in values])
+
+
+def _moved(here: _Station, step: float) -> list[mpmath.mpf]:
+    """The place (n,) a ``step`` along the tangent of a station."""
+    import mpmath
+
+    return [
+        x + mpmath.mpf(step * float(t))
+        for x, t in zip(here.point, here.tangent, strict=True)
+    ]
+
+
+def _secant(before: _Station, here: _Station) -> float:
+    """The step from ``here`` along its tangent to where the slope would be zero if it
+    changed at one rate."""
+    covered = [float(x - y) for x, y in zip(here.point, before.point, strict=True)]
+    width = float(np.array(covered) @ here.tangent)
+    aligned = 1.0 if here.tangent @ before.tangent > 0 else -1.0
+    change = here.half_slope - aligned * before.half_slope
+    return -here.half_slope * width / change if change else 0.0
+
+
+def _is_near(problem: Problem, here: _Station, start: np.ndarray) -> bool:
+    """Whether a station is next to where the near miss was found."""
+    offset = np.array([float(x) for x in here.point]) - start
+    return bool(np.linalg.norm(offset) < FARTHEST * problem.scale)

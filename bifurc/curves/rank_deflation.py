@@ -20,7 +20,6 @@ from bifurc.decisions import closes_to_rounding
 from bifurc.function_problem import NumericalProblem
 from bifurc.problem import Problem
 
-LARGEST = 64  # unknowns up to which F'' is no burden
 NEXT = 1e-4  # of the scale: how far a solution known to half the digits may be off
 
 

@@ -7,33 +7,7 @@ from enum import Enum
 
 import numpy as np
 
-
-class PointKind(Enum):
-    """What happens at one arclength of a form."""
-
-    # The parameter turns back: a limit point.
-    FOLD = "fold"
-    # A pair of eigenvalues crosses the imaginary axis.
-    HOPF = "Hopf point"
-    # A function of the user's takes a value.
-    EVENT = "event"
-    # It takes the value and turns back, or stays within rounding of it.
-    TOUCH = "touch"
-
-
-class BranchingKind(Enum):
-    """How branches cross, seen along the parameter."""
-
-    # Both go on to either side.
-    TRANSCRITICAL = "transcritical"
-    # One of them turns back. Whether it is stable where the other is not, is not known.
-    PITCHFORK = "pitchfork"
-    # The one that turns back has fewer unstable directions than the other beside it.
-    SUPERCRITICAL = "supercritical pitchfork"
-    # It has more of them.
-    SUBCRITICAL = "subcritical pitchfork"
-    # More than two branches, or one that stands still without turning back.
-    OTHER = "branch point"
+from bifurc.singular.point import Kind
 
 
 class Stability(Enum):
@@ -61,7 +35,7 @@ class DiagramPoint:
     """
 
     name: str
-    kind: PointKind
+    kind: Kind
     form: int
     s: float
     u: np.ndarray
@@ -98,7 +72,7 @@ class Branching:
     """What singular point number ``point`` of the atlas is along the parameter."""
 
     point: int
-    kind: BranchingKind
+    kind: Kind
 
 
 @dataclass(frozen=True)
@@ -120,23 +94,23 @@ class Diagram:
     @property
     def folds(self) -> tuple[DiagramPoint, ...]:
         """The points where the parameter turns back."""
-        return tuple(p for p in self.points if p.kind is PointKind.FOLD)
+        return tuple(p for p in self.points if p.kind is Kind.FOLD)
 
     @property
     def hopf_points(self) -> tuple[DiagramPoint, ...]:
         """The points where a pair of eigenvalues crosses the imaginary axis."""
-        return tuple(p for p in self.points if p.kind is PointKind.HOPF)
+        return tuple(p for p in self.points if p.kind is Kind.HOPF)
 
     def events(self, label: str = "") -> tuple[DiagramPoint, ...]:
         """The events called ``label``, or all of them."""
-        return self._called(PointKind.EVENT, label)
+        return self._called(Kind.EVENT, label)
 
     def touches(self, label: str = "") -> tuple[DiagramPoint, ...]:
         """The places at which the event called ``label``, or any, takes its value and
         turns back."""
-        return self._called(PointKind.TOUCH, label)
+        return self._called(Kind.TOUCH, label)
 
-    def _called(self, kind: PointKind, label: str) -> tuple[DiagramPoint, ...]:
+    def _called(self, kind: Kind, label: str) -> tuple[DiagramPoint, ...]:
         of_kind = [p for p in self.points if p.kind is kind]
         return tuple(p for p in of_kind if label in ("", p.label))
 
@@ -154,12 +128,8 @@ class Diagram:
         return None
 
     def __repr__(self) -> str:
-        counts = {
-            "folds": len(self.folds),
-            "Hopf points": len(self.hopf_points),
-            "events": len(self.events()),
-            "touches": len(self.touches()),
-            "branchings": len(self.branchings),
-        }
+        kinds = [point.kind for point in self.points]
+        counts = {kind.plural: kinds.count(kind) for kind in Kind if kind.plural}
+        counts["branchings"] = len(self.branchings)
         words = ", ".join(f"{count} {noun}" for noun, count in counts.items())
         return f"<Diagram in {self.parameter or 'no parameter'!r}: {words}>"

@@ -1,7 +1,7 @@
 """A fold as the regular solution of a system of its own.
 
-The point u and the tangent v solve F(u) = 0, F'(u) v = 0, v_p = 0, |v| = 1 (Moore and
-Spence 1980), whatever the pieces of a curve are off.
+The point u and the tangent v solve F(u) = 0, F'(u) v = 0, v_p = 0, t . v = 1 with the
+tangent t nearby (Moore and Spence 1980), whatever the pieces of a curve are off.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bifurc.curves.deflation import WithNullVector
 from bifurc.problem import Problem
 
 STEPS = (
@@ -17,7 +18,7 @@ STEPS = (
 )
 SETTLED = 1e-15  # of the sizes of the unknowns: a step after which none follows
 FARTHEST = 0.1  # of the sizes: a longer step leads elsewhere
-MANY_UNKNOWNS = 60  # from here on F'' takes too long
+RANK = 1e-14  # of singular values, over the largest: what is smaller is rounding
 
 
 class Fold(NamedTuple):
@@ -41,53 +42,39 @@ def refined_fold(
     ``parameter`` is the index of the unknown that turns back, ``sizes`` (n,) are those
     of the unknowns.
     """
-    if problem.n > MANY_UNKNOWNS:
+    if problem.is_large:
         return None
-    rows = np.linalg.norm(problem.jacobians(start[None])[0] * sizes, axis=1)
-    weights = 1.0 / np.where(rows > 0.0, rows, 1.0)
-    u, v = start.copy(), tangent / sizes
-    v /= np.linalg.norm(v)
+    n = problem.n
+    across = tangent / sizes
+    length = float(np.linalg.norm(across))
+    system = WithNullVector(problem, across / sizes / length**2, np.eye(n)[parameter])
+    units = np.concatenate([sizes, length * sizes])
+    point = np.concatenate([start, tangent])
     for _ in range(STEPS):
-        step = _newton_step(problem, u, v, parameter, sizes, weights)
+        right = -system.residuals(point[None])[0]
+        step = _scaled_least_squares(system.jacobians(point[None])[0], right, units)
         if step is None or np.abs(step).max() > FARTHEST:
             return None
-        u = u + sizes * step[: problem.n]
-        v = v + step[problem.n :]
-        if np.abs(step[: problem.n]).max() <= SETTLED:
+        point = point + units * step
+        if np.abs(step[:n]).max() <= SETTLED:
             break
-    return Fold(u, _bend(problem, u, sizes * v, parameter))
+    u, v = np.split(point, 2)
+    return Fold(u, _bend(problem, u, v, parameter))
 
 
-def _newton_step(
-    problem: Problem,
-    u: np.ndarray,
-    v: np.ndarray,
-    parameter: int,
-    sizes: np.ndarray,
-    weights: np.ndarray,
+def _scaled_least_squares(
+    matrix: np.ndarray, right: np.ndarray, units: np.ndarray
 ) -> np.ndarray | None:
-    """The step (2 n,) of point and tangent, both over ``sizes``:
-
-    [ F'      0  ] [du]     [ F       ]
-    [ F'' v   F' ] [dv] = - [ F' v    ]
-    [ 0      e_p ]          [ v_p     ]
-    [ 0       v  ]          [ (v v-1)/2 ]
-    """
-    n = problem.n
-    first = weights[:, None] * problem.jacobians(u[None])[0] * sizes
-    second = np.einsum("mij,j->mi", problem.hessian(u), sizes * v)
-    second = weights[:, None] * second * sizes
-    unit = np.zeros(n)
-    unit[parameter] = 1.0
-    nothing = np.zeros_like(first)
-    matrix = np.block([[first, nothing], [second, first]])
-    border = np.block([[np.zeros((2, n)), np.stack([unit, v])]])
-    residual = weights * problem.residuals(u[None])[0]
-    right = [residual, first @ v, [v[parameter], 0.5 * (v @ v - 1.0)]]
-    system, right_side = np.vstack([matrix, border]), -np.concatenate(right)
-    if not (np.isfinite(system).all() and np.isfinite(right_side).all()):
+    """The solution (n,) of a system in ``units`` (n,) of its unknowns, all equations
+    weighted alike; None where it is not finite."""
+    if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
         return None
-    step: np.ndarray = np.linalg.lstsq(system, right_side, rcond=1e-14)[0]
+    scaled = matrix * units
+    weights = np.linalg.norm(scaled, axis=1)
+    weights[weights == 0.0] = 1.0
+    step: np.ndarray = np.linalg.lstsq(
+        scaled / weights[:, None], right / weights, rcond=RANK
+    )[0]
     return step
 
 
@@ -99,5 +86,5 @@ def _bend(
     t = tangent / np.linalg.norm(tangent)
     system = np.vstack([problem.jacobians(u[None])[0], t])
     right = np.einsum("mij,i,j->m", problem.hessian(u), t, t)
-    bend = np.linalg.lstsq(system, np.append(-right, 0.0), rcond=1e-14)[0]
+    bend = np.linalg.lstsq(system, np.append(-right, 0.0), rcond=RANK)[0]
     return float(bend[parameter])

@@ -8,35 +8,31 @@ from dataclasses import replace
 
 from bifurc.atlas import Atlas
 from bifurc.checks import check_type
-from bifurc.diagrams.branching import branching_kind
 from bifurc.diagrams.diagram import (
     Branching,
     Diagram,
     DiagramPoint,
-    PointKind,
     Stretch,
 )
-from bifurc.diagrams.event_points import events_along
-from bifurc.diagrams.events import EventRequests, events_of
-from bifurc.diagrams.spectrum import Spectrum
+from bifurc.diagrams.events import EventRequests, events_along, events_of
 from bifurc.diagrams.stability import (
     FormStability,
     HopfPlace,
+    Spectrum,
     has_square_rest,
     stability_along,
     unknown_stability,
 )
-from bifurc.diagrams.turnings import Turnings, turnings_of, unknown_sizes
+from bifurc.diagrams.turnings import (
+    Turnings,
+    branching_kind,
+    turnings_of,
+    unknown_sizes,
+)
 from bifurc.errors import ProblemError
 from bifurc.problem import Problem
+from bifurc.singular.point import Kind
 from bifurc.torus import wrap, wrapped_periods
-
-INITIALS = {
-    PointKind.FOLD: "F",
-    PointKind.HOPF: "H",
-    PointKind.EVENT: "E",
-    PointKind.TOUCH: "T",
-}
 
 
 def diagram_of(
@@ -134,7 +130,7 @@ def _stability(
 def _hopf_point(atlas: Atlas, form: int, place: HopfPlace) -> DiagramPoint:
     branch = atlas.forms[form].branch
     s = place.s % branch.length if branch.closed else place.s
-    return DiagramPoint("", PointKind.HOPF, form, s, branch(s), place.frequency)
+    return DiagramPoint("", Kind.HOPF, form, s, branch(s), place.frequency)
 
 
 def _named(
@@ -144,10 +140,10 @@ def _named(
     and arclengths."""
     periods = wrapped_periods(problem.periods, problem.bounds)
     named = []
-    for kind, initial in INITIALS.items():
+    for kind in Kind:
         of_kind = [point for point in points if point.kind is kind]
         of_kind.sort(key=lambda point: (point.label, point.form, point.s))
         for number, point in enumerate(of_kind, start=1):
-            name, u = f"{initial}{number}", wrap(point.u, periods)
+            name, u = f"{kind.initial}{number}", wrap(point.u, periods)
             named.append(replace(point, name=name, u=u))
     return tuple(named)

@@ -1,8 +1,9 @@
-"""Where a parameter turns back along forms: folds, and passes of singular points."""
+"""Where a parameter turns back along forms: folds, and passes of singular points; and
+how branches cross there."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,11 +12,12 @@ from bifurc.atlas import Atlas, MeetingPoint
 from bifurc.branch import Branch, Outcome, Turning
 from bifurc.curves.monitor import NODES
 from bifurc.decisions import is_drawn_to_point, is_fold_of_crossing, stands_still
-from bifurc.diagrams.branching import TurningPass
-from bifurc.diagrams.diagram import DiagramPoint, PointKind
+from bifurc.diagrams.diagram import DiagramPoint, Stretch
 from bifurc.diagrams.fold import Fold, refined_fold
 from bifurc.problem import Problem
 from bifurc.singular.point import Kind
+
+SAME_CUT = 1e-12  # of a length: a stretch ends at the very arclength of a pass
 
 
 class Turnings(NamedTuple):
@@ -152,4 +154,67 @@ def _fold_point(
             s += float(step @ branch(place.s, 1))
             u, bend = fold.u, fold.bend
     s = float(np.clip(s, 0.0, branch.length))
-    return DiagramPoint("", PointKind.FOLD, form, s, u, bend, error=half)
+    return DiagramPoint("", Kind.FOLD, form, s, u, bend, error=half)
+
+
+# --- how branches cross ---------------------------------------------------------------
+
+
+class TurningPass(NamedTuple):
+    """A pass of form number ``form`` at arclength ``s`` at which the parameter turns
+    back; ``side`` is 1 where it grows after that, and -1 where it falls."""
+
+    form: int
+    s: float
+    side: float
+
+
+def branching_kind(
+    atlas: Atlas,
+    parameter: int,
+    point: MeetingPoint,
+    turning: Sequence[TurningPass],
+    resting: Container[int],
+    stretches: Sequence[Stretch],
+) -> Kind | None:
+    """What a singular point is along the parameter; None where no branches cross.
+
+    ``turning`` are those of its passes at which the parameter turns back, ``resting``
+    the forms along which it does not change, ``stretches`` those of all forms.
+    """
+    if point.kind is not Kind.BIFURCATION:
+        return None
+    if len(point.passes) != 2 or len(turning) > 1:
+        return Kind.OTHER
+    if not turning:
+        stands = any(form in resting for form, _ in point.passes)
+        return Kind.OTHER if stands else Kind.TRANSCRITICAL
+    branch = turning[0]
+    trunk = next(one for one in point.passes if one != (branch.form, branch.s))
+    beside = _unstable_beside(stretches, branch.form, branch.s, 1.0)
+    rises = float(atlas.forms[trunk[0]].branch(trunk[1], 1)[parameter])
+    side = 1.0 if rises * branch.side > 0 else -1.0
+    on_trunk = _unstable_beside(stretches, *trunk, side)
+    if min(beside, on_trunk) < 0 or beside == on_trunk:
+        return Kind.PITCHFORK
+    if beside < on_trunk:
+        return Kind.SUPERCRITICAL
+    return Kind.SUBCRITICAL
+
+
+def _unstable_beside(
+    stretches: Sequence[Stretch], form: int, s: float, side: float
+) -> int:
+    """The number of unstable eigenvalues on a form next to ``s``, before or after it by
+    the sign ``side``; -1 where it is not known."""
+    own = [stretch for stretch in stretches if stretch.form == form]
+    if not own:
+        return -1
+    first = own[0].start
+    length = own[-1].end - first
+    for stretch in own:
+        here = stretch.start if side > 0 else stretch.end
+        gap = abs(here - s)
+        if min(gap, abs(gap - length)) <= SAME_CUT * max(length, 1.0):
+            return stretch.unstable
+    return -1

@@ -3,7 +3,7 @@ dashed, and marks where something happens."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib import rc_context
@@ -13,11 +13,11 @@ from matplotlib.lines import Line2D
 
 from bifurc.atlas import Atlas
 from bifurc.checks import check_type
-from bifurc.diagrams.diagram import BranchingKind, PointKind, Stability, Stretch
+from bifurc.diagrams.diagram import Stability, Stretch
 from bifurc.figures.drawing import note_emptiness, widen_flat_axes
 from bifurc.figures.labels import label_spots
 from bifurc.figures.quantities import AxisRequest, Quantity, quantity_of
-from bifurc.figures.style import COLORS, RC, Dashes
+from bifurc.figures.style import COLORS, RC, Dashes, Properties, Style
 from bifurc.singular.point import Kind
 
 PIECE_POINTS = 16  # drawn on each piece of a form, at least
@@ -30,15 +30,6 @@ DASHES: dict[Stability, Dashes] = {
     Stability.UNKNOWN: "-",
 }
 EVENT_SYMBOLS = ("x", "+", "*", "P", "v", "1")
-
-
-# insides of the marks of crossings
-FILLS = {
-    BranchingKind.SUPERCRITICAL: "white",
-    BranchingKind.SUBCRITICAL: "black",
-    BranchingKind.PITCHFORK: "0.6",
-    BranchingKind.TRANSCRITICAL: "0.85",
-}
 
 
 class _Mark(NamedTuple):
@@ -83,10 +74,8 @@ def plot_diagram(
         _draw_legend(figure, atlas, stabilities, marks)
         note_emptiness(axes, atlas)
         marked = _marked(atlas)
-        points = [point for _, _, point in marked]
-        label_spots(
-            axes, [name for name, _, _ in marked], [_spot(u, x, y) for u in points]
-        )
+        names = [name for name, _, _ in marked]
+        label_spots(axes, names, [_spot(u, x, y) for _, _, u in marked])
     return figure
 
 
@@ -105,13 +94,8 @@ def _draw_stretches(
             stretches.append(Stretch(number, 0.0, length, Stability.UNKNOWN, -1))
     for stretch in stretches:
         rows = _rows(atlas, stretch, x, y)
-        axes.plot(
-            rows[:, 0],
-            rows[:, 1],
-            color=_color(stretch.form),
-            linestyle=DASHES[stretch.stability],
-            linewidth=LINE_WIDTH,
-        )
+        style = Style(_color(stretch.form), DASHES[stretch.stability])
+        axes.plot(*rows.T, linewidth=LINE_WIDTH, **style.line)
     drawn = {stretch.stability for stretch in stretches}
     return [stability for stability in Stability if stability in drawn]
 
@@ -144,11 +128,11 @@ def _draw_marks(axes: Axes, atlas: Atlas, x: Quantity, y: Quantity) -> list[_Mar
     for _, mark, point in _marked(atlas):
         drawn[mark.label] = mark
         spot = _spot(point, x, y)
-        axes.plot(spot[0], spot[1], zorder=5, **_properties(mark))
+        axes.plot(*spot, zorder=5, **_properties(mark))
     return list(drawn.values())
 
 
-def _properties(mark: _Mark) -> dict[str, Any]:
+def _properties(mark: _Mark) -> Properties:
     """How a line of one point is drawn as a mark."""
     return {
         "marker": mark.symbol,
@@ -175,10 +159,8 @@ def _marked(atlas: Atlas) -> list[tuple[str, _Mark, np.ndarray]]:
     marked = []
     for number, meeting in enumerate(atlas.points):
         if meeting.kind is Kind.BIFURCATION:
-            kind = kinds.get(number)
-            label = "bifurcation" if kind is None else kind.value
-            fill = "white" if kind is None else FILLS.get(kind, "white")
-            mark = _Mark(label, "o", fill=fill)
+            kind = kinds.get(number, meeting.kind)
+            mark = _Mark(kind.value, kind.mark.symbol, fill=kind.mark.fill)
             marked.append((meeting.name, mark, meeting.point.u))
         elif meeting.passes:
             mark = _Mark(meeting.kind.value, "D", edge="0.35")
@@ -187,16 +169,13 @@ def _marked(atlas: Atlas) -> list[tuple[str, _Mark, np.ndarray]]:
         return marked
     labels = sorted({event.label for event in diagram.events()})
     for point in diagram.points:
-        if point.kind is PointKind.FOLD:
-            mark = _Mark("fold", "s")
-        elif point.kind is PointKind.HOPF:
-            mark = _Mark("Hopf point", "^")
-        elif point.kind is PointKind.TOUCH:
-            mark = _Mark(f"{point.label} (touch)", "d")
-        else:
+        label, symbol = point.kind.value, point.kind.mark.symbol
+        if point.kind is Kind.EVENT:
             number = labels.index(point.label)
-            symbol = EVENT_SYMBOLS[number % len(EVENT_SYMBOLS)]
-            mark = _Mark(point.label, symbol)
+            label, symbol = point.label, EVENT_SYMBOLS[number % len(EVENT_SYMBOLS)]
+        elif point.label:
+            label = f"{point.label} ({point.kind.value})"
+        mark = _Mark(label, symbol)
         marked.append((point.name, mark, point.u))
     return marked
 
@@ -215,11 +194,9 @@ def _draw_legend(
             handles.append(line)
     for stability in stabilities:
         if stability is not Stability.UNKNOWN:
-            dashes, label = DASHES[stability], stability.value
+            style = Style("0.3", DASHES[stability]).line
             handles.append(
-                Line2D(
-                    [], [], color="0.3", linestyle=dashes, linewidth=1.6, label=label
-                )
+                Line2D([], [], linewidth=1.6, label=stability.value, **style)
             )
     for mark in marks:
         handles.append(Line2D([], [], label=mark.label, **_properties(mark)))

@@ -1,11 +1,16 @@
-"""What figures are made of: forms and singular points in a plane, the legend, and a
-word where there is nothing to draw."""
+"""What figures are made of: panels at places that are known beforehand, forms and
+singular points in a plane, the legend, and a word where there is nothing to draw.
+
+A layout engine measures every text of a figure to find the same places, twice, which
+takes longer than to draw it.
+"""
 
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,10 +20,10 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
 from matplotlib.textpath import text_to_path
 from matplotlib.ticker import MultipleLocator
+from matplotlib.transforms import ScaledTranslation
 
 from bifurc.atlas import Atlas
 from bifurc.decisions import closes_to_rounding
-from bifurc.figures.panels import fix_names_of_axes
 from bifurc.figures.planes import (
     Plane,
     Scale,
@@ -26,7 +31,8 @@ from bifurc.figures.planes import (
     cut_to_frame,
     place_in_frame,
 )
-from bifurc.figures.style import RC, Mark, Style, form_style, mark_of
+from bifurc.figures.style import RC, Properties, form_style, hollow
+from bifurc.singular.point import Mark
 
 NAME_WIDTH = 24  # letters of a line of the legend
 LETTER_SIZE = RC["legend.fontsize"]
@@ -34,25 +40,84 @@ HANDLE_LENGTH = 3.2  # of the line beside a name, over the size of a letter
 HANDLE_GAP = 0.8  # between the two, over the same
 LEGEND_GAP = 0.2  # at both sides of the legend, in inches
 LINE_HEIGHT = 0.18  # of the legend, in inches
+# In inches, from the frame to the name of an axis; between them are the ticks.
+NAME_BELOW = 0.27
+NAME_LEFT = 0.46
 RIGID_LABEL = "rigid assembly"
 SURFACE_LABEL = "mobility 2 or more"
-
-
-@dataclass(frozen=True)
-class PanelSettings:
-    """How forms and points are drawn in one panel: ``line_width`` and ``mark_size`` in
-    points, each mark in its own size unless that is given."""
-
-    line_width: float = 1.8
-    mark_size: float | None = None
-
-
-DEFAULT_PANEL = PanelSettings()
-
-
 FLAT_SAMPLES = 32  # of each form, by which the largest unknown is seen
 FLAT = 1e-9  # of the largest unknown: an axis that shows less shows rounding
 FLAT_HALF = 0.1  # of the largest unknown: half of what is shown instead
+
+
+# --- panels ---------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Margins:
+    """Room around the panels and between them, in inches."""
+
+    left: float
+    right: float
+    bottom: float
+    top: float
+    between_columns: float = 0.0
+    between_rows: float = 0.0
+
+
+def make_panels(
+    figure: Figure,
+    count: int,
+    columns: int,
+    margins: Margins,
+    has_common_ordinate: bool = False,
+) -> list[Axes]:
+    """As many panels in a figure, row by row; those with a common ordinate carry its
+    ticks at the left."""
+    rows = -(-count // columns)
+    width, height = figure.get_size_inches()
+    inner_width = width - margins.left - margins.right
+    inner_height = height - margins.bottom - margins.top
+    gap_width = margins.between_columns
+    gap_height = margins.between_rows
+    panel_width = (inner_width - (columns - 1) * gap_width) / columns
+    panel_height = (inner_height - (rows - 1) * gap_height) / rows
+    figure.set_layout_engine("none")
+    grid = figure.add_gridspec(
+        rows,
+        columns,
+        left=margins.left / width,
+        right=1 - margins.right / width,
+        bottom=margins.bottom / height,
+        top=1 - margins.top / height,
+        wspace=gap_width / panel_width,
+        hspace=gap_height / panel_height,
+    )
+    panels: list[Axes] = []
+    for k in range(count):
+        row, column = divmod(k, columns)
+        first = panels[0] if panels and has_common_ordinate else None
+        axes = figure.add_subplot(grid[row, column], sharey=first)
+        if has_common_ordinate and column > 0:
+            axes.tick_params(labelleft=False)
+        panels.append(axes)
+    return panels
+
+
+def fix_names_of_axes(axes: Axes) -> None:
+    """Put the names of both axes where three digits and a sign have room beside them,
+    whatever the ticks are: their labels need not be measured."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    below = ScaledTranslation(0, -NAME_BELOW, figure.dpi_scale_trans)
+    left = ScaledTranslation(-NAME_LEFT, 0, figure.dpi_scale_trans)
+    axes.xaxis.set_label_coords(0.5, 0, axes.transAxes + below)
+    axes.yaxis.set_label_coords(0, 0.5, axes.transAxes + left)
+
+
+def columns_of(count: int) -> int:
+    """How many of so many panels, one a form, stand side by side."""
+    return 1 if count == 1 else 2 if count <= 8 else 3
 
 
 def widen_flat_axes(
@@ -71,7 +136,33 @@ def widen_flat_axes(
         axes.set_ylim(middle - FLAT_HALF * height, middle + FLAT_HALF * height)
 
 
+def name_above(axes: Axes, x: float, name: str, **style: Any) -> None:
+    """The name of something at an abscissa, above the frame."""
+    axes.annotate(
+        name,
+        (x, 1.0),
+        (0, 2),
+        xycoords=("data", "axes fraction"),
+        textcoords="offset points",
+        ha="center",
+        fontsize=8,
+        **style,
+    )
+
+
 # --- forms ----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class PanelSettings:
+    """How forms and points are drawn in one panel: ``line_width`` and ``mark_size`` in
+    points, each mark in its own size unless that is given."""
+
+    line_width: float = 1.8
+    mark_size: float | None = None
+
+
+DEFAULT_PANEL = PanelSettings()
 
 
 def draw_forms(
@@ -82,7 +173,9 @@ def draw_forms(
         points = plane.project(curve_points(form.branch))
         if len(points):
             rows = cut_to_frame(points, plane.scales)
-            draw_curve(axes, rows, form_style(i), settings.line_width)
+            # not cut at the frame, in which curves on a torus lie anyway
+            style: Properties = {"linewidth": settings.line_width, **form_style(i).line}
+            axes.plot(*rows.T, clip_on=False, zorder=2, **style)
     horizontal, vertical = plane.scales
     _label_axis(axes.xaxis, horizontal)
     _label_axis(axes.yaxis, vertical)
@@ -107,22 +200,6 @@ def _label_axis(axis: Axis, scale: Scale) -> None:
         axis.set_minor_locator(MultipleLocator(30))
 
 
-def draw_curve(
-    axes: Axes, rows: np.ndarray, style: Style, width: float, cut: bool = False
-) -> None:
-    """One line through rows (k, 2) with breaks at NaN; not cut at the frame, in which a
-    torus's curves lie anyway."""
-    axes.plot(
-        rows[:, 0],
-        rows[:, 1],
-        color=style.color,
-        linestyle=style.dashes,
-        linewidth=width,
-        clip_on=cut,
-        zorder=2,
-    )
-
-
 # --- marks ----------------------------------------------------------------------------
 
 
@@ -132,47 +209,20 @@ def draw_marks(
     """Singular points, isolated solutions and surfaces in a plane, on both edges where
     they lie on one."""
     for surface in atlas.surfaces:
-        _draw_surface(axes, plane, surface.samples)
+        shown = place_in_frame(plane.project(surface.samples), plane.scales)
+        axes.plot(*shown.T, ".", color="0.6", markersize=2, zorder=1)
     for solution in atlas.rigid:
-        _draw_assembly(axes, plane.copies(solution), settings.mark_size or 5.5)
+        size = settings.mark_size or 5.5
+        style: Properties = {"color": "0.3", "markersize": size, "zorder": 3}
+        axes.plot(*plane.copies(solution).T, "x", clip_on=False, **style)
     spots: dict[Mark, list[np.ndarray]] = {}
     for point in atlas.points:
-        symbol, usual_size = mark_of(point.kind)
-        mark = Mark(symbol, settings.mark_size or usual_size)
+        mark = point.kind.mark
+        mark = mark._replace(size=settings.mark_size or mark.size)
         spots.setdefault(mark, []).append(plane.copies(point.point.u))
     for mark, places in spots.items():
-        _draw_singular_points(axes, np.concatenate(places), mark)
-
-
-def _draw_surface(axes: Axes, plane: Plane, samples: np.ndarray) -> None:
-    spots = place_in_frame(plane.project(samples), plane.scales)
-    axes.plot(spots[:, 0], spots[:, 1], ".", color="0.6", markersize=2, zorder=1)
-
-
-def _draw_assembly(axes: Axes, spots: np.ndarray, size: float) -> None:
-    axes.plot(
-        spots[:, 0],
-        spots[:, 1],
-        "x",
-        color="0.3",
-        markersize=size,
-        clip_on=False,
-        zorder=3,
-    )
-
-
-def _draw_singular_points(axes: Axes, spots: np.ndarray, mark: Mark) -> None:
-    axes.plot(
-        spots[:, 0],
-        spots[:, 1],
-        mark.symbol,
-        markersize=mark.size,
-        markerfacecolor="white",
-        markeredgecolor="black",
-        markeredgewidth=1.1,
-        clip_on=False,
-        zorder=4,
-    )
+        style = {"markeredgewidth": 1.1, **hollow(mark)}
+        axes.plot(*np.concatenate(places).T, ls="", clip_on=False, zorder=4, **style)
 
 
 # --- the legend -----------------------------------------------------------------------
@@ -181,80 +231,46 @@ def _draw_singular_points(axes: Axes, spots: np.ndarray, mark: Mark) -> None:
 def draw_legend(figure: Figure, atlas: Atlas, edge: float) -> None:
     """Names of the forms and of the marks, at the right of the figure, ``edge`` (inches)
     below its top."""
-    entries = _form_entries(atlas) + _mark_entries(atlas)
-    if not entries:
-        return
     width, height = figure.get_size_inches()
     left = 1 - (legend_size(atlas).width - LEGEND_GAP) / width
-    top = 1 - edge / height
-    figure.legend(
-        handles=entries,
+    _draw_legend(
+        figure,
+        atlas,
         loc="upper left",
-        bbox_to_anchor=(left, top),
+        bbox_to_anchor=(left, 1 - edge / height),
         borderpad=0,
         borderaxespad=0,
-        handlelength=HANDLE_LENGTH,
         handletextpad=HANDLE_GAP,
-        frameon=False,
     )
 
 
 def draw_legend_outside(figure: Figure, atlas: Atlas) -> None:
     """The same at the right of a figure whose layout makes room for it."""
-    entries = _form_entries(atlas) + _mark_entries(atlas)
+    _draw_legend(figure, atlas, loc="outside right upper")
+
+
+def _draw_legend(figure: Figure, atlas: Atlas, **options: Any) -> None:
+    entries = list(_entries(atlas))
     if entries:
-        figure.legend(
-            handles=entries,
-            loc="outside right upper",
-            frameon=False,
-            handlelength=HANDLE_LENGTH,
-        )
+        length = HANDLE_LENGTH
+        figure.legend(handles=entries, frameon=False, handlelength=length, **options)
 
 
-def _form_entries(atlas: Atlas) -> list[Line2D]:
-    entries = []
-    for i, name in enumerate(_wrapped_names(atlas)):
-        style = form_style(i)
-        entries.append(
-            Line2D(
-                [],
-                [],
-                color=style.color,
-                linestyle=style.dashes,
-                linewidth=1.8,
-                label=name,
-            )
-        )
-    return entries
-
-
-def _mark_entries(atlas: Atlas) -> list[Line2D]:
-    """Entries of the singular points, kind by kind, of isolated solutions and of
-    surfaces, as far as there are any."""
-    entries = []
+def _entries(atlas: Atlas) -> Iterator[Line2D]:
+    """Entries of the forms, of the singular points, kind by kind, of isolated solutions
+    and of surfaces, as far as there are any."""
+    for i, form in enumerate(atlas.forms):
+        name = textwrap.fill(form.name, NAME_WIDTH)
+        yield Line2D([], [], linewidth=1.8, label=name, **form_style(i).line)
+    marks: list[tuple[str, Properties]] = []
     for kind in dict.fromkeys(point.kind for point in atlas.points):
-        mark = mark_of(kind)
-        entries.append(
-            Line2D(
-                [],
-                [],
-                linestyle="",
-                marker=mark.symbol,
-                markersize=mark.size,
-                markerfacecolor="white",
-                markeredgecolor="black",
-                label=kind.value,
-            )
-        )
+        marks.append((kind.value, hollow(kind.mark)))
     if len(atlas.rigid):
-        entries.append(_plain_entry("x", "0.3", RIGID_LABEL))
+        marks.append((RIGID_LABEL, {"marker": "x", "color": "0.3"}))
     if atlas.surfaces:
-        entries.append(_plain_entry(".", "0.6", SURFACE_LABEL))
-    return entries
-
-
-def _plain_entry(symbol: str, color: str, label: str) -> Line2D:
-    return Line2D([], [], linestyle="", marker=symbol, color=color, label=label)
+        marks.append((SURFACE_LABEL, {"marker": ".", "color": "0.6"}))
+    for label, style in marks:
+        yield Line2D([], [], linestyle="", label=label, **style)
 
 
 class LegendSize(NamedTuple):
@@ -269,17 +285,13 @@ def legend_size(atlas: Atlas) -> LegendSize:
     letters = FontProperties(size=LETTER_SIZE)
     longest = 0.0
     height = LINE_HEIGHT
-    for entry in _form_entries(atlas) + _mark_entries(atlas):
+    for entry in _entries(atlas):
         for line in str(entry.get_label()).splitlines():
             size = text_to_path.get_text_width_height_descent(line, letters, False)
             longest = max(longest, size[0])
             height += LINE_HEIGHT
     points = longest + LETTER_SIZE * (HANDLE_LENGTH + HANDLE_GAP)
     return LegendSize(points / 72 + 2 * LEGEND_GAP, height)
-
-
-def _wrapped_names(atlas: Atlas) -> list[str]:
-    return [textwrap.fill(form.name, NAME_WIDTH) for form in atlas.forms]
 
 
 # --- nothing to draw ------------------------------------------------------------------
@@ -294,13 +306,5 @@ def note_emptiness(axes: Axes, atlas: Atlas) -> None:
         note += " within the bounds"
     elif 0 < atlas.closure_gap < np.inf:
         note += f"\nclosure gap {atlas.closure_gap:.1e}"
-    axes.text(
-        0.5,
-        0.5,
-        note,
-        transform=axes.transAxes,
-        ha="center",
-        va="center",
-        color="0.4",
-        fontsize=11,
-    )
+    style: Properties = {"ha": "center", "va": "center", "color": "0.4"}
+    axes.text(0.5, 0.5, note, transform=axes.transAxes, fontsize=11, **style)

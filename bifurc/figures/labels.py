@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -21,6 +21,12 @@ DIRECTIONS = [
 ]
 MARK_HALF = np.full(2, 3.5)  # half the sides of what a mark covers
 SPACING = 3.0  # of points on a line by which it is seen what a name covers
+BACKGROUND = {
+    "boxstyle": "square,pad=0.1",
+    "facecolor": "white",
+    "alpha": 0.75,
+    "linewidth": 0,
+}
 SAME_MARK = 2.0  # pixels: marks that are closer share a name
 SAME_SPOT = 0.01  # of the frame: points that are closer share a name
 
@@ -89,27 +95,45 @@ class _Label(NamedTuple):
 def label_points(axes: Axes, atlas: Atlas, plane: Plane) -> None:
     """Names beside the singular points, one label for those on one spot, where curves
     and other names leave room."""
-    labels = _labels(atlas, plane)
-    marks = [
-        copy for label in labels for copy in copies_in_frame(label.spot, plane.scales)
-    ]
-    _draw_labels(axes, labels, marks)
+    periods = np.array([2 * scale.half for scale in plane.scales])
+    tolerance = SAME_SPOT * _extent(atlas, plane, periods)
+
+    def are_same(spot: np.ndarray, other: np.ndarray) -> bool:
+        return bool(np.all(np.abs(torus.difference(spot, other, periods)) < tolerance))
+
+    names = [point.name for point in atlas.points]
+    spots = [plane.spot(point.point.u) for point in atlas.points]
+    labels = _joined(names, spots, are_same)
+    copies = [copies_in_frame(label.spot, plane.scales) for label in labels]
+    _draw_labels(axes, labels, [copy for places in copies for copy in places])
 
 
 def label_spots(axes: Axes, names: Sequence[str], spots: Sequence[np.ndarray]) -> None:
     """Names beside marks on ``spots`` (2,), where curves and other names leave room;
     marks on one spot share a name."""
+
+    def are_same(spot: np.ndarray, other: np.ndarray) -> bool:
+        gap = _on_page(axes, spot, 1.0) - _on_page(axes, other, 1.0)
+        return bool(np.abs(gap).max() < SAME_MARK)
+
+    _draw_labels(axes, _joined(names, spots, are_same), spots)
+
+
+def _joined(
+    names: Sequence[str],
+    spots: Sequence[np.ndarray],
+    are_same: Callable[[np.ndarray, np.ndarray], bool],
+) -> list[_Label]:
+    """Names on their spots (2,); those on spots that are the same are one label."""
     labels: list[_Label] = []
     for name, spot in zip(names, spots, strict=True):
-        place = _on_page(axes, spot, 1.0)
         for k, label in enumerate(labels):
-            gap = place - _on_page(axes, label.spot, 1.0)
-            if np.abs(gap).max() < SAME_MARK:
+            if are_same(spot, label.spot):
                 labels[k] = _Label(f"{label.text}, {name}", label.spot)
                 break
         else:
             labels.append(_Label(name, spot))
-    _draw_labels(axes, labels, spots)
+    return labels
 
 
 def _draw_labels(
@@ -128,28 +152,18 @@ def _draw_labels(
         mark = _on_page(axes, label.spot, scale)
         half = np.array([2.8 * len(label.text) + 1, 4.5])
         box = page.place(mark, half)
-        _draw_label(axes, label, box.middle - mark)
-
-
-def _draw_label(axes: Axes, label: _Label, offset: np.ndarray) -> None:
-    """A name at an ``offset`` (2,), in points, from its spot."""
-    axes.annotate(
-        label.text,
-        (label.spot[0], label.spot[1]),
-        (offset[0], offset[1]),
-        textcoords="offset points",
-        ha="center",
-        va="center",
-        fontsize=9,
-        fontweight="bold",
-        zorder=6,
-        bbox={
-            "boxstyle": "square,pad=0.1",
-            "facecolor": "white",
-            "alpha": 0.75,
-            "linewidth": 0,
-        },
-    )
+        axes.annotate(
+            label.text,
+            tuple(label.spot.tolist()),
+            tuple((box.middle - mark).tolist()),
+            textcoords="offset points",
+            ha="center",
+            va="center",
+            fontsize=9,
+            fontweight="bold",
+            zorder=6,
+            bbox=BACKGROUND,
+        )
 
 
 def _page(axes: Axes, scale: float) -> _Page:
@@ -178,23 +192,6 @@ def _filled(rows: np.ndarray) -> np.ndarray:
         parts.append(np.linspace(rows[i], rows[i + 1], count))
     points = np.concatenate(parts)
     return points[np.all(np.isfinite(points), axis=1)]
-
-
-def _labels(atlas: Atlas, plane: Plane) -> list[_Label]:
-    """The names of the singular points; those on one spot of the plane are joined."""
-    periods = np.array([2 * scale.half for scale in plane.scales])
-    tolerance = SAME_SPOT * _extent(atlas, plane, periods)
-    labels: list[_Label] = []
-    for point in atlas.points:
-        spot = plane.spot(point.point.u)
-        for k, label in enumerate(labels):
-            gap = np.abs(torus.difference(spot, label.spot, periods))
-            if np.all(gap < tolerance):
-                labels[k] = _Label(f"{label.text}, {point.name}", label.spot)
-                break
-        else:
-            labels.append(_Label(point.name, spot))
-    return labels
 
 
 def _extent(atlas: Atlas, plane: Plane, periods: np.ndarray) -> np.ndarray:

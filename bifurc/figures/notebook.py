@@ -8,8 +8,7 @@ matplotlib.)
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Mapping
-from typing import Protocol
+from typing import Any
 
 from matplotlib import rc_context
 
@@ -18,28 +17,8 @@ from bifurc.figures.plotting import plot_transition_map
 from bifurc.figures.style import RC
 
 
-class _Formatter(Protocol):
-    """What turns objects into one kind of text."""
-
-    def for_type(self, kind: type, function: Callable[[Atlas], str]) -> object: ...
-
-
-class _DisplayFormatter(Protocol):
-    """The formatters by the kind of text they make."""
-
-    @property
-    def formatters(self) -> Mapping[str, _Formatter]: ...
-
-
-class _Shell(Protocol):
-    """What IPython hands to an extension."""
-
-    @property
-    def display_formatter(self) -> _DisplayFormatter: ...
-
-
-def load_ipython_extension(shell: _Shell) -> None:
-    """Show every atlas with its picture from now on."""
+def load_ipython_extension(shell: Any) -> None:
+    """Show every atlas in this shell of IPython with its picture from now on."""
     formatter = shell.display_formatter.formatters["text/html"]
     formatter.for_type(Atlas, atlas_page)
 

@@ -22,16 +22,17 @@ from bifurc.checks import check_type
 from bifurc.errors import ProblemError
 from bifurc.figures.diagram_plot import plot_diagram
 from bifurc.figures.drawing import (
+    Margins,
     PanelSettings,
     draw_forms,
     draw_legend,
     draw_marks,
     legend_size,
+    make_panels,
     note_emptiness,
 )
 from bifurc.figures.form_graph import plot_form_graph
 from bifurc.figures.labels import label_points
-from bifurc.figures.panels import Margins, make_panels
 from bifurc.figures.planes import choose_plane, plane_of, scale_of
 from bifurc.figures.rendering import render
 from bifurc.figures.singular_values import plot_singular_values

@@ -1,4 +1,4 @@
-"""The picture of the singular values along the forms."""
+"""The pictures of the singular values: along the forms, and against one unknown."""
 
 from __future__ import annotations
 
@@ -9,17 +9,29 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, NullLocator
+from matplotlib.ticker import FuncFormatter, MultipleLocator, NullLocator
 
 from bifurc.atlas import Atlas, Event, Form
-from bifurc.figures.drawing import draw_curve, note_emptiness
-from bifurc.figures.panels import Margins, fix_names_of_axes, make_panels
+from bifurc.errors import ProblemError
+from bifurc.figures.drawing import (
+    Margins,
+    columns_of,
+    fix_names_of_axes,
+    make_panels,
+    name_above,
+    note_emptiness,
+)
+from bifurc.figures.planes import Scale, place_in_frame, scale_of
 from bifurc.figures.quantities import shown_unit
-from bifurc.figures.style import RC, Style, form_style
+from bifurc.figures.style import RC, Properties, Style, form_style
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 MARGINS = Margins(0.85, 0.2, 0.6, 0.45, between_columns=0.3, between_rows=0.75)
 STEEP = 1.3  # values of neighbours over each other, above which points are put between
+LOWEST = 1e-16  # of the largest value: what is drawn of a zero
+DECADES = 5  # at least, on the vertical axis
+PLAIN = Scale(1.0, np.inf, "")
+AT_POINT: Properties = {"color": "0.35", "linewidth": 0.8, "linestyle": (0, (3, 2))}
 SAME_LABEL = 0.05  # of the length of a form: points that are closer share a label
 
 
@@ -45,7 +57,7 @@ def plot_singular_values(atlas: Atlas, figure: Figure | None = None) -> Figure:
     misses carry their value. Bars on the axis show where a form is not certified.
     """
     count = max(len(atlas.forms), 1)
-    columns = 1 if count == 1 else 2 if count <= 8 else 3
+    columns = columns_of(count)
     rows = -(-count // columns)
     limits = _limits(atlas)
     size = (4.6 * columns if count > 1 else 6.4, 2.3 * rows + 0.4)
@@ -92,7 +104,8 @@ def _draw_form(axes: Axes, atlas: Atlas, index: int, limits: _Range) -> None:
     style = form_style(index)
     stops = _stops(atlas, index)
     misses = [event for event in atlas.near_misses if event.form == index]
-    _draw_values(axes, form, stops, misses, style, limits)
+    zeros = [stop.s for stop in stops]
+    _draw_values(axes, form, zeros, misses, style, limits)
     for event in misses:
         _draw_near_miss(axes, event, form.branch.length)
     _name_stops(axes, stops, form.branch.length)
@@ -116,26 +129,31 @@ def _stops(atlas: Atlas, index: int) -> list[_Stop]:
     return stops
 
 
+def _regular_values(form: Form) -> tuple[np.ndarray, np.ndarray]:
+    """Arclengths (k,) along a form and its regular singular values (k, rank)."""
+    s = form.profile.arclength.ravel()
+    return s, form.profile.values.reshape(len(s), -1)[:, : form.rank]
+
+
 def _draw_values(
     axes: Axes,
     form: Form,
-    stops: Sequence[_Stop],
+    zeros: Sequence[float],
     misses: Sequence[Event],
     style: Style,
     limits: _Range,
 ) -> None:
     """All regular singular values along a form, the smallest strongly."""
-    s = form.profile.arclength.ravel()
-    values = form.profile.values.reshape(len(s), -1)[:, : form.rank]
+    s, values = _regular_values(form)
     axes.plot(s, values[:, :-1], color="0.75", linewidth=0.8, zorder=1)
     length = form.branch.length
     turns = (-length, 0.0, length) if form.branch.closed else (0.0,)
-    zeros = [stop.s + turn for stop in stops for turn in turns]
+    repeated = [zero + turn for zero in zeros for turn in turns]
     x = np.concatenate([s, [event.s for event in misses]])
     y = np.concatenate([values[:, -1], [event.value for event in misses]])
-    x, y = _with_zeros(x, y, zeros)
+    x, y = _with_zeros(x, y, repeated)
     rows = np.stack([x, np.maximum(y, 1e-3 * limits.low)], axis=1)
-    draw_curve(axes, rows, style, 1.6, cut=True)
+    axes.plot(*rows.T, linewidth=1.6, zorder=2, **style.line)
 
 
 def _with_zeros(
@@ -201,28 +219,105 @@ def _name_stops(axes: Axes, stops: Sequence[_Stop], length: float) -> None:
     together in one label."""
     groups: list[list[_Stop]] = []
     for stop in sorted(stops, key=lambda stop: stop.s):
-        axes.axvline(
-            stop.s, color="0.35", linewidth=0.8, linestyle=(0, (3, 2)), zorder=0
-        )
+        axes.axvline(stop.s, zorder=0, **AT_POINT)
         if groups and stop.s - groups[-1][-1].s < SAME_LABEL * length:
             groups[-1].append(stop)
         else:
             groups.append([stop])
     for group in groups:
         middle = float(np.mean([stop.s for stop in group]))
-        axes.annotate(
-            ", ".join(stop.name for stop in group),
-            (middle, 1.0),
-            (0, 2),
-            xycoords=("data", "axes fraction"),
-            textcoords="offset points",
-            ha="center",
-            va="bottom",
-            fontsize=8,
-        )
+        names = ", ".join(stop.name for stop in group)
+        name_above(axes, middle, names, va="bottom")
 
 
 def _power_of_ten(value: float, _: int) -> str:
     """A tick's label in plain characters: matplotlib's own needs a parser of formulas,
     a fifth of a second to load."""
     return "10" + str(round(np.log10(value))).translate(SUPERSCRIPTS)
+
+
+# --- against one unknown --------------------------------------------------------------
+
+
+def plot_singular_values_against(
+    atlas: Atlas, unknown: int, figure: Figure | None = None
+) -> Figure:
+    """The regular singular values of each form against one unknown, numbered from 1, on
+    a logarithmic scale, in one panel a form.
+
+    The smallest is drawn strongly; bifurcations are dashed lines with their names, near
+    misses triangles. Raises `ProblemError` where there is no such unknown.
+    """
+    n = len(atlas.names)
+    if not 1 <= unknown <= n:
+        allowed = f"one of the unknowns, numbered from 1 to {n}"
+        raise ProblemError("unknown", unknown, allowed)
+    count = max(len(atlas.forms), 1)
+    columns = columns_of(count)
+    rows = -(-count // columns)
+    scale = scale_of(atlas, unknown - 1)
+    with rc_context(RC):
+        size = (4.6 * columns if count > 1 else 6.4, 2.5 * rows + 0.4)
+        figure = figure or Figure(figsize=size, layout="constrained")
+        panels = figure.subplots(rows, columns, squeeze=False, sharey=True).flat
+        for axes in panels[count:]:
+            axes.set_visible(False)
+        for i in range(len(atlas.forms)):
+            _draw_form_against(panels[i], atlas, i, unknown - 1, scale)
+        figure.supxlabel(scale.label, fontsize=9)
+        figure.supylabel("singular value", fontsize=9)
+        note_emptiness(panels[0], atlas)
+    return figure
+
+
+def _draw_form_against(
+    axes: Axes, atlas: Atlas, index: int, unknown: int, scale: Scale
+) -> None:
+    form = atlas.forms[index]
+    style = form_style(index)
+    stops = _stops(atlas, index)
+    s, values = _values_at_stops(form, [stop.s for stop in stops])
+    top = float(values.max())
+    shown = _shown(form.branch(s)[:, unknown], scale)
+    jumps = np.flatnonzero(np.abs(np.diff(shown)) > scale.half) + 1
+    x = np.insert(shown, jumps, np.nan)
+    y = np.insert(np.maximum(values, LOWEST * top), jumps, np.nan, axis=0)
+    axes.plot(x, y[:, :-1], color="0.75", linewidth=0.8, zorder=1)
+    axes.plot(x, y[:, -1], color=style.color, linewidth=1.6, zorder=2)
+    for point in atlas.points:
+        if any(number == index for number, _ in point.passes):
+            place = _shown(point.point.u[[unknown]], scale)[0]
+            axes.axvline(place, **AT_POINT)
+            name_above(axes, place, point.name)
+    least = np.inf
+    for event in atlas.near_misses:
+        if event.form == index:
+            place = _shown(event.u[[unknown]], scale)[0]
+            axes.plot(place, event.value, "v", color="black", markersize=4, zorder=4)
+            least = min(least, event.value)
+    axes.set(yscale="log", ylim=(min(least / 10, top * 10.0**-DECADES), 2 * top))
+    if scale.is_periodic:
+        axes.set_xlim(-scale.half, scale.half)
+    if scale.half == 180.0:
+        axes.xaxis.set_major_locator(MultipleLocator(90))
+    axes.set_title(form.name, color=style.color, fontsize=9, loc="left", pad=14)
+    axes.grid(True)
+
+
+def _values_at_stops(
+    form: Form, zeros: Sequence[float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Arclengths (k,) along a form and its regular singular values (k, rank), with the
+    singular points, where the smallest is 0."""
+    s, values = _regular_values(form)
+    places = np.concatenate([s, zeros])
+    columns = [np.interp(places, s, column) for column in values.T]
+    columns[-1][len(s) :] = 0.0
+    order = np.argsort(places, kind="stable")
+    return places[order], np.stack(columns, axis=1)[order]
+
+
+def _shown(values: np.ndarray, scale: Scale) -> np.ndarray:
+    """Values (k,) of an unknown as they are shown, periodic ones within the frame."""
+    pairs = np.stack([values, np.zeros_like(values)], axis=1)
+    return np.asarray(place_in_frame(pairs, (scale, PLAIN))[:, 0])

@@ -16,7 +16,7 @@ from bifurc.atlas import Atlas
 from bifurc.errors import ProblemError
 from bifurc.figures.drawing import draw_legend_outside, legend_size
 from bifurc.figures.planes import Scale, curve_points, scale_of
-from bifurc.figures.style import RC, form_style, mark_of
+from bifurc.figures.style import RC, form_style, hollow
 
 
 def plot_map_in_space(
@@ -66,8 +66,7 @@ def _draw_forms(
         shown = _shown(points[:, list(indices)], scales)
         is_jump = np.any(np.abs(np.diff(shown, axis=0)) > half, axis=1)
         rows = np.insert(shown, np.flatnonzero(is_jump) + 1, np.nan, axis=0)
-        style = form_style(i)
-        axes.plot(*rows.T, color=style.color, linestyle=style.dashes, linewidth=1.6)
+        axes.plot(*rows.T, linewidth=1.6, **form_style(i).line)
 
 
 def _draw_points(
@@ -76,15 +75,7 @@ def _draw_points(
     """Singular points with their names, and isolated solutions."""
     for point in atlas.points:
         spot = _shown(point.point.u[None, list(indices)], scales)[0]
-        mark = mark_of(point.kind)
-        axes.plot(
-            *spot[:, None],
-            marker=mark.symbol,
-            markersize=mark.size,
-            markerfacecolor="white",
-            markeredgecolor="black",
-            zorder=4,
-        )
+        axes.plot(*spot[:, None], zorder=4, **hollow(point.kind.mark))
         _write_name(axes, spot, point.name)
     for solution in atlas.rigid:
         spot = _shown(solution[None, list(indices)], scales)[0]

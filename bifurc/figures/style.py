@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any, Literal, NamedTuple, TypeAlias
 
-from bifurc.singular.point import Kind
+from bifurc.singular.point import Mark
 
+Properties: TypeAlias = dict[str, Any]  # of what matplotlib draws, as it calls them
 Dashes: TypeAlias = Literal["-"] | tuple[float, tuple[float, ...]]
 
 # Settings of matplotlib for all figures, which the user's own must not disturb. Their
@@ -66,16 +67,10 @@ class Style(NamedTuple):
     color: str
     dashes: Dashes
 
-
-class Mark(NamedTuple):
-    """Symbol of a singular point, as matplotlib calls it, and its size in points."""
-
-    symbol: str
-    size: float
-
-
-MARKS = {Kind.BIFURCATION: Mark("o", 6.5), Kind.RANK_DROP: Mark("D", 5.0)}
-OTHER_MARK = Mark("s", 5.0)
+    @property
+    def line(self) -> Properties:
+        """How a line of it is drawn."""
+        return {"color": self.color, "linestyle": self.dashes}
 
 
 def form_style(index: int) -> Style:
@@ -90,6 +85,11 @@ def color_on_dark(color: str) -> str:
     return ON_DARK.get(color, color)
 
 
-def mark_of(kind: Kind) -> Mark:
-    """Mark of the singular points of a kind."""
-    return MARKS.get(kind, OTHER_MARK)
+def hollow(mark: Mark) -> Properties:
+    """How a mark is drawn, white inside."""
+    return {
+        "marker": mark.symbol,
+        "markersize": mark.size,
+        "markerfacecolor": "white",
+        "markeredgecolor": "black",
+    }

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -19,44 +19,12 @@ import numpy as np
 from bifurc.atlas import Atlas, Provenance
 from bifurc.checks import check_type
 from bifurc.completeness import Claim, Completeness, Doubt, Level, Scope
-from bifurc.diagrams.diagram import Diagram
+from bifurc.errors import BifurcError
 from bifurc.files.atomic import replace_file
-from bifurc.files.checksum import checksum
-from bifurc.files.diagram_layout import (
-    BRANCHINGS,
-    DIAGRAM_POINTS,
-    REMARKS,
-    STRETCHES,
-    read_branching,
-    read_diagram_point,
-    read_remark,
-    read_stretch,
-)
-from bifurc.files.errors import AtlasFileError
-from bifurc.files.faults import missing_variables, table_faults
-from bifurc.files.form_layout import FORMS, read_form
 from bifurc.files.json_values import mapping_from_text, to_text
-from bifurc.files.layout import (
-    ASSEMBLIES,
-    TABLES,
-    UNKNOWNS,
-    atlas_frame,
-    dataset_frame,
-)
-from bifurc.files.near_motion_layout import NEAR_MOTIONS, read_near_motion
-from bifurc.files.netcdf import write_netcdf
-from bifurc.files.point_layout import (
-    DEAD_POINTS,
-    NEAR_MISSES,
-    POINTS,
-    read_dead_point,
-    read_near_miss,
-    read_point,
-)
-from bifurc.files.seal import append_seal, is_seal_broken
-from bifurc.files.surface_layout import SURFACES, read_surface
-from bifurc.files.table import JOINT, Frame, make_variable
-from bifurc.files.variable import Attribute, Variable
+from bifurc.files.layout import TABLES, atlas_frame, dataset_frame, read_atlas
+from bifurc.files.netcdf import append_seal, checksum, is_seal_broken, write_netcdf
+from bifurc.files.table import Attribute, Frame, Variable, make_variable
 from bifurc.settings import SearchSettings, TraceSettings
 
 if TYPE_CHECKING:
@@ -78,6 +46,19 @@ NEEDED_ATTRIBUTES = (
     "has_diagram",
     "parameter",
 )
+
+
+class AtlasFileError(BifurcError, ValueError):
+    """A dataset or file that holds no atlas.
+
+    ``source`` names it, ``missing`` lists the variables and attributes that it lacks.
+    """
+
+    def __init__(self, source: str, reason: str, missing: Iterable[str] = ()):
+        self.source = source
+        self.missing = tuple(missing)
+        super().__init__(f"{source}: {reason}")
+
 
 # --- files ----------------------------------------------------------------------------
 
@@ -191,7 +172,7 @@ def to_dataset(atlas: Atlas) -> xr.Dataset:
 def _variables(atlas: Atlas, frame: Frame) -> dict[str, Variable]:
     """All variables by their names."""
     variables: dict[str, Variable] = {}
-    for table in TABLES:
+    for table in TABLES.values():
         variables |= table.variables(atlas, frame)
     return variables | _subject_variables(atlas, frame)
 
@@ -292,7 +273,14 @@ def _read(dataset: xr.Dataset, source: str) -> Atlas:
     frame = dataset_frame(dataset)
     _check_content(dataset, frame, source)
     try:
-        return _make_atlas(dataset, frame)
+        return read_atlas(
+            dataset,
+            frame,
+            completeness=_read_completeness(str(dataset.attrs["completeness"])),
+            closure_gap=float(dataset.attrs["closure_gap"]),
+            provenance=_read_provenance(str(dataset.attrs["provenance"])),
+            subject=mapping_from_text(str(dataset.attrs["subject"])),
+        )
     except (ValueError, TypeError, KeyError) as error:
         reason = f"what it holds does not fit together ({error})"
         raise AtlasFileError(source, reason) from error
@@ -314,47 +302,19 @@ def _check_format(dataset: xr.Dataset, source: str) -> None:
 def _check_content(dataset: xr.Dataset, frame: Frame, source: str) -> None:
     """Raise `AtlasFileError` unless the dataset has everything that an atlas needs, in
     variables that can be read."""
-    missing = []
-    for table in TABLES:
-        missing += missing_variables(table, dataset, frame)
+    tables = TABLES.values()
+    missing = [name for table in tables for name in table.missing(dataset, frame)]
     missing += [name for name in NEEDED_ATTRIBUTES if name not in dataset.attrs]
     if missing:
         raise AtlasFileError(source, "it lacks " + ", ".join(missing), missing)
-    for table in TABLES:
-        for fault in table_faults(table, dataset, frame):
+    for table in tables:
+        for fault in table.faults(dataset, frame):
             raise AtlasFileError(source, fault)
         for column in table.columns:
             name = frame.name(column.name)
             if name in dataset.variables and not table.is_filled(column, frame):
                 reason = f"its attribute 'filled_dimensions' leaves out those of {name}"
                 raise AtlasFileError(source, reason, ["filled_dimensions"])
-
-
-def _make_atlas(dataset: xr.Dataset, frame: Frame) -> Atlas:
-    """Raises `ValueError`, `TypeError` or `KeyError` where values do not fit
-    together."""
-    attributes = dataset.attrs
-    unknowns = UNKNOWNS.rows(dataset, frame)
-    periods = dataset["period"].values
-    return Atlas(
-        names=tuple(str(row[JOINT]) for row in unknowns),
-        units=tuple(str(row["unit"]) for row in unknowns),
-        periods=periods,
-        forms=tuple(read_form(row, periods) for row in FORMS.rows(dataset, frame)),
-        points=tuple(read_point(row) for row in POINTS.rows(dataset, frame)),
-        near_misses=tuple(map(read_near_miss, NEAR_MISSES.rows(dataset, frame))),
-        dead_points=tuple(map(read_dead_point, DEAD_POINTS.rows(dataset, frame))),
-        rigid=_read_rigid(dataset, frame),
-        surfaces=tuple(
-            read_surface(row, periods) for row in SURFACES.rows(dataset, frame)
-        ),
-        near_motions=tuple(map(read_near_motion, NEAR_MOTIONS.rows(dataset, frame))),
-        completeness=_read_completeness(str(attributes["completeness"])),
-        closure_gap=float(attributes["closure_gap"]),
-        provenance=_read_provenance(str(attributes["provenance"])),
-        subject=mapping_from_text(str(attributes["subject"])),
-        diagram=_read_diagram(dataset, frame),
-    )
 
 
 def _completeness_values(completeness: Completeness) -> dict[str, Any]:
@@ -377,23 +337,6 @@ def _read_completeness(text: str) -> Completeness:
     doubts = tuple(Doubt(**doubt) for doubt in values["doubts"])
     missed = float(values["missed_probability"])
     return Completeness(tuple(claims), doubts, missed)
-
-
-def _read_rigid(dataset: xr.Dataset, frame: Frame) -> np.ndarray:
-    rows = [row["rigid_assembly"] for row in ASSEMBLIES.rows(dataset, frame)]
-    return np.array(rows).reshape(-1, frame.sizes[JOINT])
-
-
-def _read_diagram(dataset: xr.Dataset, frame: Frame) -> Diagram | None:
-    if not int(dataset.attrs["has_diagram"]):
-        return None
-    return Diagram(
-        parameter=str(dataset.attrs["parameter"]),
-        points=tuple(map(read_diagram_point, DIAGRAM_POINTS.rows(dataset, frame))),
-        stretches=tuple(map(read_stretch, STRETCHES.rows(dataset, frame))),
-        branchings=tuple(map(read_branching, BRANCHINGS.rows(dataset, frame))),
-        remarks=tuple(map(read_remark, REMARKS.rows(dataset, frame))),
-    )
 
 
 def _read_provenance(text: str) -> Provenance:

@@ -18,23 +18,16 @@ from typing import TYPE_CHECKING, Protocol, TypeAlias
 import numpy as np
 
 from bifurc.errors import ProblemError
-from bifurc.numerics.sparse_factors import sparse_factors
+from bifurc.numerics.bordered import SparseBordered
 
 if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
-    from scipy.sparse import csc_array, csr_array
-    from scipy.sparse.linalg import SuperLU
+    from scipy.sparse import csr_array
 
-# largest entry of the borders of a factored matrix, over the median one of the matrix
-BORDER = 1e-3
 # What is left of a system by GMRES, in the unit of solutions and as a share of this one:
 # where points are located, and for a step of Newton's method on the way.
 EXACT, ROUGH = 1e-10, 1e-5
 UNSOLVED = 1e-3  # the same: from here on a system is not solved
-ROUNDING = 1e-13  # of entries, over the typical one
-# Solutions that are so large come of a matrix that counts as exactly singular: the
-# square of what comes out must still be a double.
-OVERFLOW = 1e100
 KRYLOV_DIMENSION, CYCLES = 40, 6
 
 Map: TypeAlias = Callable[[np.ndarray], np.ndarray]
@@ -75,79 +68,11 @@ def bordered_system(
     A system that GMRES does not solve raises `ProblemError`, unless the accuracy is no
     better than `ROUGH`: Newton's method then goes on with what there is.
     """
+    if inverse is None:
+        return SparseBordered(jacobian, rows, columns, may_be_singular=True)
     if columns is None:
         columns = np.empty((jacobian.shape[0], 0))
-    if inverse is None:
-        return _Factored(jacobian, rows, columns)
     return _Iterated(jacobian, rows, columns, inverse, accuracy)
-
-
-# --- by sparse LU ---------------------------------------------------------------------
-
-
-class _Factored:
-    """The bordered matrix by sparse LU.
-
-    A border must not become a pivot early, as it would fill the factors: it is scaled to
-    a size far below that of J.
-    """
-
-    def __init__(self, jacobian: csr_array, rows: np.ndarray, columns: np.ndarray):
-        from scipy.sparse import csr_array, hstack, vstack
-
-        k = columns.shape[1]
-        # not of all entries: those of the parameter may vanish along a whole branch
-        largest = abs(jacobian).max(axis=1).toarray()
-        typical = float(np.median(largest)) or 1.0
-        self._below = _border_weights(rows, typical, axis=1)
-        self._beside = _border_weights(columns, typical, axis=0)
-        under = csr_array(self._below[:, None] * rows)
-        above = hstack([jacobian, csr_array(columns * self._beside)])
-        below = hstack([under, csr_array((k + 1, k))])
-        matrix = vstack([above, below]).tocsc()
-        self._factors = _factors_of(matrix, typical)
-
-    def solve(self, right: np.ndarray) -> np.ndarray:
-        right = self._weighted(right, self._below)
-        return self._weighted(self._factors.solve(right), self._beside)
-
-    def solve_transposed(self, right: np.ndarray) -> np.ndarray:
-        right = self._weighted(right, self._beside)
-        return self._weighted(self._factors.solve(right, trans="T"), self._below)
-
-    @staticmethod
-    def _weighted(vector: np.ndarray, weights: np.ndarray) -> np.ndarray:
-        """A copy of a vector with its last entries times ``weights``."""
-        weighted = vector.copy()
-        if len(weights):
-            weighted[-len(weights) :] *= weights
-        return weighted
-
-
-def _factors_of(matrix: csc_array, typical: float) -> SuperLU:
-    """The factors of a matrix; of one that is exactly singular, as at a crossing whose
-    numbers are round, or so nearly that solutions overflow, those of what rounding may
-    have made of it."""
-    from scipy.sparse import eye_array
-
-    count = matrix.shape[0]
-    try:
-        factors = sparse_factors(matrix)
-    except RuntimeError:
-        factors = None
-    if factors is not None:
-        solution = typical * factors.solve(np.ones(count))
-        if np.abs(solution).max() < OVERFLOW:
-            return factors
-    shift = ROUNDING * typical * eye_array(count)
-    return sparse_factors((matrix + shift).tocsc())
-
-
-def _border_weights(border: np.ndarray, typical: float, axis: int) -> np.ndarray:
-    """Factors that bring the largest entry of each row or column of a border to a small
-    share of the typical entry of the matrix."""
-    weights: np.ndarray = BORDER * typical / np.abs(border).max(axis=axis)
-    return weights
 
 
 # --- by a solver and GMRES ------------------------------------------------------------

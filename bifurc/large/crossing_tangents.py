@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.decisions import is_without_crossing_speed, is_without_quadratic_terms
-from bifurc.large.crossings import LocatedCrossing
+from bifurc.large.locators import LocatedCrossing
 from bifurc.large.scaled_problem import ScaledProblem
 from bifurc.numerics.binary_forms import lines_of_binary_form, monomials
 from bifurc.numerics.directions import unit_vectors

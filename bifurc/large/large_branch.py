@@ -1,14 +1,58 @@
-"""A traced curve of a large problem, with the special points on it."""
+"""A traced curve of a large problem, with the special points on it: where the parameter
+turns back, where curves cross, and where they nearly do."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from bifurc.branch import Branch, Outcome
-from bifurc.large.large_point import LargeKind, LargePoint
+from bifurc.singular.point import Kind
 from bifurc.units import Units
+
+KINDS = (Kind.FOLD, Kind.CROSSING, Kind.RANK_DROP, Kind.MULTIPLE, Kind.NEAR_MISS)
+
+
+@dataclass(frozen=True, eq=False)
+class LargePoint:
+    """A special point at arclength ``s`` of a branch, at ``u`` (n,), the parameter last.
+
+    ``gap`` is what F misses there, over the magnitude, to be singular: the smallest
+    singular value at a near miss, rounding at the others. ``bend``: the second
+    derivative of the parameter in the arclength at a fold. ``null_vectors`` (q, n) are
+    the directions across the branch in which F' vanishes where its rank drops by q.
+    ``directions`` (k, n): du/ds of the curves that pass at a crossing, the first that of
+    the branch; u + 0.1 directions[1] is a start on another one. ``order`` is that of
+    the derivatives of F that give them, 0 where they give none besides the first.
+    """
+
+    kind: Kind
+    s: float
+    u: np.ndarray
+    gap: float
+    bend: float = 0.0
+    directions: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))
+    null_vectors: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))
+    order: int = 0
+
+    @property
+    def multiplicity(self) -> int:
+        """By how much the rank of F' drops there."""
+        return len(self.null_vectors)
+
+    @property
+    def parameter(self) -> float:
+        """The parameter there."""
+        return float(self.u[-1])
+
+    def __repr__(self) -> str:
+        place = f"{self.parameter:.12g} at s = {self.s:.6g}"
+        times = f", multiplicity {self.multiplicity}" if self.multiplicity > 1 else ""
+        return (
+            f"<LargePoint: {self.kind.value}{times}, parameter {place}, "
+            f"gap {self.gap:.2g}>"
+        )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -61,25 +105,25 @@ class LargeBranch:
     @property
     def folds(self) -> tuple[LargePoint, ...]:
         """The points where the parameter turns back."""
-        return self.points_of(LargeKind.FOLD)
+        return self.points_of(Kind.FOLD)
 
     @property
     def crossings(self) -> tuple[LargePoint, ...]:
         """The points where another curve passes."""
-        return self.points_of(LargeKind.CROSSING)
+        return self.points_of(Kind.CROSSING)
 
     @property
     def near_misses(self) -> tuple[LargePoint, ...]:
         """The minima of the smallest singular value above zero."""
-        return self.points_of(LargeKind.NEAR_MISS)
+        return self.points_of(Kind.NEAR_MISS)
 
-    def points_of(self, kind: LargeKind) -> tuple[LargePoint, ...]:
+    def points_of(self, kind: Kind) -> tuple[LargePoint, ...]:
         """The special points of one kind."""
         return tuple(point for point in self.points if point.kind is kind)
 
     def __repr__(self) -> str:
         kinds = [point.kind.value for point in self.points]
-        counts = [f"{kind.value}: {kinds.count(kind.value)}" for kind in LargeKind]
+        counts = [f"{kind.value}: {kinds.count(kind.value)}" for kind in KINDS]
         return (
             f"<LargeBranch in {self.branch.n} unknowns, {self.outcome.value}\n"
             f" length {self.length:.6g}, {len(self.branch.pieces)} pieces; "

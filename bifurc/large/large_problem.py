@@ -18,7 +18,6 @@ from bifurc.checks import (
 from bifurc.decisions import is_derivative
 from bifurc.equations.recording import record
 from bifurc.errors import ProblemError
-from bifurc.large.colouring import column_groups
 
 if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
@@ -321,3 +320,24 @@ def _checked_bounds(bounds: Sequence[float]) -> np.ndarray:
         allowed = "(low, high) of the parameter, finite, with low < high"
         raise ProblemError("bounds", bounds, allowed)
     return checked
+
+
+def column_groups(pattern: csr_array) -> np.ndarray:
+    """The number of the group (n,) of each column of a pattern (m, n), from 0 on.
+
+    Each column joins the first group in which none shares a row with it, so that one
+    evaluation of a function along a group gives all derivatives in its columns (Curtis,
+    Powell and Reid 1974).
+    """
+    counts = pattern.astype(np.int32)
+    counts.data[:] = 1
+    sharing = (counts.T @ counts).tocsr()
+    groups = np.full(pattern.shape[1], -1)
+    for column in range(len(groups)):
+        row = slice(sharing.indptr[column], sharing.indptr[column + 1])
+        taken = set(groups[sharing.indices[row]].tolist())
+        group = 0
+        while group in taken:
+            group += 1
+        groups[column] = group
+    return groups

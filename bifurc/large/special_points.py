@@ -12,14 +12,18 @@ from bifurc.decisions import (
     stands_out,
 )
 from bifurc.large.crossing_tangents import null_vectors_across, tangents_at
-from bifurc.large.crossings import LocatedCrossing, locate_crossing
-from bifurc.large.folds import locate_fold
-from bifurc.large.large_branch import last_unknown
-from bifurc.large.large_point import LargeKind, LargePoint
+from bifurc.large.large_branch import LargePoint, last_unknown
+from bifurc.large.locators import LocatedCrossing, locate_crossing, locate_fold
 from bifurc.large.scaled_problem import ScaledProblem
-from bifurc.large.singular_profile import SingularProfile, triples_at, unit_tangent
-from bifurc.large.smallest_singular_values import SingularTriple
-from bifurc.large.vanishing_group import vanishing_group, zero_ahead
+from bifurc.large.singular_triples import (
+    SingularProfile,
+    SingularTriple,
+    triples_at,
+    unit_tangent,
+    vanishing_group,
+    zero_ahead,
+)
+from bifurc.singular.point import Kind
 
 BEYOND = 1.5  # distances to the next place within which a zero is looked for
 FOOT_STEPS = 5  # of Newton's method to the foot of a point
@@ -42,7 +46,7 @@ def folds_on(problem: ScaledProblem, branch: Branch) -> list[LargePoint]:
             continue
         u = problem.own_units.outwards(located.point)
         bend = located.bend * float(problem.own_units.sizes[-1])
-        points.append(LargePoint(LargeKind.FOLD, s, u, located.gap, bend))
+        points.append(LargePoint(Kind.FOLD, s, u, located.gap, bend))
     return points
 
 
@@ -139,10 +143,10 @@ def _large_point(
     other curves through it."""
     tangent = unit_tangent(branch, s)
     tangents = tangents_at(problem, located, tangent)
-    kind = LargeKind.CROSSING
+    kind = Kind.CROSSING
     if len(tangents.directions) < 2:
         is_simple = located.multiplicity == 1
-        kind = LargeKind.RANK_DROP if is_simple else LargeKind.MULTIPLE
+        kind = Kind.RANK_DROP if is_simple else Kind.MULTIPLE
     sizes = problem.own_units.sizes
     return LargePoint(
         kind,
@@ -176,7 +180,7 @@ def near_misses_on(
         s, value = _minimum(problem, branch, low, high)
         if stands_out(value, 0.5 * float(smallest.max())):
             u = problem.own_units.outwards(branch(s))
-            points.append(LargePoint(LargeKind.NEAR_MISS, s, u, value))
+            points.append(LargePoint(Kind.NEAR_MISS, s, u, value))
     return points
 
 

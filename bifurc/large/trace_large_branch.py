@@ -18,11 +18,10 @@ from bifurc.decisions import (
     is_trivial_field,
 )
 from bifurc.errors import ProblemError
-from bifurc.large.large_branch import LargeBranch
-from bifurc.large.large_point import LargePoint
+from bifurc.large.large_branch import LargeBranch, LargePoint
 from bifurc.large.large_problem import LargeProblem
 from bifurc.large.scaled_problem import ScaledProblem
-from bifurc.large.singular_profile import singular_profile, unit_tangent
+from bifurc.large.singular_triples import singular_profile, unit_tangent
 from bifurc.large.special_points import crossings_on, folds_on, near_misses_on
 from bifurc.numerics.null_spaces import null_vector
 from bifurc.settings import TraceSettings

@@ -9,17 +9,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bifurc import _core
-from bifurc.numerics.sparse_factors import sparse_factors
 from bifurc.problem import Problem, Solver
 
 if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
     from scipy.sparse import csc_array, sparray
+    from scipy.sparse.linalg import SuperLU
 
 FEW = 16  # unknowns of a small matrix
 RANK = 1e-12  # diagonal entries of R below this share of the largest count as zero
 # largest entry of the border of a sparse matrix, over the median one of the matrix
 BORDER = 1e-3
+# Share of the largest entry of a column from which on the diagonal one is the pivot: the
+# first keeps the factors sparse, the second bounds their growth as far as can be.
+PIVOTS = (0.1, 1.0)
+ACCURATE = 1e-10  # backward error of a solution: rounding leaves 1e-14
+ROUNDING = 1e-13  # of entries, over the typical one
+# Solutions that are so large come of a matrix that counts as exactly singular: the
+# square of what comes out must still be a double.
+OVERFLOW = 1e100
 
 
 def as_dense(matrix: np.ndarray | sparray) -> np.ndarray:
@@ -89,48 +97,13 @@ def _solver(
     that holds."""
     if is_square and not isinstance(jacobian, np.ndarray):
         with suppress(RuntimeError):  # "exactly singular": left to QR
-            return sparse_bordered(jacobian, tangent)
+            return SparseBordered(jacobian, tangent[None]).solve
     matrix = bordered_matrix(jacobian, tangent)
     by_lu = _lu_solver(matrix) if is_square else None
     return by_lu or _qr_solver(matrix)
 
 
-def sparse_bordered(jacobian: np.ndarray | sparray, tangent: np.ndarray) -> Solver:
-    """The function that solves [F'; t] x = right, (n,) or (n, k), for a sparse F' (n -
-    1, n), by sparse LU.
-
-    The border must not become a pivot early, as it would fill the factors: t is scaled
-    to a size far below that of F'. Raises `RuntimeError` for a matrix that is exactly
-    singular.
-    """
-    from scipy.sparse import csc_array
-
-    matrix = csc_array(jacobian)
-    typical = float(np.median(np.abs(matrix.data))) or 1.0
-    weight = BORDER * typical / np.abs(tangent).max()
-    stacked = _with_last_row(matrix, weight * tangent)
-    factors = sparse_factors(stacked)
-
-    def solve(right: np.ndarray) -> np.ndarray:
-        right = right.copy()
-        right[-1] *= weight
-        solution: np.ndarray = factors.solve(right)
-        return solution
-
-    return solve
-
-
-def _with_last_row(matrix: csc_array, row: np.ndarray) -> csc_array:
-    """The matrix (m + 1, n) of a sparse one (m, n) and a dense row (n,) under it: one
-    entry more at the end of every column."""
-    from scipy.sparse import csc_array
-
-    m, n = matrix.shape
-    ends = matrix.indptr[1:]
-    entries = np.insert(matrix.data, ends, row)
-    rows = np.insert(matrix.indices, ends, m)
-    starts = matrix.indptr + np.arange(n + 1, dtype=matrix.indptr.dtype)
-    return csc_array((entries, rows, starts), shape=(m + 1, n))
+# --- dense ------------------------------------------------------------------------------
 
 
 def _lu_solver(matrix: np.ndarray) -> Solver | None:
@@ -179,3 +152,107 @@ def _qr_solver(matrix: np.ndarray) -> Solver:
         return solution
 
     return solve
+
+
+# --- sparse -----------------------------------------------------------------------------
+
+
+class SparseBordered:
+    """Solutions of systems with the square matrix
+
+        [ J  B ]      J (n - 1, n), sparse, B (n - 1, k)
+        [ C  0 ]      C (k + 1, n)
+
+    and with its transpose, by sparse LU.
+
+    A border must not become a pivot early, as it would fill the factors: it is scaled to
+    a size far below that of J. A matrix that is exactly singular, as at a crossing whose
+    numbers are round, raises `RuntimeError`, unless it ``may_be_singular``: then it, or
+    one so nearly singular that solutions overflow, is what rounding may have made of it.
+    """
+
+    def __init__(
+        self,
+        jacobian: sparray,
+        rows: np.ndarray,
+        columns: np.ndarray | None = None,
+        may_be_singular: bool = False,
+    ):
+        from scipy.sparse import csr_array, hstack, vstack
+
+        if columns is None:
+            columns = np.empty((jacobian.shape[0], 0))
+        # not of all entries: those of the parameter may vanish along a whole branch
+        largest = abs(jacobian).max(axis=1).toarray()
+        typical = float(np.median(largest)) or 1.0
+        self._below = BORDER * typical / np.abs(rows).max(axis=1)
+        self._beside = BORDER * typical / np.abs(columns).max(axis=0)
+        above = hstack([jacobian, csr_array(columns * self._beside)])
+        nothing = csr_array((len(rows), columns.shape[1]))
+        below = hstack([csr_array(self._below[:, None] * rows), nothing])
+        matrix = vstack([above, below]).tocsc()
+        if may_be_singular:
+            self._factors = _factors_by_rounding(matrix, typical)
+        else:
+            self._factors = sparse_factors(matrix)
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """x, (n + k,) or (n + k, j), with M x = ``right``."""
+        right = _weighted(right, self._below)
+        return _weighted(self._factors.solve(right), self._beside)
+
+    def solve_transposed(self, right: np.ndarray) -> np.ndarray:
+        """x with M^T x = ``right`` (n + k,)."""
+        right = _weighted(right, self._beside)
+        return _weighted(self._factors.solve(right, trans="T"), self._below)
+
+
+def _weighted(vectors: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """A copy of vectors, (n,) or (n, j), with their last entries times ``weights``."""
+    weighted = vectors.copy()
+    if len(weights):
+        weighted[-len(weights) :] = (weighted[-len(weights) :].T * weights).T
+    return weighted
+
+
+def _factors_by_rounding(matrix: csc_array, typical: float) -> SuperLU:
+    """The factors of a matrix with entries of a ``typical`` size; of one that is exactly
+    singular, or so nearly that solutions overflow, those of what rounding may have made
+    of it."""
+    from scipy.sparse import eye_array
+
+    count = matrix.shape[0]
+    with suppress(RuntimeError):
+        factors = sparse_factors(matrix)
+        solution = typical * factors.solve(np.ones(count))
+        if np.abs(solution).max() < OVERFLOW:
+            return factors
+    shift = ROUNDING * typical * eye_array(count)
+    return sparse_factors((matrix + shift).tocsc())
+
+
+def sparse_factors(matrix: csc_array) -> SuperLU:
+    """The LU factors of a square matrix, columns ordered by minimum degree of A^T + A.
+
+    A small diagonal pivot is taken where that saves entries. Along a chain of equations
+    the factors may grow by the inverse of it in each of them, until no digit is left: so
+    a system is solved, and where its backward error is more than rounding the matrix is
+    factored again with the largest pivots. Raises `RuntimeError` for a matrix that is
+    exactly singular.
+    """
+    from scipy.sparse.linalg import splu
+
+    size = float(np.linalg.norm(matrix.data))
+    right = np.cos(np.arange(matrix.shape[0]))
+    for pivot in PIVOTS:
+        try:
+            factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=pivot)
+        except RuntimeError:
+            if pivot == PIVOTS[-1]:
+                raise
+            continue
+        solution = factors.solve(right)
+        left = float(np.linalg.norm(matrix @ solution - right))
+        if left <= ACCURATE * size * float(np.linalg.norm(solution)):
+            break
+    return factors

@@ -19,7 +19,6 @@ from numpy.polynomial import chebyshev
 from bifurc.numerics.blur import ROUNDING, known_to
 from bifurc.numerics.bordered import Bordered, bordered_at
 from bifurc.numerics.corrector import correct_across, last_step
-from bifurc.numerics.null_spaces import LARGE
 from bifurc.pieces import points_on_piece
 from bifurc.problem import (
     CurveNodes,
@@ -194,7 +193,7 @@ def _known_to(problem: Problem, point: np.ndarray, misclosure: float) -> float:
     """The distance, over the scale, to which a point (n,) of a curve with a
     ``misclosure`` is known; 0 for a large problem, of which singular values are not
     taken."""
-    if problem.n > LARGE:
+    if problem.is_large:
         return 0.0
     by_rounding = float(known_to(problem, point[None])[0])
     return by_rounding * max(1.0, misclosure / ROUNDING)

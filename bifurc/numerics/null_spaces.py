@@ -16,8 +16,6 @@ from bifurc.numerics.bordered import bordered_at
 from bifurc.numerics.singular_values import factors_of
 from bifurc.problem import Problem
 
-# unknowns beyond which tangents come from bordered systems instead of an SVD
-LARGE = 64
 # stands in a denominator where a singular value is zero: the square of what comes out
 # is still a double
 TINY = 1e-140
@@ -38,7 +36,7 @@ def null_vector(
     else with a fixed direction. Where the null space is larger, that is projected on it.
     A large problem is bordered instead of decomposed.
     """
-    if problem.n > LARGE:
+    if problem.is_large:
         return _null_vector_by_borders(problem, point, along)
     jacobian = problem.jacobian(point)
     if not isinstance(jacobian, np.ndarray):

@@ -9,23 +9,24 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import Certificate
-from bifurc.curves.lower_rank import ORDINARY, LowerRank, lower_rank_along
+from bifurc.curves.deflation import ORDINARY, LowerRank, lower_rank_along
 from bifurc.curves.minima import singular_value_minima
+from bifurc.curves.misclosure import largest_misclosure
 from bifurc.curves.monitor import Profile, profile_branch
 from bifurc.decisions import (
     is_deep_place,
     is_passed,
     is_singular_to_rounding,
     may_be_crossed,
+    may_be_known,
 )
 from bifurc.numerics.blur import blur_along
 from bifurc.numerics.singular_values import singular_values
 from bifurc.search.canonical_course import canonical_course
 from bifurc.search.certification import certificate_of
-from bifurc.search.findings import PointSighting, TracedBranch
+from bifurc.search.findings import PointSighting, Run, TracedBranch
 from bifurc.search.point_search import BRANCH_REACH, PointSearch
-from bifurc.search.run import Run
-from bifurc.search.start import Start, half_branch_starts
+from bifurc.search.starts import Start, half_branch_starts
 from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.point import SingularPoint
 
@@ -80,9 +81,13 @@ class BranchExaminer:
         self.problem = run.problem
         self.points = points
 
-    def examine(self, branch: Branch, misclosure: float) -> ExaminedBranch:
-        """Look for the singular points on a branch with a ``misclosure``, and certify
-        it between them."""
+    def examine(
+        self, branch: Branch, misclosure: float | None = None
+    ) -> ExaminedBranch:
+        """Look for the singular points on a branch with a ``misclosure``, which is
+        measured unless given, and certify it between them."""
+        if misclosure is None:
+            misclosure = largest_misclosure(self.problem, branch)
         branch = canonical_course(self.problem, branch)
         profile = profile_branch(self.problem, branch)
         minima = singular_value_minima(self.problem, branch, profile)
@@ -217,7 +222,7 @@ class BranchExaminer:
         ``misclosure``."""
         for arclength in candidate.looks:
             near = branch(arclength)
-            known = self.run.findings.point_seen_from(near)
+            known = self.run.findings.point_at(near, 0.0, may_be_known)
             if known is not None and known.point.dimension == 1:
                 return known
             values = singular_values(self.problem, near[None])[0]

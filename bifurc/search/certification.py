@@ -1,4 +1,5 @@
-"""Certificates in a search: made after a branch is traced and before it is recorded."""
+"""Certificates: of a branch that was traced, before it is recorded, and of all forms of an
+atlas."""
 
 from __future__ import annotations
 
@@ -7,7 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from bifurc.atlas import Atlas
 from bifurc.branch import Branch, Outcome
+from bifurc.checks import check_type
 from bifurc.curves.certificate import (
     HANDOVER,
     Certificate,
@@ -17,6 +20,7 @@ from bifurc.curves.certificate import (
 )
 from bifurc.curves.jumps import changes_of_course, kinks, repeats_itself
 from bifurc.curves.monitor import Profile
+from bifurc.errors import ProblemError
 from bifurc.numerics.blur import known_to
 from bifurc.problem import Problem
 from bifurc.search.findings import TracedBranch
@@ -102,3 +106,26 @@ def finer_settings(settings: TraceSettings) -> Iterator[TraceSettings]:
     if shortest < longest:
         yield replace(finest, shortest=shortest)
         yield replace(finest, shortest=shortest, longest=longest)
+
+
+def certify_atlas(problem: Problem, atlas: Atlas) -> Atlas:
+    """The atlas with a certificate on every form, from singular point to singular
+    point."""
+    check_type("problem", problem, Problem)
+    check_type("atlas", atlas, Atlas)
+    if atlas.names != problem.names:
+        raise ProblemError("unknowns of the atlas", atlas.names, str(problem.names))
+    forms = []
+    for index, form in enumerate(atlas.forms):
+        stops = _singular_arclengths(atlas, index)
+        certificate = certify_branch(problem, form.branch, form.profile, stops)
+        forms.append(replace(form, certificate=certificate))
+    return replace(atlas, forms=tuple(forms))
+
+
+def _singular_arclengths(atlas: Atlas, form: int) -> list[float]:
+    """Arclengths at which a form, given by its index, passes a singular point."""
+    arclengths = []
+    for point in atlas.points:
+        arclengths += [s for index, s in point.passes if index == form]
+    return arclengths

@@ -6,6 +6,7 @@ import logging
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,10 +18,10 @@ from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.threads import one_thread
 from bifurc.problem import Problem
-from bifurc.search.assemble import assemble_atlas
-from bifurc.search.restated import restated
+from bifurc.search.answer.assemble import assemble_atlas
+from bifurc.search.own_units.restated import restated
+from bifurc.search.own_units.unit_problem import UnitProblem, in_one_size, in_own_units
 from bifurc.search.search import Search
-from bifurc.search.unit_problem import UnitProblem, in_one_size, in_own_units
 from bifurc.seeds import Seeds
 from bifurc.settings import SearchSettings
 
@@ -70,34 +71,38 @@ def explore(
     if parameter is not None:
         parameter_index(problem.names, parameter)
     events_of({} if events is None else events, problem.names)
+    request = _Request(settings, int(seed), seeds, progress)
     with one_thread(problem.n):
-        atlas = _explored_in_any_units(problem, settings, seed, seeds, progress)
+        atlas = _explored_in_any_units(problem, request)
         if parameter is None and not events:
             return atlas
         diagram = diagram_of(problem, atlas, parameter, events, is_flow=is_flow)
         return replace(atlas, diagram=diagram)
 
 
-def _explored_in_any_units(
-    problem: Problem,
-    settings: SearchSettings,
-    seed: int,
-    seeds: Seeds | None,
-    progress: Callable[[str, int], None] | None,
-) -> Atlas:
+class _Request(NamedTuple):
+    """What `explore` is asked for."""
+
+    settings: SearchSettings
+    seed: int
+    seeds: Seeds | None
+    progress: Callable[[str, int], None] | None
+
+
+def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
     """The atlas, found in units of the search's own where the problem lets it."""
     began = time.perf_counter()
-    own = in_own_units(problem, Deadline(settings.budget, began))
+    own = in_own_units(problem, Deadline(request.settings.budget, began))
     if own is None:
-        return _explored(problem, settings, seed, seeds, progress, began)
-    atlas = _explored_in_units(own, settings, seed, seeds, progress, began)
+        return _explored(problem, request, began)
+    atlas = _explored_in_units(own, request, began)
     has_lengths = bool(atlas.surfaces or atlas.near_motions)
     if has_lengths and not own.own_units.is_uniform:
         # areas and lengths are those of the user only where all sizes are one:
         # the search is made again, with a budget of its own
         first = time.perf_counter() - began
-        own, began = in_one_size(own), time.perf_counter()
-        atlas = _explored_in_units(own, settings, seed, seeds, progress, began)
+        own = in_one_size(own)
+        atlas = _explored_in_units(own, request, time.perf_counter())
         whole = first + atlas.provenance.seconds
         atlas = replace(atlas, provenance=replace(atlas.provenance, seconds=whole))
     multiplicities = [
@@ -106,53 +111,26 @@ def _explored_in_any_units(
     return restated(atlas, problem, own.own_units, multiplicities)
 
 
-def _explored_in_units(
-    own: UnitProblem,
-    settings: SearchSettings,
-    seed: int,
-    seeds: Seeds | None,
-    progress: Callable[[str, int], None] | None,
-    began: float,
-) -> Atlas:
-    """The atlas of a problem in units of its own, in these units; the ``seeds`` are in
-    those of the user."""
-    if seeds is not None:
-        seeds = own.seeds_inwards(seeds)
-    return _explored(own, settings, seed, seeds, progress, began)
+def _explored_in_units(own: UnitProblem, request: _Request, began: float) -> Atlas:
+    """The atlas of a problem in units of its own, in these units."""
+    if request.seeds is not None:
+        request = request._replace(seeds=own.seeds_inwards(request.seeds))
+    return _explored(own, request, began)
 
 
-def _explored(
-    problem: Problem,
-    settings: SearchSettings,
-    seed: int,
-    seeds: Seeds | None,
-    progress: Callable[[str, int], None] | None,
-    began: float,
-) -> Atlas:
+def _explored(problem: Problem, request: _Request, began: float) -> Atlas:
     """The atlas of a problem, in the units in which it stands."""
-    search = Search(problem, settings, progress, Deadline(settings.budget, began))
+    deadline = Deadline(request.settings.budget, began)
+    search = Search(problem, *request, deadline)
     interrupted = False
     try:
-        with search.run.interrupt:
-            search.gather_seeds(seeds, seed)
-            search.sort_seeds()
-            search.trace_seeds()
-            search.draw_more_starts(int(seed))
-            search.look_where_starts_stop()
-            search.cover_surfaces()
-            search.trace_singular_curves()
-            search.separate_points()
-            search.join_branches()
-            search.mend_at_germs()
-            search.audit_branches()
-            search.audit_in_boxes()
-            search.near_motions.look()
+        search.take_steps()
     except KeyboardInterrupt:
         interrupted = True
         log.warning("interrupted: the atlas holds what was found so far")
     provenance = Provenance(
-        seed=int(seed),
-        settings=settings,
+        seed=request.seed,
+        settings=request.settings,
         interrupted=interrupted,
         out_of_time=search.run.is_over and not interrupted,
         derivatives=problem.derivatives,

@@ -1,11 +1,11 @@
-"""What a search knows so far."""
+"""What a search knows so far, and what its parts share."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import compress
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -20,14 +20,14 @@ from bifurc.decisions import (
     is_same_point,
     is_weakly_isolated,
     may_be_known,
-    may_be_weak,
 )
-from bifurc.numerics.blur import same_reach
+from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.components import Components
-from bifurc.search.seed_fates import Fate, SeedFate
-from bifurc.seeds import Audit, Seeds
+from bifurc.search.seed_book import Fate, SeedBook, SeedFate, reach_of_places
+from bifurc.seeds import Audit
+from bifurc.settings import SearchSettings
 from bifurc.singular.point import SingularPoint
 
 if TYPE_CHECKING:
@@ -36,18 +36,31 @@ if TYPE_CHECKING:
 # Shares of its length at which a branch is compared with those already known.
 PLACES = np.array([0.11, 0.29, 0.47, 0.71, 0.93])
 SHARPER = 1e-2  # times the distance of two assemblies: where they are weak
+NO_DOUBT = (False, False, 0.0)
+
+Item = TypeVar("Item")
 
 
-class Doubt(NamedTuple):
-    """Whether a branch is refused a certificate, whether it stalls, and the arclength
-    on which it is refused; less doubt is the smaller tuple."""
+class Numbered(dict[int, Item], Generic[Item]):
+    """Things of one kind in the order in which they were found, by numbers that they
+    keep: what is forgotten leaves its number to no other one."""
 
-    is_refused: bool
-    is_stalled: bool
-    refused_length: float
+    def __init__(self) -> None:
+        self._count = 0
 
+    def add(self, item: Item) -> int:
+        """The number of a thing just recorded."""
+        self[self._count] = item
+        self._count += 1
+        return self._count - 1
 
-NO_DOUBT = Doubt(is_refused=False, is_stalled=False, refused_length=0.0)
+    def as_they_come(self) -> Iterator[Item]:
+        """All of them, also those that are added meanwhile."""
+        number = 0
+        while number < self._count:
+            if number in self:
+                yield self[number]
+            number += 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,13 +94,13 @@ class TracedBranch:
         return self.certificate is not None and not self.certificate.holds
 
     @property
-    def doubt(self) -> Doubt:
-        """How much of the branch is in doubt."""
+    def doubt(self) -> tuple[bool, bool, float]:
+        """Whether the branch is refused a certificate, whether it stalls, and the
+        arclength on which it is refused; less doubt is the smaller tuple."""
         refused = 0.0
         if self.certificate is not None and self.is_refused:
             refused = self.certificate.refused_length
-        is_stalled = self.branch.outcome is Outcome.STALLED
-        return Doubt(self.is_refused, is_stalled, refused)
+        return self.is_refused, self.branch.outcome is Outcome.STALLED, refused
 
 
 class PointSighting(NamedTuple):
@@ -97,31 +110,37 @@ class PointSighting(NamedTuple):
     number: int
     is_new: bool
 
+    @property
+    def fate(self) -> SeedFate:
+        """That of a seed there."""
+        return SeedFate(Fate.AT_SINGULAR_POINT, self.number)
+
+
+class RigidAssembly(NamedTuple):
+    """An isolated solution at a ``place`` (n,). It, or several, lie ``hidden`` by
+    rounding up to so far from there."""
+
+    place: np.ndarray
+    hidden: float
+
 
 class Findings:
     """Branches, singular points, near motions, rigid assemblies and components of a
-    problem, nothing twice; and the seeds they come from.
+    problem, nothing twice; and the ``book`` of the seeds that they come from.
 
-    ``seed_values`` (k, n) are the singular values at the seeds, ``seed_reach`` (k,) is
-    how far from their curves they may have been found, ``fates`` what is known
-    of each by its number. ``gaps`` are the residuals of starts that only nearly solve
-    the system, ``gaps_of_stops`` those of starts that end short of one about nothing that
-    is known. ``audit`` is the last word on what the branches leave out.
+    ``gaps`` are the residuals of starts that only nearly solve the system,
+    ``gaps_of_stops`` those of starts that end short of one about nothing that is known.
+    ``audit`` is the last word on what the branches leave out.
     """
 
     def __init__(self, problem: Problem):
-        nowhere = np.empty((0, problem.n))
         self.problem = problem
-        self.seeds = Seeds(nowhere, np.empty(0, dtype=bool), np.empty(0), nowhere)
-        self.seed_values = nowhere
-        self.seed_reach = np.empty(0)
-        self.fates: dict[int, SeedFate] = {}
-        self.traced: list[TracedBranch] = []
-        self.points: list[SingularPoint] = []
+        self.book = SeedBook(problem)
+        self.traced: Numbered[TracedBranch] = Numbered()
+        self.points: Numbered[SingularPoint] = Numbered()
         self.germs: list[Germ] = []  # of some of the points
-        self.rigid: list[np.ndarray] = []
-        self.hidden: list[float] = []  # about each of them
-        self.near_motions: list[NearMotionTrace] = []
+        self.rigid: Numbered[RigidAssembly] = Numbered()
+        self.near_motions: Numbered[NearMotionTrace] = Numbered()
         self.short_stretches: list[NearMotionTrace] = []
         self.near_surfaces: list[NearSurface] = []
         self.components = Components()
@@ -133,231 +152,198 @@ class Findings:
     @property
     def branches(self) -> list[Branch]:
         """The traced branches, in the order in which they were found."""
-        return [traced.branch for traced in self.traced]
-
-    # --- seeds ------------------------------------------------------------------------
-
-    @property
-    def open_seeds(self) -> list[int]:
-        """Numbers of the seeds of which nothing is known yet."""
-        return [k for k in range(len(self.seeds.points)) if k not in self.fates]
-
-    def add_seeds(self, seeds: Seeds, values: np.ndarray) -> None:
-        """Replace the seeds by ``seeds``, which begin with those known so far;
-        ``values`` (k, n) are the singular values at the new ones."""
-        self.seeds = seeds
-        self.seed_values = np.concatenate([self.seed_values, values])
-        own = self._same_place(seeds.points[len(self.seed_reach) :], values)
-        self.seed_reach = np.concatenate([self.seed_reach, own])
+        return [traced.branch for traced in self.traced.values()]
 
     def set_components(self, components: Components) -> None:
         """Record the components of higher dimension, and the seeds that lie on them."""
         self.components = components
         for dimension, numbers in components.seeds.items():
-            self._settle(numbers, SeedFate(Fate.ON_COMPONENT, dimension))
-        self._settle(components.on_shaky, SeedFate(Fate.ON_COMPONENT, 2))
-
-    def reopen_seeds(self, numbers: Iterable[int]) -> None:
-        """Forget what is known of some seeds."""
-        for number in numbers:
-            del self.fates[number]
-
-    def match_seeds(self, numbers: Sequence[int], branch: int) -> list[int]:
-        """Those of the seeds that do not lie on a branch, given by its number; the fate
-        of the others is settled."""
-        if not numbers:
-            return []
-        points = self.seeds.points[list(numbers)]
-        within = self.seed_reach[list(numbers)]
-        reach = float(within.max())
-        distance, _ = self.traced[branch].branch.nearest(points, within=reach)
-        is_on = may_be_known(distance, within / may_be_known.threshold)
-        matching = list(compress(numbers, is_on))
-        self._settle(matching, SeedFate(Fate.ON_FORM, branch))
-        return list(compress(numbers, ~is_on))
-
-    def _settle(self, numbers: Iterable[int], fate: SeedFate) -> None:
-        for number in numbers:
-            self.fates[number] = fate
-
-    # --- branches ---------------------------------------------------------------------
-
-    def add_branch(self, traced: TracedBranch) -> int:
-        """The number of a branch just recorded, which no audit has seen."""
-        self.traced.append(traced)
-        self.awaits_audit = True
-        return len(self.traced) - 1
-
-    def replace_branches(self, one: int, other: int, traced: TracedBranch) -> None:
-        """Put a branch in the place of number ``one``, which it is together with number
-        ``other``."""
-        self.traced[one] = traced
-        if other != one:
-            del self.traced[other]
-        for number, fate in self.fates.items():
-            if fate.fate is not Fate.ON_FORM or other == one:
-                continue
-            branch = one if fate.number == other else fate.number
-            self.fates[number] = SeedFate(Fate.ON_FORM, branch - (branch > other))
-        self.awaits_audit = True
-
-    def supersede_branches(
-        self, numbers: Sequence[int], traced: Sequence[TracedBranch]
-    ) -> None:
-        """Put branches in the place of those with some ``numbers``, and forget which
-        seeds lie on these."""
-        kept = [k for k in range(len(self.traced)) if k not in numbers]
-        renumbered = {number: place for place, number in enumerate(kept)}
-        self.traced = [self.traced[number] for number in kept] + list(traced)
-        for seed, fate in list(self.fates.items()):
-            if fate.fate is not Fate.ON_FORM:
-                continue
-            if fate.number in renumbered:
-                self.fates[seed] = SeedFate(Fate.ON_FORM, renumbered[fate.number])
-            else:
-                del self.fates[seed]
-        self.awaits_audit = True
-
-    def forget_covered(self, doubtful: Sequence[TracedBranch]) -> None:
-        """Forget those of the ``doubtful`` branches that run along others wherever they
-        solve anything."""
-        others = [one.branch for one in self.traced if one not in doubtful]
-        for traced in doubtful:
-            numbers = [k for k, one in enumerate(self.traced) if one is traced]
-            points = traced.branch(traced.branch.length * PLACES)
-            gaps = self.problem.gaps(points)
-            points = points[is_same_point(gaps, self.problem.scale)]
-            if numbers and self._are_on(others, points):
-                self.supersede_branches(numbers, [])
-
-    def _are_on(self, branches: Sequence[Branch], points: np.ndarray) -> bool:
-        """Whether each of the points (k, n) lies on one of the ``branches``."""
-        within = self._same_place(points)
-        are_there = np.zeros(len(points), dtype=bool)
-        for branch in branches:
-            distance, _ = branch.nearest(points)
-            are_there |= is_same_point(distance, within / is_same_point.threshold)
-        return bool(np.all(are_there))
-
-    def branch_through(self, point: np.ndarray, within: float = 0.0) -> int | None:
-        """The number of the first branch through a point (n,), as far as that is known,
-        or at less than ``within`` scales from it."""
-        known_to = float(self._same_place(point[None])[0])
-        reach = max(known_to, within * self.problem.scale)
-        for number, branch in enumerate(self.branches):
-            distance, _ = branch.nearest(point, within=reach)
-            unit = reach / may_be_known.threshold
-            if may_be_known(float(distance[0]), unit):
-                return number
-        return None
-
-    def branch_along(self, branch: Branch) -> int | None:
-        """The number of the first known branch that runs along another one."""
-        for number, known in enumerate(self.branches):
-            if self._runs_along(known, branch):
-                return number
-        return None
-
-    def forget_parts(self) -> None:
-        """Forget branches that stalled on the way along another one, which was followed
-        farther from another start."""
-        for number in range(len(self.traced) - 1, -1, -1):
-            branch = self.traced[number].branch
-            if branch.outcome is not Outcome.STALLED:
-                continue
-            for other, longer in enumerate(self.branches):
-                is_longer = other != number and longer.length > branch.length
-                if is_longer and self._runs_along(longer, branch):
-                    self.replace_branches(other, number, self.traced[other])
-                    break
-
-    def _runs_along(self, one: Branch, other: Branch) -> bool:
-        """Whether a branch passes all along another one."""
-        return self._are_on([one], other(other.length * PLACES))
-
-    def _same_place(
-        self, points: np.ndarray, values: np.ndarray | None = None
-    ) -> np.ndarray:
-        """How far from a curve points (k, n) of it may be found; ``values`` (k, n) are
-        the singular values there, where they are known."""
-        if values is None:
-            values = singular_values(self.problem, points)
-        reach = np.full(len(points), is_same_point.threshold)
-        weak = np.flatnonzero(may_be_weak(values[:, max(self.problem.n - 2, 0)]))
-        own = same_reach(self.problem, points[weak], values[weak])
-        reach[weak] = np.maximum(reach[weak], own)
-        within: np.ndarray = reach * self.problem.scale
-        return within
-
-    def near_motion_through(self, point: np.ndarray) -> int | None:
-        """The number of the first near motion on which a point (n,) lies, as far as
-        that is known."""
-        for number, near in enumerate(self.near_motions):
-            if near.runs_through(self.problem, point[None])[0]:
-                return number
-        return None
-
-    def is_on_short_stretch(self, point: np.ndarray) -> bool:
-        """Whether a point (n,) lies on a curve that is too short for a near motion."""
-        place = point[None]
-        return any(
-            near.runs_through(self.problem, place)[0] for near in self.short_stretches
-        )
-
-    def add_near_motion(self, near: NearMotionTrace) -> int | None:
-        """The number of a near motion, which is recorded, with its assemblies, if it is
-        new: if it does not run along a known one for the most part. None for a short
-        one."""
-        if near.is_short:
-            self.short_stretches.append(near)
-            return None
-        points = near.branch(near.length * PLACES)
-        for number, known in enumerate(self.near_motions):
-            if np.median(known.runs_through(self.problem, points)) > 0.5:
-                return number
-        self.near_motions.append(near)
-        for assembly in near.assemblies:
-            self.rigid_assembly(assembly)
-        return len(self.near_motions) - 1
+            self.book.settle(numbers, SeedFate(Fate.ON_COMPONENT, dimension))
+        self.book.settle(components.on_shaky, SeedFate(Fate.ON_COMPONENT, 2))
 
     def set_audit(self, audit: Audit) -> None:
         """Record what the problem says of the branches known now."""
         self.audit = audit
         self.awaits_audit = False
 
+    # --- branches ---------------------------------------------------------------------
+
+    def add_branch(self, traced: TracedBranch) -> SeedFate:
+        """That of seeds on a branch just recorded, which no audit has seen."""
+        self.awaits_audit = True
+        return SeedFate(Fate.ON_FORM, self.traced.add(traced))
+
+    def match_seeds(self, numbers: Sequence[int], branch: int) -> list[int]:
+        """Those of the seeds that do not lie on a branch, given by its number; the fate
+        of the others is settled."""
+        if not numbers:
+            return []
+        points = self.book.seeds.points[list(numbers)]
+        within = self.book.reach[list(numbers)]
+        reach = float(within.max())
+        distance, _ = self.traced[branch].branch.nearest(points, within=reach)
+        is_on = may_be_known(distance, within / may_be_known.threshold)
+        matching = compress(numbers, is_on)
+        self.book.settle(matching, SeedFate(Fate.ON_FORM, branch))
+        return list(compress(numbers, ~is_on))
+
+    def replace_branches(self, one: int, other: int, traced: TracedBranch) -> None:
+        """Put a branch in the place of number ``one``, which it is together with number
+        ``other``."""
+        self.traced[one] = traced
+        self.awaits_audit = True
+        if other != one:
+            del self.traced[other]
+            one_fate = SeedFate(Fate.ON_FORM, one)
+            self.book.move(SeedFate(Fate.ON_FORM, other), one_fate)
+
+    def forget_branch(self, number: int) -> None:
+        """Forget a branch, and which seeds lie on it."""
+        del self.traced[number]
+        self.book.move(SeedFate(Fate.ON_FORM, number), None)
+        self.awaits_audit = True
+
+    def forget_covered(self, doubtful: Sequence[int]) -> None:
+        """Forget those of the ``doubtful`` branches, given by their numbers, that run
+        along others wherever they solve anything."""
+        others = [one.branch for k, one in self.traced.items() if k not in doubtful]
+        for number in doubtful:
+            branch = self.traced[number].branch
+            points = branch(branch.length * PLACES)
+            gaps = self.problem.gaps(points)
+            points = points[is_same_point(gaps, self.problem.scale)]
+            if self._are_on(others, points):
+                self.forget_branch(number)
+
+    def forget_parts(self) -> None:
+        """Forget branches that stalled on the way along another one, which was followed
+        farther from another start."""
+        for number in reversed(list(self.traced)):
+            branch = self.traced[number].branch
+            if branch.outcome is not Outcome.STALLED:
+                continue
+            for other, longer in self.traced.items():
+                is_longer = longer.branch.length > branch.length
+                if is_longer and self._runs_along(longer.branch, branch):
+                    self.replace_branches(other, number, longer)
+                    break
+
+    def branch_through(self, point: np.ndarray, within: float = 0.0) -> SeedFate | None:
+        """That of a seed on the first branch through a point (n,), as far as that is
+        known, or at less than ``within`` scales from it."""
+        known_to = float(reach_of_places(self.problem, point[None])[0])
+        reach = max(known_to, within * self.problem.scale)
+        for number, traced in self.traced.items():
+            distance, _ = traced.branch.nearest(point, within=reach)
+            unit = reach / may_be_known.threshold
+            if may_be_known(float(distance[0]), unit):
+                return SeedFate(Fate.ON_FORM, number)
+        return None
+
+    def branch_along(self, branch: Branch) -> SeedFate | None:
+        """That of a seed on the first known branch that runs along another one."""
+        for number, known in self.traced.items():
+            if self._runs_along(known.branch, branch):
+                return SeedFate(Fate.ON_FORM, number)
+        return None
+
+    def _runs_along(self, one: Branch, other: Branch) -> bool:
+        """Whether a branch passes all along another one."""
+        return self._are_on([one], other(other.length * PLACES))
+
+    def _are_on(self, branches: Sequence[Branch], points: np.ndarray) -> bool:
+        """Whether each of the points (k, n) lies on one of the ``branches``."""
+        within = reach_of_places(self.problem, points)
+        are_there = np.zeros(len(points), dtype=bool)
+        for branch in branches:
+            distance, _ = branch.nearest(points)
+            are_there |= is_same_point(distance, within / is_same_point.threshold)
+        return bool(np.all(are_there))
+
+    # --- near motions -----------------------------------------------------------------
+
+    def near_motion_through(self, point: np.ndarray) -> SeedFate | None:
+        """That of a seed on the first near motion on which a point (n,) lies, as far as
+        that is known."""
+        for number, near in self.near_motions.items():
+            if near.runs_through(self.problem, point[None])[0]:
+                return SeedFate(Fate.ON_NEAR_MOTION, number)
+        return None
+
+    def add_near_motion(self, near: NearMotionTrace) -> SeedFate | None:
+        """That of a seed on a near motion, which is recorded, with its assemblies, if it
+        is new: if it does not run along a known one for the most part. None for a short
+        one."""
+        if near.is_short:
+            self.short_stretches.append(near)
+            return None
+        points = near.branch(near.length * PLACES)
+        for number, known in self.near_motions.items():
+            if np.median(known.runs_through(self.problem, points)) > 0.5:
+                return SeedFate(Fate.ON_NEAR_MOTION, number)
+        fate = SeedFate(Fate.ON_NEAR_MOTION, self.near_motions.add(near))
+        for assembly in near.assemblies:
+            self.add_assembly(assembly)
+        return fate
+
     # --- points -----------------------------------------------------------------------
 
-    def add_point(self, point: SingularPoint) -> PointSighting:
-        """A singular point just recorded."""
-        self.points.append(point)
-        return PointSighting(point, len(self.points) - 1, is_new=True)
+    def add_point(
+        self, point: SingularPoint, germ: Germ | None = None
+    ) -> PointSighting:
+        """A singular point just recorded. Where its ``germ`` is known, what doubles saw
+        where they lose its branches is that point: points that more digits did not
+        show, and assemblies."""
+        ghosts: list[int] = []
+        assemblies: list[int] = []
+        if germ is not None:
+            self.germs.append(germ)
+            ghosts = [
+                number
+                for number, other in self.points.items()
+                if not other.is_confirmed and self._is_hidden_by(germ, other.u)
+            ]
+            assemblies = [
+                number
+                for number, assembly in self.rigid.items()
+                if self._is_hidden_by(germ, assembly.place)
+            ]
+        sighting = PointSighting(point, self.points.add(point), is_new=True)
+        for number in ghosts:
+            self.forget_point(number, sighting.fate)
+        for number in assemblies:
+            del self.rigid[number]
+            self.book.move(SeedFate(Fate.RIGID, number), sighting.fate)
+        return sighting
 
-    def add_germ(self, germ: Germ) -> None:
-        """Record the germ of a singular point that is recorded next, and forget what
-        doubles saw where they lose its branches: points that more digits did not show,
-        and assemblies."""
-        self.germs.append(germ)
-        upcoming = len(self.points)
-        successors = {
-            number: upcoming
-            for number, point in enumerate(self.points)
-            if not point.is_confirmed and self._is_hidden_by(germ, point.u)
-        }
-        self._drop_points(successors)
-        ghosts = [k for k, u in enumerate(self.rigid) if self._is_hidden_by(germ, u)]
-        for number in reversed(ghosts):
-            self._forget_assembly(number, len(self.points))
+    def forget_point(self, number: int, fate: SeedFate) -> None:
+        """Forget a singular point, given by its number; the seeds there have another
+        ``fate``."""
+        del self.points[number]
+        self.book.move(SeedFate(Fate.AT_SINGULAR_POINT, number), fate)
 
-    def _forget_assembly(self, number: int, point: int) -> None:
-        """Forget a rigid assembly; the seeds there are at a singular ``point``, given by
-        its number."""
-        del self.rigid[number]
-        del self.hidden[number]
-        for seed, fate in list(self.fates.items()):
-            if fate == SeedFate(Fate.RIGID, number):
-                self.fates[seed] = SeedFate(Fate.AT_SINGULAR_POINT, point)
-            elif fate.fate is Fate.RIGID and fate.number > number:
-                self.fates[seed] = SeedFate(Fate.RIGID, fate.number - 1)
+    def merge_points(self, pairs: Sequence[tuple[int, int]]) -> None:
+        """Take each of the ``pairs`` of singular points, by their numbers, for one: that
+        which is confirmed, or else which doubles know less well, for they say so only
+        where they see it. Two of which germs are known are two."""
+        for one, other in pairs:
+            if one not in self.points or other not in self.points:
+                continue
+            if self._has_germ(one) and self._has_germ(other):
+                continue
+            less, more = sorted((one, other), key=self._standing)
+            self.forget_point(less, SeedFate(Fate.AT_SINGULAR_POINT, more))
+
+    def _has_germ(self, number: int) -> bool:
+        """Whether a singular point, given by its number, is where a germ is: the exact
+        equations tell it from others."""
+        u = self.points[number].u
+        return any(np.array_equal(germ.u, u) for germ in self.germs)
+
+    def _standing(self, number: int) -> tuple[bool, float]:
+        """What is known of a singular point; that which is more stays."""
+        point = self.points[number]
+        return point.is_confirmed, point.error
 
     def point_hidden_at(self, u: np.ndarray) -> PointSighting | None:
         """The known singular point whose branches doubles lose at a place ``u`` (n,):
@@ -378,30 +364,19 @@ class Findings:
     def point_near(self, u: np.ndarray, within: float) -> PointSighting | None:
         """The first known singular point at less than ``within`` scales from ``u``
         (n,)."""
-        for number, distance in enumerate(self._distances_to_points(u)):
+        for number, distance in self._distances_to_points(u).items():
             if distance < within * self.problem.scale:
                 return PointSighting(self.points[number], number, is_new=False)
         return None
 
-    def point_at(self, u: np.ndarray, error: float) -> PointSighting | None:
-        """The known singular point that one located at ``u`` (n,) to within ``error``
-        is."""
-        return self._point_within(u, error, is_same_point)
-
-    def point_seen_from(self, u: np.ndarray) -> PointSighting | None:
-        """The known singular point at a place ``u`` (n,) of a curve, as far as its error
-        tells: what is farther away may be the same one."""
-        return self._point_within(u, 0.0, may_be_known)
-
-    def _point_within(
-        self, u: np.ndarray, error: float, decision: Decision
+    def point_at(
+        self, u: np.ndarray, error: float, decision: Decision = is_same_point
     ) -> PointSighting | None:
-        """The first known singular point that is at ``u`` (n,) by a ``decision`` on the
-        distance, the error of the point or another one allowed for twice."""
-        distances = self._distances_to_points(u)
-        for number, (point, distance) in enumerate(
-            zip(self.points, distances, strict=True)
-        ):
+        """The first known singular point that one located at ``u`` (n,) to within
+        ``error`` is, by a ``decision`` on the distance; the error of the point, or that
+        other one, is allowed for twice."""
+        for number, distance in self._distances_to_points(u).items():
+            point = self.points[number]
             within = 2 * max(error, point.error)
             unit = self.problem.scale + within / decision.threshold
             if decision(distance, unit):
@@ -413,67 +388,27 @@ class Findings:
         how far apart they are; infinitely far where there is none."""
         apart = self._distances_to_points(self.points[number].u)
         apart[number] = np.inf
-        nearest = int(np.argmin(apart))
+        nearest = min(apart, key=lambda other: apart[other])
         return nearest, apart[nearest]
 
-    def merge_points(self, pairs: Sequence[tuple[int, int]]) -> None:
-        """Take each of the ``pairs`` of singular points, by their numbers, for one: that
-        which is confirmed, or else which doubles know less well, for they say so only
-        where they see it. Two of which germs are known are two."""
-        successors: dict[int, int] = {}
-        for one, other in pairs:
-            if one in successors or other in successors:
-                continue
-            if self._has_germ(one) and self._has_germ(other):
-                continue
-            less, more = sorted((one, other), key=self._standing)
-            successors[less] = more
-        self._drop_points(successors)
+    def _distances_to_points(self, u: np.ndarray) -> dict[int, float]:
+        """How far each known singular point, by its number, is from ``u`` (n,)."""
+        if not self.points:
+            return {}
+        places = np.array([point.u for point in self.points.values()])
+        gaps = self.problem.difference(places, u)
+        distances = np.linalg.norm(gaps, axis=1).tolist()
+        return dict(zip(self.points, distances, strict=True))
 
-    def _drop_points(self, successors: dict[int, int]) -> None:
-        """Forget the singular points with some numbers, each for its successor: another
-        one, which may have a successor itself, or the one that is recorded next. The
-        seeds at each of them are then at its last successor."""
-        upcoming = len(self.points)
-        kept = [k for k in range(upcoming + 1) if k not in successors]
-        renumbered = {number: place for place, number in enumerate(kept)}
-        self.points = [p for k, p in enumerate(self.points) if k not in successors]
-        for seed, fate in list(self.fates.items()):
-            if fate.fate is not Fate.AT_SINGULAR_POINT:
-                continue
-            number = fate.number
-            while number in successors:
-                number = successors[number]
-            place = renumbered[number]
-            self.fates[seed] = SeedFate(Fate.AT_SINGULAR_POINT, place)
+    def _distance(self, one: np.ndarray, other: np.ndarray) -> float:
+        return float(np.linalg.norm(self.problem.difference(one, other)))
 
-    def forget_on_surface(self, number: int) -> None:
-        """Forget a singular point, given by its number, that is one of many of a
-        surface; the seeds at it are on that surface."""
-        del self.points[number]
-        for seed, fate in list(self.fates.items()):
-            if fate.fate is not Fate.AT_SINGULAR_POINT:
-                continue
-            if fate.number == number:
-                self.fates[seed] = SeedFate(Fate.ON_COMPONENT, 2)
-            elif fate.number > number:
-                self.fates[seed] = SeedFate(Fate.AT_SINGULAR_POINT, fate.number - 1)
+    # --- assemblies -------------------------------------------------------------------
 
-    def _has_germ(self, number: int) -> bool:
-        """Whether a singular point, given by its number, is where a germ is: the exact
-        equations tell it from others."""
-        u = self.points[number].u
-        return any(np.array_equal(germ.u, u) for germ in self.germs)
-
-    def _standing(self, number: int) -> tuple[bool, float]:
-        """What is known of a singular point; that which is more stays."""
-        point = self.points[number]
-        return point.is_confirmed, point.error
-
-    def rigid_at(
+    def assembly_at(
         self, u: np.ndarray, stiffness: float = np.inf, hidden: float = 0.0
-    ) -> int | None:
-        """The number of the known rigid assembly at ``u`` (n,), where the smallest
+    ) -> SeedFate | None:
+        """That of a seed at the known rigid assembly at ``u`` (n,), where the smallest
         singular value is its ``stiffness``.
 
         One that is weak has another beside it, as near as it is weak. All that rounding
@@ -482,38 +417,57 @@ class Findings:
         unit = self.problem.scale
         if is_weakly_isolated(stiffness):
             unit *= SHARPER
-        for number, known in enumerate(self.rigid):
-            distance = self._distance(known, u)
-            is_hidden = distance < max(hidden, self.hidden[number])
+        for number, known in self.rigid.items():
+            distance = self._distance(known.place, u)
+            is_hidden = distance < max(hidden, known.hidden)
             if is_hidden or is_same_point(distance, unit):
-                return number
+                return SeedFate(Fate.RIGID, number)
         return None
 
-    def rigid_within(self, u: np.ndarray, within: float) -> bool:
-        """Whether a rigid assembly is at less than ``within`` scales from ``u`` (n,)."""
-        reach = within * self.problem.scale
-        return any(self._distance(known, u) < reach for known in self.rigid)
-
-    def rigid_assembly(
+    def add_assembly(
         self, u: np.ndarray, stiffness: float = np.inf, hidden: float = 0.0
-    ) -> int:
-        """The number of the rigid assembly at ``u`` (n,), which is recorded if new; see
-        `rigid_at`."""
-        known = self.rigid_at(u, stiffness, hidden)
+    ) -> SeedFate:
+        """That of a seed at the rigid assembly at ``u`` (n,), which is recorded if new;
+        see `assembly_at`."""
+        known = self.assembly_at(u, stiffness, hidden)
         if known is not None:
             return known
-        self.rigid.append(u)
-        self.hidden.append(hidden)
-        return len(self.rigid) - 1
+        return SeedFate(Fate.RIGID, self.rigid.add(RigidAssembly(u, hidden)))
 
-    def _distances_to_points(self, u: np.ndarray) -> list[float]:
-        """How far each known singular point is from ``u`` (n,)."""
-        if not self.points:
-            return []
-        places = np.array([point.u for point in self.points])
-        gaps = self.problem.difference(places, u)
-        distances: list[float] = np.linalg.norm(gaps, axis=1).tolist()
-        return distances
+    # --- all of them ------------------------------------------------------------------
 
-    def _distance(self, one: np.ndarray, other: np.ndarray) -> float:
-        return float(np.linalg.norm(self.problem.difference(one, other)))
+    def is_known_about(self, u: np.ndarray, within: float, from_branch: float) -> bool:
+        """Whether a singular point or an assembly is at less than ``within`` scales from
+        ``u`` (n,), or a branch at less than ``from_branch`` scales."""
+        if self.point_near(u, within) is not None:
+            return True
+        if self.branch_through(u, from_branch) is not None:
+            return True
+        reach = within * self.problem.scale
+        return any(self._distance(one.place, u) < reach for one in self.rigid.values())
+
+
+@dataclass(frozen=True)
+class Run:
+    """A search under way: what is searched, how, until when, and what is known so far.
+
+    It stops at the ``deadline``. A Ctrl-C that ``interrupt`` holds makes the deadline
+    pass, so that every step soon ends, and is raised between two of them.
+    """
+
+    problem: Problem
+    settings: SearchSettings
+    deadline: Deadline
+    interrupt: HeldInterrupt
+    findings: Findings
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the budget is used up."""
+        return self.deadline.passed
+
+    def is_over_now(self) -> bool:
+        """The same, asked between two steps of something long: a Ctrl-C that was held
+        is raised."""
+        self.interrupt.check()
+        return self.is_over

@@ -1,14 +1,25 @@
-"""Branches that were lost where they touch to a high order, found again by germs."""
+"""Branches that were lost where they touch to a high order, traced again outward from the
+germs of singular points.
+
+A trace that runs into the neighbourhood in which doubles lose the branches comes out of
+it on any of them, or not at all. So every branch is followed from where its germ hands
+it over until it comes to the neighbourhood of a germ again, or to its end, and within
+these it goes on along the branch that the germ has there.
+"""
 
 from __future__ import annotations
 
 import logging
+from collections.abc import Sequence
+from dataclasses import replace
+from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
 
 from bifurc.branch import Branch, Outcome
-from bifurc.curves.misclosure import largest_misclosure
+from bifurc.curves.continuation import follow_curve
+from bifurc.curves.track import Place
 from bifurc.decisions import (
     is_lost_in_rounding,
     is_precise_enough,
@@ -16,13 +27,243 @@ from bifurc.decisions import (
     is_solution,
 )
 from bifurc.numerics.singular_values import singular_values
+from bifurc.problem import Problem
 from bifurc.search.branch_examination import BranchExaminer
-from bifurc.search.findings import TracedBranch
-from bifurc.search.germ_branches import branches_of_germs, ends_of, passes_inside
-from bifurc.search.run import Run
-from bifurc.search.start import Start
+from bifurc.search.branch_parts import (
+    curve_through,
+    followed_by,
+    half_curve,
+    joined_outcome,
+    part_of,
+)
+from bifurc.search.findings import Run, TracedBranch
+from bifurc.search.starts import Start
+from bifurc.settings import TraceSettings
 from bifurc.singular.germ import Germ
 from bifurc.singular.local_branches import LocalBranch
+
+INSIDE = 0.98  # of the radius of a neighbourhood: nearer than its ends
+LEAVING = 1e-3  # of that radius: a curve that leaves is not there again so soon
+
+
+class HalfEnd(NamedTuple):
+    """Where half-branch number ``half`` of germ number ``germ`` is handed over."""
+
+    germ: int
+    half: int
+
+
+class _Begin(Enum):
+    """What is before the first arc of a branch."""
+
+    # It is run backward, from its own end.
+    LOOSE = "loose"
+    CUSP = "cusp"
+    # Another arc of the same closed branch.
+    BETWEEN = "between"
+
+
+class _Arc(NamedTuple):
+    """A curve from the end of a half-branch to another one, or to its own end."""
+
+    curve: Branch
+    begin: HalfEnd
+    end: HalfEnd | None
+
+    def reversed(self) -> _Arc | None:
+        """The same run the other way; None where that has no begin."""
+        if self.end is None:
+            return None
+        return _Arc(self.curve.reversed(), self.end, self.begin)
+
+
+def ends_of(germ: Germ) -> np.ndarray:
+    """Where the half-branches (h, n) of a germ are handed over."""
+    offsets = germ.neighbourhood.ends()
+    ends: np.ndarray = germ.u + offsets.reshape(-1, len(germ.u))
+    return ends
+
+
+def passes_inside(branch: Branch, germ: Germ) -> np.ndarray:
+    """The arclengths (k,) at which a branch is nearest to the point of a germ, inside
+    its neighbourhood."""
+    return branch.passes(germ.u, INSIDE * germ.radius)
+
+
+def branches_of_germs(
+    problem: Problem, germs: Sequence[Germ], settings: TraceSettings, closing: float
+) -> list[Branch] | None:
+    """All branches through the points of the ``germs``, whose neighbourhoods are known;
+    None where a trace does not come back along a half-branch."""
+    tracer = _Tracer(problem, germs, settings, closing)
+    if not tracer.trace_arcs():
+        return None
+    return tracer.branches()
+
+
+class _Tracer:
+    """Arcs between germs, and what they make together."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        germs: Sequence[Germ],
+        settings: TraceSettings,
+        closing: float,
+    ):
+        self.problem = problem
+        self.germs = germs
+        self.settings = settings
+        self.closing = closing
+        self._ends = [ends_of(germ) for germ in germs]
+        # the arc that begins at the end of a half-branch
+        self._arcs: dict[HalfEnd, _Arc] = {}
+
+    # --- arcs -------------------------------------------------------------------------
+
+    def trace_arcs(self) -> bool:
+        """Trace from the end of every half-branch; whether all of them lead from one to
+        another or to an end of their own."""
+        for number, ends in enumerate(self._ends):
+            for half in range(len(ends)):
+                begin = HalfEnd(number, half)
+                if begin in self._arcs:
+                    continue
+                arc = self._arc_from(begin)
+                if arc is None or arc.end in self._arcs:
+                    return False
+                self._arcs[begin] = arc
+                backward = arc.reversed()
+                if backward is not None:
+                    self._arcs[backward.begin] = backward
+        return True
+
+    def _arc_from(self, begin: HalfEnd) -> _Arc | None:
+        """The arc that leaves a half-branch; None where it ends in a neighbourhood, but
+        not along a half-branch."""
+        inward = self._half_curve(begin)
+        start = Place(inward(0.0), -inward(0.0, 1))
+        curve = follow_curve(self.problem, start, self.settings, self.closing)
+        if not len(curve.pieces):
+            return None
+        entry = self._first_entry(curve)
+        if entry is None:
+            return None if curve.closed else _Arc(curve, begin, None)
+        stop, number = entry
+        handover = self._handover(curve, stop, number)
+        if handover is None:
+            return None
+        s, end = handover
+        return _Arc(part_of(curve, 0.0, s), begin, end)
+
+    def _first_entry(self, curve: Branch) -> tuple[float, int] | None:
+        """The first arclength at which a curve is nearest to the point of a germ, inside
+        its neighbourhood, and the number of the germ."""
+        entries = []
+        for number, germ in enumerate(self.germs):
+            if not germ.branches:
+                continue  # an isolated point is beside the curve
+            entries += [(float(s), number) for s in passes_inside(curve, germ)]
+        return min(entries, default=None)
+
+    def _handover(
+        self, curve: Branch, stop: float, number: int
+    ) -> tuple[float, HalfEnd] | None:
+        """The arclength, before ``stop``, at which a curve comes to the end of a
+        half-branch of a germ, and that end; None where there is none."""
+        within = is_same_point.threshold * self.problem.scale
+        leaving = LEAVING * self.germs[number].radius
+        handovers = []
+        for half, end in enumerate(self._ends[number]):
+            for s in curve.passes(end, within):
+                if leaving < s < stop:
+                    handovers.append((float(s), HalfEnd(number, half)))
+        return max(handovers, default=None)
+
+    # --- branches ---------------------------------------------------------------------
+
+    def branches(self) -> list[Branch] | None:
+        """The branches that the arcs are together with those inside; None where a part
+        of one is no solution."""
+        branches: list[Branch | None] = []
+        waiting = set(self._arcs)
+        ends = sorted(waiting)
+        loose = [end for end in ends if self._arcs[end].end is None]
+        cusps = [end for end in ends if self._partner(end) is None]
+        for kind, begins in ((_Begin.LOOSE, loose), (_Begin.CUSP, cusps)):
+            for begin in begins:
+                if begin in waiting:
+                    branches.append(self._walked(begin, kind, waiting))
+        while waiting:
+            branches.append(self._walked(min(waiting), _Begin.BETWEEN, waiting))
+        whole = [branch for branch in branches if branch is not None]
+        return whole if len(whole) == len(branches) else None
+
+    def _walked(
+        self, begin: HalfEnd, kind: _Begin, waiting: set[HalfEnd]
+    ) -> Branch | None:
+        """The branch that begins with the arc of one end, or, of a kind `LOOSE`, with it
+        run backward; the ends on the way are ``waiting`` no longer."""
+        parts: list[Branch | None] = []
+        arc = self._arcs[begin]
+        inward: HalfEnd | None = arc.end
+        waiting.discard(begin)
+        if kind is _Begin.LOOSE:
+            parts.append(arc.curve.reversed())
+            inward = begin
+        else:
+            if kind is _Begin.CUSP:
+                parts.append(self._half_curve(begin).reversed())
+            parts.append(arc.curve)
+        is_closed = False
+        while inward is not None:
+            waiting.discard(inward)
+            outward = self._partner(inward)
+            if outward is None:
+                parts.append(self._half_curve(inward))
+                break
+            parts.append(self._curve_through(inward))
+            is_closed = kind is _Begin.BETWEEN and outward == begin
+            if is_closed:
+                break
+            waiting.discard(outward)
+            parts.append(self._arcs[outward].curve)
+            inward = self._arcs[outward].end
+        return self._joined(parts, is_closed)
+
+    def _joined(self, parts: Sequence[Branch | None], is_closed: bool) -> Branch | None:
+        """The branch of consecutive parts; None where there is none of them."""
+        branch = parts[0]
+        for part in parts[1:]:
+            if branch is None or part is None:
+                return None
+            last, first = branch(branch.length), part(0.0)
+            whole_periods = self.problem.difference(first, last) - (first - last)
+            branch = followed_by(branch, part, whole_periods)
+        if branch is None:
+            return None
+        if is_closed:
+            return replace(branch, outcome=Outcome.CLOSED)
+        return replace(branch, outcome=joined_outcome(self.problem, branch, branch))
+
+    def _partner(self, end: HalfEnd) -> HalfEnd | None:
+        """The end of the other half of a branch; None where it is a cusp."""
+        branch = self.germs[end.germ].neighbourhood.branch_of(end.half)
+        if branch.returns:
+            return None
+        one, other = branch.halves
+        return HalfEnd(end.germ, other if end.half == one else one)
+
+    def _half_curve(self, end: HalfEnd) -> Branch:
+        """The half-branch that ends there, from there on inward."""
+        germ = self.germs[end.germ]
+        return half_curve(self.problem, germ, end.half, self.settings.order)
+
+    def _curve_through(self, end: HalfEnd) -> Branch | None:
+        """The branch from the end of one half to that of the other."""
+        germ = self.germs[end.germ]
+        return curve_through(self.problem, germ, end.half, self.settings.order)
+
 
 log = logging.getLogger(__name__)
 
@@ -73,11 +314,13 @@ class GermMender:
         starts: list[Start] = []
         traced: list[TracedBranch] = []
         for branch in branches:
-            misclosure = largest_misclosure(self.problem, branch)
-            examined = self.examiner.examine(branch, misclosure)
+            examined = self.examiner.examine(branch)
             traced.append(examined.traced)
             starts += examined.starts
-        self.findings.supersede_branches(superseded, traced)
+        for number in superseded:
+            self.findings.forget_branch(number)
+        for one in traced:
+            self.findings.add_branch(one)
         return starts
 
     # --- what follows a germ ----------------------------------------------------------
@@ -104,8 +347,8 @@ class GermMender:
         within = is_same_point.threshold * self.problem.scale
         return [
             _Pass(number, float(s))
-            for number, branch in enumerate(self.findings.branches)
-            for s in branch.passes(place, within)
+            for number, traced in self.findings.traced.items()
+            for s in traced.branch.passes(place, within)
         ]
 
     def _follows(
@@ -123,7 +366,7 @@ class GermMender:
             return all(self._ends_after(each, length) for each, length in passes)
         if one.branch != other.branch:
             return False
-        branch = self.findings.branches[one.branch]
+        branch = self.findings.traced[one.branch].branch
         way = abs(one.s - other.s)
         if branch.closed:
             way = min(way, branch.length - way)
@@ -139,12 +382,13 @@ class GermMender:
         """
         shares = SHARES[SHARES > BEFORE_CUSP] if local.returns else SHARES
         places = germ.u + local(side * shares)
-        distances, _ = self.findings.branches[at.branch].nearest(places)
+        branch = self.findings.traced[at.branch].branch
+        distances, _ = branch.nearest(places)
         return bool(np.all(is_precise_enough(distances, self.problem.scale)))
 
     def _ends_after(self, at: _Pass, length: float) -> bool:
         """Whether a branch ends after a pass and about so long a way."""
-        branch = self.findings.branches[at.branch]
+        branch = self.findings.traced[at.branch].branch
         if branch.outcome is not Outcome.STALLED:
             return False
         way = min(at.s, branch.length - at.s)
@@ -158,10 +402,10 @@ class GermMender:
         """The numbers of the known branches that are, where doubles tell, parts of the
         new ``branches``; None where one of them is in part only."""
         superseded = []
-        for number, known in enumerate(self.findings.branches):
-            if not any(len(passes_inside(known, germ)) for germ in germs):
+        for number, traced in self.findings.traced.items():
+            if not any(len(passes_inside(traced.branch, germ)) for germ in germs):
                 continue
-            shares = self._shares_on(known, branches)
+            shares = self._shares_on(traced.branch, branches)
             if np.all(shares):
                 superseded.append(number)
             elif np.any(shares):

@@ -1,7 +1,9 @@
-"""The search for near motions: curves along which a system is nearly solved."""
+"""The search for near motions, curves along which a system is nearly solved, and how
+nearly it is."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -9,11 +11,86 @@ import numpy as np
 from bifurc.curves.near_motion import trace_near_motion
 from bifurc.curves.near_surface import near_surfaces
 from bifurc.decisions import closes_to_rounding, is_same_point, nearly_closes
-from bifurc.numerics.singular_values import singular_values
+from bifurc.limits import Deadline
+from bifurc.numerics.singular_values import factors_of, singular_values
+from bifurc.problem import Problem
 from bifurc.search.canonical_course import canonical_course
-from bifurc.search.closure_gap import valley_points
-from bifurc.search.run import Run
+from bifurc.search.findings import Run
+from bifurc.search.seed_book import SeedFate
 from bifurc.seeding import random_seeds
+from bifurc.seeds import Seeds
+
+STEPS = 12
+LONGEST = 0.5  # step, over the problem's scale
+# Singular value, over the largest, below which no step is taken along its direction.
+FLAT = 1e-6
+WORK_AT_ONCE = 1e6  # points between two looks at the clock, times n^3
+TINY = 1e-300  # keeps a step of length zero from being divided by its length
+
+
+def closure_gap(
+    problem: Problem, seeds: Seeds, gaps: Sequence[float], deadline: Deadline
+) -> float:
+    """Median residual, over the magnitude, along the valley in which the system is
+    nearly solved; 0 where every start solves it.
+
+    It is taken over the random starts that missed, as many as there is time for before
+    the ``deadline``, a few in any case, and over the ``gaps`` of starts that could not be
+    corrected.
+    """
+    residuals = seeds.gaps
+    if len(seeds.missed):
+        lowest = valley_points(problem, seeds.missed, deadline)
+        residuals = np.maximum(problem.gaps(lowest), seeds.gaps[: len(lowest)])
+    everywhere = np.concatenate([residuals, gaps])
+    return float(np.median(everywhere)) if len(everywhere) else 0.0
+
+
+def valley_points(
+    problem: Problem, points: np.ndarray, deadline: Deadline
+) -> np.ndarray:
+    """Points (k, n) in the valley below the first of points (j, n) that do not solve
+    the system, as many as there is time for before the ``deadline``, a few in any case.
+
+    Gauss-Newton steps of rank n - 1 run down to the valley in which the system is
+    nearly solved but not along it, so that an isolated solution at its end does not
+    hide the gap.
+    """
+    at_once = max(1, int(WORK_AT_ONCE / problem.n**3))
+    lowest = []
+    for begin in range(0, len(points), at_once):
+        lowest.append(_in_valley(problem, points[begin : begin + at_once]))
+        if deadline.passed:
+            break
+    return np.concatenate(lowest) if lowest else points
+
+
+def _in_valley(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """Points (k, n) in the valley below points (k, n)."""
+    lowest = points.copy()
+    longest = LONGEST * problem.scale
+    for _ in range(STEPS):
+        steps = _steps_across(problem, lowest)
+        lengths = np.linalg.norm(steps, axis=1) + TINY
+        shares = np.minimum(1.0, longest / lengths)
+        lowest -= steps * shares[:, None]
+    return lowest
+
+
+def _steps_across(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """Gauss-Newton steps (k, n) of rank n - 1, to be subtracted."""
+    across = problem.n - 1
+    residuals = problem.relative_residuals(points)
+    jacobians = problem.relative_jacobians(points)
+    left, sigma, right = factors_of(jacobians, full_matrices=False)
+    is_steep = sigma > FLAT * sigma[:, :1]
+    is_steep[:, across:] = False
+    inverse = np.zeros_like(sigma)
+    inverse[is_steep] = 1.0 / sigma[is_steep]
+    components = np.einsum("kmj,km->kj", left, residuals)
+    steps: np.ndarray = np.einsum("kji,kj->ki", right, inverse * components)
+    return steps
+
 
 SAME_STARTS = 200  # from which every search looks for near motions
 FRUITLESS = 4  # of those on no known near motion that in a row led to nothing new
@@ -28,14 +105,12 @@ class NearMotionSearch:
         self.problem = run.problem
         self.findings = run.findings
 
-    def through(self, point: np.ndarray) -> int | None:
-        """The number of the near motion through a point (n,), which is traced if it is
+    def through(self, point: np.ndarray) -> SeedFate | None:
+        """That of a seed on the near motion through a point (n,), which is traced if it is
         new; None where there is none."""
-        number = self.findings.near_motion_through(point)
-        if number is not None:
-            return number
-        if self.findings.is_on_short_stretch(point):
-            return None
+        fate = self.findings.near_motion_through(point)
+        if fate is not None or not len(self._not_on_known(point[None])):
+            return fate
         tracing, deadline = self.run.settings.tracing, self.run.deadline
         near = trace_near_motion(self.problem, point, tracing, deadline)
         if near is None or closes_to_rounding(near.misclosure):
@@ -55,11 +130,11 @@ class NearMotionSearch:
         is_on_component = bool(components.seeds or components.on_shaky)
         is_mobile = bool(findings.traced) or is_on_component
         is_asked = self.run.settings.near_motions
-        if is_mobile or not is_asked or not len(findings.seeds.missed):
+        if is_mobile or not is_asked or not len(findings.book.seeds.missed):
             return
         if self.run.is_over:
             return
-        points = self._nearly_closed(findings.seeds.missed)
+        points = self._nearly_closed(findings.book.seeds.missed)
         if not len(points) or self.run.is_over:
             return
         rng, deadline = np.random.default_rng(0), self.run.deadline
@@ -99,7 +174,7 @@ class NearMotionSearch:
         """Those of the points (k, n) that lie on no known near motion or short
         stretch."""
         findings = self.findings
-        for near in findings.near_motions + findings.short_stretches:
+        for near in (*findings.near_motions.values(), *findings.short_stretches):
             if len(points):
                 points = points[~near.runs_through(self.problem, points)]
         return points

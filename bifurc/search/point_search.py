@@ -13,8 +13,7 @@ from bifurc.decisions import (
     is_precise_enough,
 )
 from bifurc.numerics.singular_values import singular_values
-from bifurc.search.findings import PointSighting
-from bifurc.search.run import Run
+from bifurc.search.findings import PointSighting, Run
 from bifurc.singular.classify import classify_from_nearby, classify_singular_point
 from bifurc.singular.locate import (
     MOST_FOR_GERM,
@@ -113,8 +112,8 @@ class PointSearch:
         located = placed_at(LocatedPoint(near, null_space, moved), germ)
         return self._record(located, germ)
 
-    def at_assembly(self, point: np.ndarray) -> int | None:
-        """The number of the isolated singular point at which two solutions next to
+    def at_assembly(self, point: np.ndarray) -> PointSighting | None:
+        """The isolated singular point at which two solutions next to
         ``point`` (n,) come together, as far as rounding tells; None where there is
         none."""
         reach = SEED_REACH * self.problem.scale
@@ -129,7 +128,7 @@ class PointSearch:
         sighting = self._sight_exactly(located)
         if sighting is None or sighting.point.kind is not Kind.ISOLATED:
             return None
-        return sighting.number
+        return sighting
 
     def seen_on_curve(self, sighting: PointSighting) -> PointSighting:
         """A singular point that a curve passes, seen from ever nearer where the sections
@@ -172,9 +171,7 @@ class PointSearch:
         if known is not None:
             return known
         point = classify_singular_point(self.problem, located, germ=germ)
-        if germ is not None:
-            self.findings.add_germ(germ)
-        return self.findings.add_point(point)
+        return self.findings.add_point(point, germ)
 
     def _known(self, located: LocatedPoint) -> PointSighting | None:
         """The known singular point that a located one is, or on whose branches it lies

@@ -4,24 +4,30 @@ The bounds are divided until every box is settled. A box is empty where bounds o
 on F in the middle and on F' in the box, leave out zero. It holds a single arc where
 Krawczyk's test (1969), with one unknown as the parameter, finds one solution of the
 others for each of its values: a branch through one of these solutions is that arc. The
-branches are held against the same bounds all along. What remains lies about singular
-points. All these bounds are intervals rounded outwards (`bifurc/core/boxes.hpp`).
+branches are held against the same bounds all along, also between the nodes of their
+pieces. What remains lies about singular points. All these bounds are intervals rounded
+outwards (`bifurc/core/boxes.hpp`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
 
 from bifurc.branch import Branch
+from bifurc.completeness import Level, Scope
+from bifurc.curves.certificate import Certificate, CertificateStatus
+from bifurc.curves.monitor import dead_points
 from bifurc.decisions import closes_to_rounding, is_same_point
 from bifurc.problem import Problem
-from bifurc.search.stretches import verify_branch
-from bifurc.singular.invariants import CROSSING, LONE_POINT
-from bifurc.singular.point import SingularPoint
+from bifurc.search.answer.completeness import SearchClaim
+from bifurc.search.findings import TracedBranch
+from bifurc.seeds import Audit
+from bifurc.singular.point import CROSSING, LONE_POINT, SingularPoint
 
 MOST_UNKNOWNS = 4
 FIRST_BOXES = 64
@@ -29,7 +35,9 @@ FIRST_BOXES = 64
 AT_ONCE = 1024
 ENOUGH = 30  # solutions on unknown arcs, to trace before boxes are divided further
 MOST_LEFT = 24  # places that are listed of what is not settled
-SMALLEST = 1e-7  # radius of a box, over the scale, that is not divided any more
+MOST_STRETCHES = 4000  # of a branch that are divided
+# Radius of a box, or half a stretch, over the scale, that is not divided any more.
+SMALLEST = 1e-7
 SOLVED = 1e-9  # over the scale: |F| where Newton's method has settled
 DETOUR = 2.0  # times as long as its chord a branch may be from one place to the next
 # Radii, over the scale, about singular points in which nothing is claimed: of ordinary
@@ -37,6 +45,14 @@ DETOUR = 2.0  # times as long as its chord a branch may be from one place to the
 BESIDE_CROSSING = 1e-5
 BESIDE_OTHER = 0.03
 WIDER = 1e-15  # of a period: the box of a circle is so much wider than one
+
+
+class _Verdict(IntEnum):
+    """What is known of a branch, as `_core.Tape.course` numbers it."""
+
+    SOLVED = 0
+    MISSED = 1
+    OPEN = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,6 +191,7 @@ class _Division:
             for p in points
         ]
         self.reaches = problem.scale * np.array(reaches)
+        self.within = is_same_point.threshold * problem.scale
         self.count = 0
         self.found: list[np.ndarray] = []
         self.seeds = np.empty((0, problem.n))
@@ -188,13 +205,52 @@ class _Division:
         return sum(len(points) for points in self.found) < ENOUGH
 
     def verify_branches(self) -> None:
-        """Note which branches are none, and where one is not known to be one."""
+        """Note which branches are none, and where one is not known to be one: by bounds
+        on F and F' about stretches of it, but beside singular points."""
         for number, branch in enumerate(self.branches):
-            known = verify_branch(self.problem, branch, self.centers, self.reaches)
-            if known.misses is not None:
-                self.refuted[number] = known.misses
-            if known.open is not None:
-                self.left.append(known.open[None])
+            torn = self._torn_at(branch)
+            if torn is not None:
+                self.refuted[number] = torn
+                continue
+            verdict, s = self.tape.course(
+                branch.compiled,
+                self.centers,
+                self.reaches,
+                self.problem.periods,
+                residual=self.within * self.problem.magnitude,
+                shortest=SMALLEST * self.problem.scale,
+                most=MOST_STRETCHES,
+            )
+            if verdict == _Verdict.MISSED:
+                self.refuted[number] = s
+            elif verdict == _Verdict.OPEN:
+                self.left.append(branch(s)[None])
+            else:
+                points = branch(np.concatenate(dead_points(branch)))
+                self.left.append(points[~self.problem.are_inside(points)][:1])
+
+    def _torn_at(self, branch: Branch) -> float | None:
+        """The arclength at which a branch does not hand over from one piece to the next,
+        or from the last one of a closed curve to the first; None where it does, but
+        beside singular points."""
+        begins, ends = branch.ends_of_pieces()
+        following = np.roll(begins, -1, axis=0)
+        gaps = np.linalg.norm(self.problem.difference(following, ends), axis=1)
+        if not branch.closed:
+            gaps[-1] = 0.0
+        torn = np.flatnonzero(~is_same_point(gaps, self.problem.scale))
+        torn = torn[~self._are_beside_points(ends[torn], gaps[torn])]
+        return float(branch.breaks[torn[0] + 1]) if len(torn) else None
+
+    def _are_beside_points(
+        self, places: np.ndarray, gaps: np.ndarray | float = 0.0
+    ) -> np.ndarray:
+        """Which places (k, n), with ``gaps`` (k,) from there on, lie next to a singular
+        point, where nothing is claimed."""
+        offsets = self.problem.difference(places[:, None], self.centers)
+        farthest = np.linalg.norm(offsets, axis=2) + np.reshape(gaps, (-1, 1))
+        are_beside: np.ndarray = np.any(farthest < self.reaches, axis=1)
+        return are_beside
 
     def result(self) -> Subdivision:
         nowhere = np.empty((0, self.problem.n))
@@ -249,9 +305,7 @@ class _Division:
         points, gaps = self.problem.project(places)
         points = points[closes_to_rounding(gaps)]
         points = points[self.problem.are_inside(points)]
-        offsets = self.problem.difference(points[:, None], self.centers)
-        is_beside = np.linalg.norm(offsets, axis=2) < self.reaches
-        points = points[~np.any(is_beside, axis=1)]
+        points = points[~self._are_beside_points(points)]
         is_new = self._feet(points).branch < 0
         self.seeds = points[is_new][:ENOUGH]
 
@@ -316,10 +370,9 @@ class _Division:
     def _feet(self, points: np.ndarray) -> _Feet:
         """The branches on which points (k, n) lie."""
         feet = _Feet(np.full(len(points), -1), np.zeros(len(points)))
-        within = is_same_point.threshold * self.problem.scale
         for number, branch in enumerate(self.branches):
             rest = np.flatnonzero(feet.branch < 0)
-            distances, arclengths = branch.nearest(points[rest], within=within)
+            distances, arclengths = branch.nearest(points[rest], within=self.within)
             is_on = is_same_point(distances, self.problem.scale)
             feet.branch[rest[is_on]] = number
             feet.s[rest[is_on]] = arclengths[is_on]
@@ -334,3 +387,30 @@ def _grid(box: np.ndarray) -> _Boxes:
     numbers = np.indices((count,) * n).reshape(n, -1).T
     columns = np.arange(n)
     return _Boxes(marks[numbers, columns], marks[numbers + 1, columns])
+
+
+WIDTH = 1e-6  # of the length: of the gap in a certificate where a branch is refuted
+
+
+def audit_of(division: Subdivision) -> Audit:
+    """What a complete subdivision says: nothing is missing; next to singular points
+    that is not claimed."""
+    nowhere = np.empty((0, division.left.shape[1]))
+    kind, level = SearchClaim.BOXES, Level.PROVED
+    if division.beside:
+        kind, level = SearchClaim.BOXES_BESIDE_POINTS, Level.CERTIFIED
+    data = {"boxes": int(division.count), "beside": float(division.beside)}
+    return Audit((kind.claim(Scope.MOTIONS, level, **data),), nowhere)
+
+
+def refuted_at(traced: TracedBranch, s: float) -> TracedBranch:
+    """The branch with a gap in its certificate about arclength ``s``, where it
+    solves nothing."""
+    certificate = traced.certificate
+    if certificate is None:
+        nothing = np.empty((0, 2))
+        status = CertificateStatus.NOT_CERTIFIED
+        certificate = Certificate(status, nothing, nothing, points=0, bound=np.inf)
+    half = WIDTH * traced.branch.length
+    gap = np.clip([[s - half, s + half]], 0.0, traced.branch.length)
+    return replace(traced, certificate=certificate.with_gaps(gap))

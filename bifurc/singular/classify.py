@@ -9,9 +9,8 @@ import numpy as np
 
 from bifurc.decisions import settles
 from bifurc.problem import Problem
-from bifurc.singular.invariants import CROSSING, LONE_POINT, Invariants
 from bifurc.singular.locate import LocatedPoint
-from bifurc.singular.point import SingularPoint
+from bifurc.singular.point import CROSSING, LONE_POINT, Invariants, SingularPoint
 from bifurc.singular.second_order import second_order_tangents
 from bifurc.singular.sphere import UNSEEN, Section, section
 

@@ -4,7 +4,7 @@ right."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
 
@@ -12,7 +12,7 @@ import mpmath
 import numpy as np
 
 from bifurc.errors import ProblemError
-from bifurc.singular.locate import block_slice
+from bifurc.singular.locate import augmented_system
 
 Residual = Callable[[Sequence[mpmath.mpf]], Sequence[mpmath.mpf]]
 """F over mpmath numbers: n of them in, m out, right to whatever precision is set when
@@ -46,15 +46,15 @@ class Confirmation:
     """A singular point refined at high precision, compared with the double result from
     which it was refined.
 
-    ``u`` (n, 1) and ``null_space`` (n, k) are mpmath matrices, ``error`` bounds what
+    ``u`` (n,) and ``null_space`` (n, k) are arrays of mpmath numbers, ``error`` bounds what
     may be wrong with ``u``, ``residual`` is |F| there. ``distance`` of the double
     result, and ``angle`` (rad) between its null space and this. ``singular_values``
     (n,) of F' at ``u`` in decreasing order; ``nullity`` of them are zero to the
     precision reached.
     """
 
-    u: mpmath.matrix
-    null_space: mpmath.matrix
+    u: np.ndarray
+    null_space: np.ndarray
     error: float
     residual: float
     distance: float
@@ -96,20 +96,20 @@ def confirm_singular_point(
         raise ProblemError("digits", digits, "from 20 to 1000")
     with mpmath.workdps(3 * digits + 30):
         derivatives = Differences(residual, mpmath.mpf(10) ** -(digits + 5))
-        start = mpmath.matrix(point.tolist())
-        start_basis = _orthonormal(mpmath.matrix(null_space.tolist()))
-        refinement = _Refinement(start.copy(), start_basis.copy())
+        start = as_precise(point)
+        start_basis = _orthonormal(as_precise(null_space))
         precision = mpmath.mpf(10) ** -digits
-        refinement.run(derivatives, precision)
+        refinement = _refine(derivatives, start, start_basis, precision)
+        u, basis = refinement.u, refinement.basis
         verdict = _judge(derivatives, refinement, precision, mpmath.mpf(magnitude))
-        across = refinement.basis * (refinement.basis.T * start_basis)
+        turned = start_basis - basis @ (basis.T @ start_basis)
         return Confirmation(
-            u=refinement.u,
-            null_space=refinement.basis,
+            u=u,
+            null_space=basis,
             error=float(verdict.error),
             residual=float(verdict.residual),
-            distance=float(mpmath.norm(start - refinement.u)),
-            angle=float(mpmath.norm(start_basis - across)),
+            distance=float(mpmath.norm(start - u)),
+            angle=float(mpmath.norm(turned.ravel())),
             singular_values=tuple(float(x) for x in verdict.singular_values),
             nullity=verdict.nullity,
             convergence=verdict.convergence,
@@ -124,43 +124,44 @@ def confirm_singular_point(
 @dataclass(frozen=True)
 class Differences:
     """F and its derivatives by central differences of ``step``, at the precision that
-    is set."""
+    is set, as arrays of mpmath numbers."""
 
     function: Residual
     step: mpmath.mpf
 
-    def value(self, u: mpmath.matrix) -> mpmath.matrix:
-        """F as a column (m, 1)."""
-        return mpmath.matrix(list(self.function(list(u))))
+    def value(self, u: np.ndarray) -> np.ndarray:
+        """F (m,)."""
+        return np.array(list(self.function(list(u))), dtype=object)
 
-    def along(self, u: mpmath.matrix, direction: mpmath.matrix) -> mpmath.matrix:
-        """F' times a direction, (m, 1)."""
-        h = self.step
-        ahead = self.value(u + h * direction)
-        behind = self.value(u - h * direction)
-        return (ahead - behind) / (2 * h)
-
-    def jacobian(self, u: mpmath.matrix) -> mpmath.matrix:
+    def jacobian(self, u: np.ndarray) -> np.ndarray:
         """F' (m, n)."""
-        n = len(u)
-        return _columns([self.along(u, _unit(n, i)) for i in range(n)])
+        units = np.eye(len(u), dtype=int).astype(object)
+        return np.column_stack([self._along(self.value, u, unit) for unit in units])
 
-    def bend(self, u: mpmath.matrix, direction: mpmath.matrix) -> mpmath.matrix:
+    def bend(self, u: np.ndarray, direction: np.ndarray) -> np.ndarray:
         """F'' times a direction, (m, n)."""
+        return self._along(self.jacobian, u, direction)
+
+    def _along(
+        self,
+        function: Callable[[np.ndarray], np.ndarray],
+        u: np.ndarray,
+        direction: np.ndarray,
+    ) -> np.ndarray:
+        """The derivative of a function along a direction (n,)."""
         h = self.step
-        ahead = self.jacobian(u + h * direction)
-        behind = self.jacobian(u - h * direction)
-        return (ahead - behind) / (2 * h)
+        change = function(u + h * direction) - function(u - h * direction)
+        derivative: np.ndarray = change / (2 * h)
+        return derivative
 
 
-@dataclass
-class _Refinement:
-    """The point ``u`` (n, 1), the ``basis`` (n, k) of its null space, and the lengths
-    of the ``moves`` that led there."""
+class _Refinement(NamedTuple):
+    """The point ``u`` (n,), the ``basis`` (n, k) of its null space, and the lengths of
+    the ``moves`` that led there."""
 
-    u: mpmath.matrix
-    basis: mpmath.matrix
-    moves: list[mpmath.mpf] = field(default_factory=list)
+    u: np.ndarray
+    basis: np.ndarray
+    moves: list[mpmath.mpf]
 
     @property
     def last_ratio(self) -> mpmath.mpf:
@@ -170,123 +171,61 @@ class _Refinement:
             return mpmath.mpf(0)
         return self.moves[-1] / self.moves[-2]
 
-    def run(self, derivatives: Differences, precision: mpmath.mpf) -> None:
-        """Take steps of Gauss-Newton until they are below the ``precision``, or too
-        long to converge."""
-        for _ in range(ITERATIONS):
-            matrix, right_side = augmented_system(derivatives, self.u, self.basis)
-            self._move(least_squares(matrix, right_side, precision**2))
-            if self.moves[-1] < precision or self.moves[-1] > 1:
-                break
 
-    def _move(self, step: list[mpmath.mpf]) -> None:
-        """Add a step (n + k n,) of the point and of its null space."""
-        n, k = self.basis.rows, self.basis.cols
-        for i in range(n):
-            self.u[i] += step[i]
-            for j in range(k):
-                self.basis[i, j] += step[n + j * n + i]
-        self.basis = _orthonormal(self.basis)
-        self.moves.append(mpmath.norm(step[:n]))
+def _refine(
+    derivatives: Differences, u: np.ndarray, basis: np.ndarray, precision: mpmath.mpf
+) -> _Refinement:
+    """Steps of Gauss-Newton until they are below the ``precision``, or too long to
+    converge."""
+    moves: list[mpmath.mpf] = []
+    for _ in range(ITERATIONS):
+        du, dv = gauss_newton_step(derivatives, u, basis, precision**2)
+        u, basis = u + du, _orthonormal(basis + dv)
+        moves.append(mpmath.norm(du))
+        if moves[-1] < precision or moves[-1] > 1:
+            break
+    return _Refinement(u, basis, moves)
 
 
-def augmented_system(
-    derivatives: Differences, u: mpmath.matrix, basis: mpmath.matrix
-) -> tuple[mpmath.matrix, mpmath.matrix]:
-    """Matrix and right-hand side of a step for the point and its null space."""
-    # The columns v_1 ... v_k of V move across V only:
-    #
-    #     [ F'                            ] [ du   ]     [ F      ]
-    #     [ F'' v_1   F'                  ] [ dv_1 ]     [ F' v_1 ]
-    #     [   :             ...           ] [  :   ] = - [   :    ]
-    #     [ F'' v_k               F'      ] [ dv_k ]     [ F' v_k ]
-    #     [           V^T                 ]              [ 0      ]
-    #     [                 ...           ]              [ :      ]
-    #     [                       V^T     ]              [ 0      ]
-    n, k = basis.rows, basis.cols
-    jacobian = derivatives.jacobian(u)
-    value = derivatives.value(u)
-    m = len(value)
-    rows = m + k * m + k * k
-    matrix = mpmath.zeros(rows, n + k * n)
-    right_side = mpmath.zeros(rows, 1)
-    matrix[:m, :n] = jacobian
-    right_side[:m, 0] = -value
-    for j in range(k):
-        v = basis[:, j]
-        null = block_slice(m, j, m)  # rows of F'' v_j
-        across = block_slice(m + k * m, j, k)  # rows of V^T
-        column = block_slice(n, j, n)  # columns of dv_j
-        matrix[null, :n] = derivatives.bend(u, v)
-        matrix[null, column] = jacobian
-        right_side[null, 0] = -jacobian * v
-        matrix[across, column] = basis.T
-    return matrix, right_side
+def gauss_newton_step(
+    derivatives: Differences, u: np.ndarray, basis: np.ndarray, negligible: mpmath.mpf
+) -> tuple[np.ndarray, np.ndarray]:
+    """The step (n,) of a point and that (n, k) of the ``basis`` of its null space, where
+    what is less than the share ``negligible`` of the largest is rounding."""
+    bends = [derivatives.bend(u, vector) for vector in basis.T]
+    value, jacobian = derivatives.value(u), derivatives.jacobian(u)
+    step = _least_squares(*augmented_system(value, jacobian, bends, basis), negligible)
+    n, k = basis.shape
+    return step[:n], step[n:].reshape(k, n).T
 
 
-# --- least squares --------------------------------------------------------------------
-
-
-class _Pivot(NamedTuple):
-    """A row of the triangular factor, in the order in which columns are taken.
-
-    The number of the ``column``, its ``length`` (the entry on the diagonal), the other
-    entries of the ``row`` by column, and what the orthogonal factor makes of the
-    right-hand side.
-    """
-
-    column: int
-    length: mpmath.mpf
-    row: dict[int, mpmath.mpf]
-    right_side: mpmath.mpf
-
-
-def least_squares(
-    matrix: mpmath.matrix, right_side: mpmath.matrix, negligible: mpmath.mpf
-) -> list[mpmath.mpf]:
-    """A least-squares solution by QR with column pivoting; columns that add less than
-    the share ``negligible`` of the largest get zero."""
-    solution = [mpmath.mpf(0)] * matrix.cols
-    pivots = _orthogonalise(matrix, right_side, negligible)
-    for place in range(len(pivots) - 1, -1, -1):
-        pivot = pivots[place]
-        later = [other.column for other in pivots[place + 1 :]]
-        total = sum(pivot.row[j] * solution[j] for j in later)
-        solution[pivot.column] = (pivot.right_side - total) / pivot.length
-    return solution
-
-
-def _orthogonalise(
-    matrix: mpmath.matrix, right_side: mpmath.matrix, negligible: mpmath.mpf
-) -> list[_Pivot]:
-    """The triangular factor by modified Gram-Schmidt, the longest column first."""
-    columns = {j: list(matrix[:, j]) for j in range(matrix.cols)}
-    rest = list(right_side)
-    pivots: list[_Pivot] = []
+def _least_squares(
+    matrix: np.ndarray, right_side: np.ndarray, negligible: mpmath.mpf
+) -> np.ndarray:
+    """A least-squares solution (n,) by QR with column pivoting (modified Gram-Schmidt,
+    the longest column first); columns that add less than the share ``negligible`` of the
+    largest get zero."""
+    n = matrix.shape[1]
+    table = np.column_stack([matrix, right_side])
+    left = list(range(n))
+    pivots: list[tuple[int, np.ndarray]] = []
     largest = mpmath.mpf(0)
-    while columns:
-        squares = {j: mpmath.fdot(v, v) for j, v in columns.items()}
-        longest = max(squares, key=squares.__getitem__)
-        length = mpmath.sqrt(squares[longest])
+    while left:
+        squares = np.sum(table[:, left] ** 2, axis=0)
+        longest = left.pop(int(np.argmax(squares)))
+        length = mpmath.sqrt(max(squares))
         largest = max(largest, length)
         if length <= negligible * largest:
             break
-        direction = [x / length for x in columns.pop(longest)]
-        row: dict[int, mpmath.mpf] = {}
-        for j, column in columns.items():
-            row[j] = mpmath.fdot(direction, column)
-            columns[j] = _without(column, row[j], direction)
-        share = mpmath.fdot(direction, rest)
-        rest = _without(rest, share, direction)
-        pivots.append(_Pivot(longest, length, row, share))
-    return pivots
-
-
-def _without(
-    vector: list[mpmath.mpf], share: mpmath.mpf, direction: list[mpmath.mpf]
-) -> list[mpmath.mpf]:
-    """The vector less ``share`` times a direction."""
-    return [x - share * d for x, d in zip(vector, direction, strict=True)]
+        direction = table[:, longest] / length
+        row = direction @ table
+        pivots.append((longest, row))
+        others = [*left, n]
+        table[:, others] -= np.outer(direction, row[others])
+    solution = np.zeros(n, dtype=object)
+    for column, row in reversed(pivots):
+        solution[column] = (row[n] - row[:n] @ solution) / row[column]
+    return solution
 
 
 # --- the verdict ----------------------------------------------------------------------
@@ -311,7 +250,7 @@ def _judge(
     """How the refinement converged, how exact it is, and the rank of F' at its end."""
     singular_values = _singular_values(derivatives.jacobian(refinement.u))
     residual = mpmath.norm(derivatives.value(refinement.u))
-    rank = len(singular_values) - refinement.basis.cols
+    rank = len(singular_values) - refinement.basis.shape[1]
     misfit = max(singular_values[rank], residual) / magnitude
     if misfit > mpmath.mpf(NOT_ZERO):
         convergence = Convergence.NONE
@@ -323,9 +262,10 @@ def _judge(
     return _Verdict(convergence, error, residual, singular_values, nullity)
 
 
-def _singular_values(matrix: mpmath.matrix) -> list[mpmath.mpf]:
+def _singular_values(matrix: np.ndarray) -> list[mpmath.mpf]:
     """Singular values of a matrix (m, n), n of them, in decreasing order."""
-    squares = mpmath.eigsy(matrix.T * matrix, eigvals_only=True)
+    gram = mpmath.matrix((matrix.T @ matrix).tolist())
+    squares = mpmath.eigsy(gram, eigvals_only=True)
     values = [mpmath.sqrt(abs(x)) for x in squares]
     return sorted(values, reverse=True)
 
@@ -362,27 +302,17 @@ def _refinement_error(
 # --- small matrices -------------------------------------------------------------------
 
 
-def _unit(n: int, i: int) -> mpmath.matrix:
-    """Unit vector (n, 1) number i."""
-    out = mpmath.zeros(n, 1)
-    out[i] = 1
-    return out
+def as_precise(values: np.ndarray) -> np.ndarray:
+    """The same numbers in mpmath."""
+    numbers = [mpmath.mpf(float(value)) for value in values.ravel()]
+    return np.array(numbers, dtype=object).reshape(values.shape)
 
 
-def _columns(columns: list[mpmath.matrix]) -> mpmath.matrix:
-    """The matrix (n, k) of k columns (n, 1)."""
-    out = mpmath.zeros(len(columns[0]), len(columns))
-    for j, column in enumerate(columns):
-        out[:, j] = column
-    return out
-
-
-def _orthonormal(matrix: mpmath.matrix) -> mpmath.matrix:
+def _orthonormal(matrix: np.ndarray) -> np.ndarray:
     """An orthonormal basis (n, k) of the columns, by Gram and Schmidt."""
-    basis: list[mpmath.matrix] = []
-    for j in range(matrix.cols):
-        column = matrix[:, j]
+    basis: list[np.ndarray] = []
+    for column in matrix.T:
         for other in basis:
-            column = column - other * (other.T * column)[0]
+            column = column - other * (other @ column)
         basis.append(column / mpmath.norm(column))
-    return _columns(basis)
+    return np.column_stack(basis)

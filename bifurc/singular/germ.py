@@ -19,18 +19,18 @@ import numpy as np
 
 from bifurc.problem import PreciseResidual, Problem
 from bifurc.singular.confirm import Differences
-from bifurc.singular.discriminant import invariants_of
-from bifurc.singular.invariants import Invariants
 from bifurc.singular.local_branches import (
     LiftedEquation,
     Neighbourhood,
     neighbourhood_of,
 )
 from bifurc.singular.locate import MOST_FOR_GERM, LocatedPoint
+from bifurc.singular.point import Invariants
 from bifurc.singular.puiseux import (
     HalfBranch,
     Terms,
     half_branches,
+    invariants_of,
     pairs_of,
     without_zeros,
 )
@@ -276,7 +276,8 @@ class _Reduction:
         if not self._across.cols:
             return
         derivatives = Differences(self._residual, step * self._scale)
-        jacobian = derivatives.jacobian(self._u) / self._magnitude
+        jacobian = derivatives.jacobian(np.array(list(self._u))) / self._magnitude
+        jacobian = mpmath.matrix(jacobian.tolist())
         inverse = mpmath.inverse(self._solved * jacobian * self._across)
         solver = self._across * inverse * self._solved / self._magnitude
         self._solver = solver.tolist()  # (n, m)
@@ -306,11 +307,9 @@ class _Reduction:
 
 def _matrix(values: np.ndarray) -> mpmath.matrix:
     """The same numbers in mpmath."""
-    rows, columns = values.shape
-    out = mpmath.matrix(rows, columns)
-    for i in range(rows):
-        for j in range(columns):
-            out[i, j] = mpmath.mpf(float(values[i, j]))
+    out = mpmath.matrix(*values.shape)
+    for place, value in np.ndenumerate(values):
+        out[place] = mpmath.mpf(float(value))
     return out
 
 

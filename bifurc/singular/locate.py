@@ -3,6 +3,7 @@ system."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -179,6 +180,24 @@ def _augmented_system(
     problem: Problem, u: np.ndarray, basis: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Matrix and right-hand side of a step for the point and its null space."""
+    hessian = problem.hessian(u) / problem.magnitude
+    return augmented_system(
+        problem.relative_residuals(u[None])[0],
+        problem.relative_jacobians(u[None])[0],
+        [hessian @ vector for vector in basis.T],
+        basis,
+    )
+
+
+def augmented_system(
+    residual: np.ndarray,
+    jacobian: np.ndarray,
+    bends: Sequence[np.ndarray],
+    basis: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Matrix and right-hand side of a step for a point and the ``basis`` (n, k) of its
+    null space, from F (m,), F' (m, n) and F'' v (m, n) for each vector of that; numbers
+    may be of any kind."""
     # The columns v_1 ... v_k of V move across V only:
     #
     #     [ F'                            ] [ du   ]     [ F      ]
@@ -189,27 +208,24 @@ def _augmented_system(
     #     [                 ...           ]              [ :      ]
     #     [                       V^T     ]              [ 0      ]
     n, k = basis.shape
-    residual = problem.relative_residuals(u[None])[0]
-    jacobian = problem.relative_jacobians(u[None])[0]
-    hessian = problem.hessian(u) / problem.magnitude
     m = len(jacobian)
     rows = m + k * m + k * k
-    matrix = np.zeros((rows, n + k * n))
-    right_side = np.zeros(rows)
+    matrix = np.zeros((rows, n + k * n), dtype=jacobian.dtype)
+    right_side = np.zeros(rows, dtype=jacobian.dtype)
     matrix[:m, :n] = jacobian
     right_side[:m] = -residual
-    for j in range(k):
-        null = block_slice(m, j, m)  # rows of F'' v_j
-        across = block_slice(m + k * m, j, k)  # rows of V^T
-        column = block_slice(n, j, n)  # columns of dv_j
-        matrix[null, :n] = hessian @ basis[:, j]
+    for j, bend in enumerate(bends):
+        null = _block(m, j, m)  # rows of F'' v_j
+        across = _block(m + k * m, j, k)  # rows of V^T
+        column = _block(n, j, n)  # columns of dv_j
+        matrix[null, :n] = bend
         matrix[null, column] = jacobian
         right_side[null] = -jacobian @ basis[:, j]
         matrix[across, column] = basis.T
     return matrix, right_side
 
 
-def block_slice(begin: int, number: int, size: int) -> slice:
+def _block(begin: int, number: int, size: int) -> slice:
     """Block of a ``number`` among blocks of one ``size``, the first of which is at
     ``begin``."""
     start = begin + number * size

@@ -1,33 +1,156 @@
-"""A singular point as data: where it is, what leaves it, and its kind."""
+"""Special points: their kinds, and a singular point as data: where it is, what leaves
+it, and its kind."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 
 from bifurc.decisions import leaves_to_other_side, leaves_to_same_side
-from bifurc.singular.invariants import Invariants
+
+
+class Mark(NamedTuple):
+    """A symbol as matplotlib calls it, its size in points, and the colour inside."""
+
+    symbol: str = "s"
+    size: float = 5.0
+    fill: str = "white"
+
+
+SQUARE = Mark()
 
 
 class Kind(Enum):
-    """What a singular point is."""
+    """What a special point of a curve is.
+
+    The ``value`` is its name in texts and in JSON, that of the member the one in
+    datasets. ``initial`` begins the names of such points, ``mark`` stands for them in
+    figures, ``title`` above their table in a summary. Those that a diagram lists have a
+    ``plural``, and ``columns`` of their own in the table.
+    """
+
+    initial: str
+    mark: Mark
+    title: str
+    plural: str
+    columns: tuple[str, ...]
+
+    def __new__(
+        cls,
+        value: str,
+        initial: str = "S",
+        mark: Mark = SQUARE,
+        title: str = "Other singular points",
+        plural: str = "",
+        columns: tuple[str, ...] = (),
+    ) -> Kind:
+        kind = object.__new__(cls)
+        kind._value_ = value
+        kind.initial, kind.mark, kind.title = initial, mark, title
+        kind.plural, kind.columns = plural, columns
+        return kind
+
+    # --- where the rank of F' drops ---------------------------------------------------
 
     # Two or more branches meet.
-    BIFURCATION = "bifurcation"
-    # One smooth branch passes.
-    RANK_DROP = "rank drop"
-    # Two half-branches leave to the same side.
-    CUSP = "cusp"
-    # No branch passes.
-    ISOLATED = "isolated"
+    BIFURCATION = "bifurcation", "B", Mark("o", 6.5), "Bifurcations"
+    # One smooth branch passes; of a large problem, second order shows no other.
+    RANK_DROP = "rank drop", "R", Mark("D"), "Rank drops (a single branch passes)"
     # Branches meet a component of dimension 2 or more.
-    DIMENSION_CHANGE = "dimension change"
+    DIMENSION_CHANGE = (
+        "dimension change",
+        "D",
+        SQUARE,
+        "Changes of dimension (a surface is met)",
+    )
+    # Two half-branches leave to the same side.
+    CUSP = ("cusp",)
+    # No branch passes.
+    ISOLATED = ("isolated",)
     # The point lies on a component of dimension 2 or more, and no branch passes.
-    SURFACE = "singular point of a surface"
+    SURFACE = ("singular point of a surface",)
     # Two ways of looking disagree.
-    UNDECIDED = "undecided"
+    UNDECIDED = ("undecided",)
+    # Of a large problem: other curves pass in directions of their own.
+    CROSSING = ("crossing",)
+    # The rank drops by two or more, and the directions of other curves are not computed.
+    MULTIPLE = ("multiple singular point, directions not computed",)
+    # The smallest singular value has a minimum above zero.
+    NEAR_MISS = ("near miss",)
+
+    # --- along a parameter ------------------------------------------------------------
+
+    # The parameter turns back: a limit point.
+    FOLD = (
+        "fold",
+        "F",
+        SQUARE,
+        "Folds ({parameter} turns back)",
+        "folds",
+        ("unknowns", "error"),
+    )
+    # A pair of eigenvalues crosses the imaginary axis.
+    HOPF = (
+        "Hopf point",
+        "H",
+        Mark("^"),
+        "Hopf points",
+        "Hopf points",
+        ("unknowns", "frequency"),
+    )
+    # A function of the user's takes a value.
+    EVENT = "event", "E", SQUARE, "Events", "events", ("event", "unknowns")
+    # It takes the value and turns back, or stays within rounding of it.
+    TOUCH = (
+        "touch",
+        "T",
+        Mark("d"),
+        "Events that are touched",
+        "touches",
+        ("event", "unknowns", "error"),
+    )
+
+    # --- how branches cross, seen along a parameter -----------------------------------
+
+    # Both go on to either side.
+    TRANSCRITICAL = "transcritical", "B", Mark("o", 6.5, "0.85")
+    # One of them turns back. Whether it is stable where the other is not, is not known.
+    PITCHFORK = "pitchfork", "B", Mark("o", 6.5, "0.6")
+    # The one that turns back has fewer unstable directions than the other beside it.
+    SUPERCRITICAL = "supercritical pitchfork", "B", Mark("o", 6.5)
+    # It has more of them.
+    SUBCRITICAL = "subcritical pitchfork", "B", Mark("o", 6.5, "black")
+    # More than two branches, or one that stands still without turning back.
+    OTHER = "branch point", "B", Mark("o", 6.5)
+
+
+@dataclass(frozen=True)
+class Invariants:
+    """What stays as it is where the coordinates change.
+
+    ``multiplicity``: in how many points a line nearby meets the curve, at most, complex
+    ones counted; ``branches`` through the point, complex ones counted; ``delta``: how
+    many crossings the curve has nearby once it is deformed in general; ``contacts``: the
+    orders of contact (intersection numbers) of any two real branches, in order, 1 where
+    they cross.
+    """
+
+    multiplicity: int
+    branches: int
+    delta: int
+    contacts: tuple[int, ...]
+
+    @property
+    def milnor_number(self) -> int:
+        """mu = 2 delta - branches + 1 (Milnor 1968, theorem 10.5)."""
+        return 2 * self.delta - self.branches + 1
+
+
+CROSSING = Invariants(multiplicity=2, branches=2, delta=1, contacts=(1,))
+LONE_POINT = Invariants(multiplicity=2, branches=2, delta=1, contacts=())
 
 
 @dataclass(frozen=True, eq=False)

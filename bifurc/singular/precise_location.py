@@ -14,7 +14,7 @@ import numpy as np
 from bifurc.curves.misclosure import misclosure_at
 from bifurc.decisions import misses_by_rounding, solves_exactly
 from bifurc.problem import Problem
-from bifurc.singular.confirm import Differences, augmented_system, least_squares
+from bifurc.singular.confirm import Differences, as_precise, gauss_newton_step
 from bifurc.singular.locate import LocatedPoint
 
 DIGITS = 40  # that are worked to; the derivatives are differences, at three times these
@@ -74,10 +74,8 @@ def precisely_located(
     reach = max(FARTHEST * located.error, NEAREST * problem.scale)
     with mpmath.workdps(3 * DIGITS + 10):
         derivatives = Differences(residual, mpmath.mpf(10) ** -DIGITS)
-        start = mpmath.matrix(located.u.tolist())
-        basis = mpmath.matrix(located.null_space.tolist())
         try:
-            end = _iterate(derivatives, start, basis, reach)
+            end = _iterate(derivatives, located, reach)
         except (ZeroDivisionError, ValueError, OverflowError):
             return located  # it left where the function is defined
     if end is None:
@@ -93,23 +91,18 @@ def precisely_located(
 
 
 def _iterate(
-    derivatives: Differences,
-    start: mpmath.matrix,
-    basis: mpmath.matrix,
-    reach: float,
+    derivatives: Differences, located: LocatedPoint, reach: float
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Where the iteration settles, as doubles: the point (n,) and vectors (n, k) that
     span its null space; None where it does not, or farther away than ``reach``."""
     negligible = mpmath.mpf(10) ** (-2 * DIGITS)
-    u = start.copy()
+    start, basis = as_precise(located.u), as_precise(located.null_space)
+    u = start
     enough = ENOUGH * min(reach / NEAREST, 1.0)
     lengths: list[mpmath.mpf] = []
     rates: list[mpmath.mpf] = []
     for _ in range(ITERATIONS):
-        matrix, right_side = augmented_system(derivatives, u, basis)
-        step = least_squares(matrix, right_side, negligible)
-        n, k = basis.rows, basis.cols
-        du = mpmath.matrix(step[:n])
+        du, dv = gauss_newton_step(derivatives, u, basis, negligible)
         length = mpmath.norm(du)
         lengths.append(length)
         if len(lengths) > 1 and lengths[-2]:
@@ -117,15 +110,11 @@ def _iterate(
         ahead = _ahead(rates)
         if ahead > 1:
             lengths, rates = [], []  # the next steps are those of another series
-        u = u + ahead * du
-        for j in range(k):
-            for i in range(n):
-                basis[i, j] += step[n + j * n + i]
+        u, basis = u + ahead * du, basis + dv
         if mpmath.norm(u - start) > reach:
             return None
         if length < enough:
-            vectors = [[float(basis[i, j]) for j in range(k)] for i in range(n)]
-            return np.array([float(x) for x in u]), np.array(vectors)
+            return u.astype(float), basis.astype(float)
     return None
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from bifurc.atlas import Atlas, Form, MeetingPoint
 from bifurc.completeness import completeness_document
 from bifurc.diagrams.diagram import Diagram, DiagramPoint
-from bifurc.singular.invariants import Invariants
+from bifurc.singular.point import Invariants, Kind
 from bifurc.systems.verdict import verdict_of
 
 Json: TypeAlias = "str | float | bool | list[Json] | dict[str, Json] | None"
@@ -146,10 +146,13 @@ def _diagram(atlas: Atlas, diagram: Diagram | None) -> dict[str, Json] | None:
         return None
     return {
         "parameter": diagram.parameter,
-        "folds": [_diagram_point(atlas, one) for one in diagram.folds],
-        "hopf_points": [_diagram_point(atlas, one) for one in diagram.hopf_points],
-        "events": [_diagram_point(atlas, one) for one in diagram.events()],
-        "touches": [_diagram_point(atlas, one) for one in diagram.touches()],
+        **{
+            kind.plural.lower().replace(" ", "_"): [
+                _diagram_point(atlas, one) for one in diagram.points if one.kind is kind
+            ]
+            for kind in Kind
+            if kind.plural
+        },
         "branchings": [
             {"point": atlas.points[one.point].name, "kind": one.kind.value}
             for one in diagram.branchings

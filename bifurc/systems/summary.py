@@ -4,12 +4,14 @@ unknowns."""
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import chain
 
 import numpy as np
 
 from bifurc.atlas import Atlas, Form, MeetingPoint
 from bifurc.branch import Branch, Outcome
-from bifurc.diagrams.diagram import DiagramPoint, PointKind
+from bifurc.diagrams.diagram import Diagram
+from bifurc.singular.point import Kind
 from bifurc.systems.verdict import verdict_of
 from bifurc.text_tables import section
 
@@ -27,12 +29,7 @@ def make_summary(atlas: Atlas) -> str:
         _forms(atlas),
         _surfaces(atlas),
         _points(atlas),
-        _folds(atlas),
-        _hopf_points(atlas),
-        _events(atlas),
-        _touches(atlas),
-        _remarks(atlas),
-        _stretches(atlas),
+        *_along_parameter(atlas),
         _near_misses(atlas),
         _isolated(atlas),
         f"Completeness ({completeness.level}): {completeness.statement}.",
@@ -141,60 +138,40 @@ def _members(atlas: Atlas, point: MeetingPoint) -> str:
     return ", ".join(forms + surfaces) or NONE
 
 
-def _diagram_points(atlas: Atlas, kind: PointKind) -> list[DiagramPoint]:
-    if atlas.diagram is None:
-        return []
-    return [point for point in atlas.diagram.points if point.kind is kind]
-
-
-def _folds(atlas: Atlas) -> str:
+def _diagram_points(atlas: Atlas, diagram: Diagram, kind: Kind) -> str:
+    """What happens along the forms, of one kind, with the columns of that."""
+    heads = {"unknowns": _heads(atlas)}
     rows = []
-    for point in _diagram_points(atlas, PointKind.FOLD):
-        row = [point.name, *_numbers(point.u), f"{point.error:.0e}"]
-        rows.append([*row, atlas.forms[point.form].name])
-    parameter = atlas.diagram.parameter if atlas.diagram else ""
-    title = f"Folds ({parameter} turns back)"
-    return _shown(title, ["name", *_heads(atlas), "error", "form"], rows)
+    for point in diagram.points:
+        if point.kind is not kind:
+            continue
+        cells = {
+            "event": [point.label],
+            "unknowns": _numbers(point.u),
+            "frequency": [f"{point.value:.10g}"],
+            "error": [f"{point.error:.0e}"],
+        }
+        own = chain.from_iterable(cells[column] for column in kind.columns)
+        rows.append([point.name, *own, atlas.forms[point.form].name])
+    named = chain.from_iterable(heads.get(column, [column]) for column in kind.columns)
+    title = kind.title.format(parameter=diagram.parameter)
+    return _shown(title, ["name", *named, "form"], rows)
 
 
-def _hopf_points(atlas: Atlas) -> str:
-    rows = []
-    for point in _diagram_points(atlas, PointKind.HOPF):
-        row = [point.name, *_numbers(point.u), f"{point.value:.10g}"]
-        rows.append([*row, atlas.forms[point.form].name])
-    heads = ["name", *_heads(atlas), "frequency", "form"]
-    return _shown("Hopf points", heads, rows)
-
-
-def _events(atlas: Atlas) -> str:
-    rows = []
-    for point in _diagram_points(atlas, PointKind.EVENT):
-        row = [point.name, point.label, *_numbers(point.u)]
-        rows.append([*row, atlas.forms[point.form].name])
-    heads = ["name", "event", *_heads(atlas), "form"]
-    return _shown("Events", heads, rows)
-
-
-def _touches(atlas: Atlas) -> str:
-    rows = []
-    for point in _diagram_points(atlas, PointKind.TOUCH):
-        row = [point.name, point.label, *_numbers(point.u), f"{point.error:.0e}"]
-        rows.append([*row, atlas.forms[point.form].name])
-    heads = ["name", "event", *_heads(atlas), "error", "form"]
-    return _shown("Events that are touched", heads, rows)
-
-
-def _remarks(atlas: Atlas) -> str:
-    """What is to be said of events."""
-    remarks = atlas.diagram.remarks if atlas.diagram else ()
-    return "\n".join(f"Note: {remark}." for remark in remarks)
-
-
-def _stretches(atlas: Atlas) -> str:
-    """Where on each form it is stable, where that is known."""
+def _along_parameter(atlas: Atlas) -> list[str]:
+    """What the diagram says: points kind by kind, remarks on events, stability."""
     diagram = atlas.diagram
     if diagram is None:
-        return ""
+        return []
+    return [
+        *(_diagram_points(atlas, diagram, kind) for kind in Kind),
+        "\n".join(f"Note: {remark}." for remark in diagram.remarks),
+        _stretches(atlas, diagram),
+    ]
+
+
+def _stretches(atlas: Atlas, diagram: Diagram) -> str:
+    """Where on each form it is stable, where that is known."""
     parameter = list(atlas.names).index(diagram.parameter) if diagram.parameter else 0
     rows = []
     for stretch in diagram.stretches:

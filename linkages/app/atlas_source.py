@@ -6,17 +6,33 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
-from linkages.app.answer.subject import subject_at
-from linkages.app.atlas_file import open_linkage_atlas
-from linkages.app.choice import require_loop, require_table
+from bifurc.files.dataset import load_atlas
+from linkages.app.choice import require_table
 from linkages.app.exit_codes import CommandError
 from linkages.app.exploration import explore_linkage, require_uninterrupted
 from linkages.app.inputs import choose_held
 from linkages.app.options import HoldOptions, SearchOptions
+from linkages.app.subject import as_subject, subject_at
+from linkages.labels import NoLinkageError
 from linkages.linkage import Linkage
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
+
+
+def open_linkage_atlas(path: str) -> Atlas:
+    """The atlas of a linkage in a file. Raises `bifurc.AtlasFileError` for a file that
+    holds no atlas, and `CommandError` for one that holds another, or is not there."""
+    try:
+        atlas = load_atlas(path)
+    except FileNotFoundError:
+        raise CommandError(f"{path}: there is no such file") from None
+    try:
+        subject_at(atlas)
+    except NoLinkageError as error:
+        raise CommandError(f"{path}: {error}") from None
+    return atlas
+
 
 ATLAS_FILE = ".nc"  # how the name of a saved atlas ends
 NOTHING_HELD = HoldOptions()
@@ -69,9 +85,9 @@ def loop_atlas_of(
         require_table(source, subject_at(atlas).table)
     else:
         linkage = choose_held(source, parameters, hold)
-        require_loop(source, linkage)
+        require_table(source, as_subject(linkage).table)
         atlas = _explored(linkage, search)
-    return subject_at(atlas).in_loop_angles()
+    return subject_at(atlas).in_loop_angles(atlas)
 
 
 def _explored(linkage: Linkage | Mechanism, search: SearchOptions) -> Atlas:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -21,16 +21,14 @@ from linkages.values import GeometryError, check_angle
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
+Kind = TypeVar("Kind")
 
-def require_loop(text: str, linkage: Linkage | Mechanism) -> Loop:
-    """The loop of a linkage, or of a mechanism that is a single loop of revolute
-    joints; raises `CommandError` for another one."""
-    if isinstance(linkage, Linkage):
-        return linkage.loop
-    from linkages.readout.readout import Readout
 
-    single = Readout(linkage).single_loop
-    return require_table(text, None if single is None else single.loop)
+def require_kind(value: object, kind: type[Kind], refusal: str) -> Kind:
+    """A value of this kind; raises `CommandError` for another one."""
+    if not isinstance(value, kind):
+        raise CommandError(refusal)
+    return value
 
 
 def require_table(text: str, table: Loop | None) -> Loop:
@@ -77,18 +75,12 @@ def _family(text: str) -> Entry | NetworkEntry:
 def _require_size(text: str, linkage: Linkage | Mechanism) -> None:
     """Raise `CommandError` for lengths whose squares leave the range of doubles."""
     with np.errstate(over="ignore"):
-        size = _size(linkage)
+        size = linkage.extent
     if not SMALLEST < size < LARGEST:
         raise CommandError(
             f"{text}: the lengths are about {size:.1g}; choose a unit in which they "
             f"are between {SMALLEST:g} and {LARGEST:g}"
         )
-
-
-def _size(linkage: Linkage | Mechanism) -> float:
-    if isinstance(linkage, Linkage):
-        return linkage.loop.characteristic_length
-    return linkage.extent
 
 
 def choose_precisely(text: str, parameters: Sequence[str] = ()) -> Loop:

@@ -1,33 +1,38 @@
 """The command line `bifurc`: its commands, and what becomes of their errors.
 
-Modules are imported by the command that needs them: ``bifurc --help`` imports click and
-little else.
+A command is imported when it is called, with the modules that it needs: ``bifurc
+--help`` imports click and little else.
 """
 
 from __future__ import annotations
 
 import difflib
+from importlib import import_module
 
 import click
 
 from bifurc.errors import BifurcError
-from linkages.app.commands.clearance_command import clearance_command
-from linkages.app.commands.convert_command import convert_command
-from linkages.app.commands.export_command import export_command
-from linkages.app.commands.figure_command import figure_command
-from linkages.app.commands.identify_command import identify_command
-from linkages.app.commands.list_command import list_command
-from linkages.app.commands.map_command import map_command
-from linkages.app.commands.network_command import network_command
-from linkages.app.commands.route_command import route_command
-from linkages.app.commands.show_command import show_command
-from linkages.app.commands.solve_command import solve_command
-from linkages.app.commands.sweep_command import sweep_command
-from linkages.app.commands.tolerance_command import tolerance_command
-from linkages.app.commands.verify_command import verify_command
-from linkages.app.commands.view_command import view_command
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.status import library_messages
+
+# each in a module of its own, `linkages.app.commands`
+COMMANDS = (
+    "clearance",
+    "convert",
+    "export",
+    "figure",
+    "identify",
+    "list",
+    "map",
+    "network",
+    "route",
+    "show",
+    "solve",
+    "sweep",
+    "tolerance",
+    "verify",
+    "view",
+)
 
 
 class Failure(click.ClickException):
@@ -44,7 +49,19 @@ class Failure(click.ClickException):
 
 
 class Commands(click.Group):
-    """A group that turns errors into one line and an exit code."""
+    """The commands, and their errors as one line and an exit code."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """The names of the commands."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """The command of a name, just imported; None where there is none."""
+        if cmd_name not in COMMANDS:
+            return None
+        module = import_module(f"linkages.app.commands.{cmd_name}_command")
+        command: click.Command = getattr(module, f"{cmd_name}_command")
+        return command
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """What is left of the arguments after the options of the group itself."""
@@ -121,23 +138,3 @@ def main(ctx: click.Context) -> None:
     """
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help())
-
-
-for command in (
-    list_command,
-    show_command,
-    identify_command,
-    map_command,
-    network_command,
-    view_command,
-    figure_command,
-    route_command,
-    export_command,
-    clearance_command,
-    convert_command,
-    sweep_command,
-    tolerance_command,
-    verify_command,
-    solve_command,
-):
-    main.add_command(command)

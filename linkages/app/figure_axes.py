@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from linkages.app.exit_codes import CommandError
-from linkages.linkage import Linkage
+from linkages.app.subject import as_subject
 
 if TYPE_CHECKING:
+    from linkages.linkage import Linkage
     from linkages.mechanisms.mechanism import Mechanism
 
 
@@ -34,22 +35,11 @@ def figure_axes(
     twice."""
     if axes is None and against is None:
         return FigureAxes()
-    names = names_of_unknowns(linkage)
+    names = as_subject(linkage).unknowns
     numbers = read_numbers("--against", against or (), names)
     return FigureAxes(
         read_numbers("--axes", axes or (), names), numbers[0] if numbers else None
     )
-
-
-def names_of_unknowns(linkage: Linkage | Mechanism) -> list[str]:
-    """The unknowns by the names of the joint variables that they are, in their
-    order."""
-    if isinstance(linkage, Linkage):
-        return [f"theta{number}" for number in range(1, linkage.loop.n + 1)]
-    from linkages.readout.readout import Readout
-
-    readout = Readout(linkage)
-    return [unknown.label for unknown in readout.structure.unknowns]
 
 
 def read_numbers(

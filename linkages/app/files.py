@@ -17,7 +17,7 @@ from linkages.app.figure_axes import FigureAxes
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from bifurc.files.variable import Variable
+    from bifurc.files.table import Variable
 
 
 def prepare_folder(folder: Path) -> list[Path]:
@@ -97,7 +97,7 @@ def _figures_over(over: FigureAxes) -> dict[str, Callable[[Atlas], Figure]]:
             plot_map_in_space, unknowns=over.transition_map
         )
     if over.singular_values is not None:
-        from bifurc.figures.singular_values_against import plot_singular_values_against
+        from bifurc.figures.singular_values import plot_singular_values_against
 
         others["singular_values"] = partial(
             plot_singular_values_against, unknown=over.singular_values

@@ -9,7 +9,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from linkages.app.choice import choose_linkage, read_number, split_parameter
+from linkages.app.choice import (
+    choose_linkage,
+    read_number,
+    require_kind,
+    split_parameter,
+)
 from linkages.app.exit_codes import CommandError
 from linkages.app.options import HoldOptions
 from linkages.linkage import Linkage
@@ -17,6 +22,10 @@ from linkages.values import GeometryError, check_angle, told_apart
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
+    from linkages.networks.mechanism import NetworkMechanism
+
+# why something has no centre to be left without
+NO_NETWORK = "--without-centre: it takes a network, and {} is none"
 
 
 @dataclass(frozen=True)
@@ -49,18 +58,19 @@ def hold_joints(text: str, linkage: Linkage | Mechanism, hold: HoldOptions) -> I
     """
     if hold == HoldOptions():
         return Inputs(linkage)
-    if isinstance(linkage, Linkage):
-        if hold.is_without_centre:
-            without_centre(text, linkage)
-        raise CommandError(
-            f"{hold.names}: it takes a mechanism with joints by name, and {text} is a "
-            "single loop, a table or axes"
-        )
-    locked = _with_locks(linkage, hold.locks)
+    if hold.is_without_centre:
+        _require_network(text, linkage)
+    from linkages.mechanisms.mechanism import Mechanism
+
+    refusal = (
+        f"{hold.names}: it takes a mechanism with joints by name, and {text} is a "
+        "single loop, a table or axes"
+    )
+    locked = _with_locks(require_kind(linkage, Mechanism, refusal), hold.locks)
     inputs = Inputs(locked) if hold.driver is None else _driven(locked, hold.driver)
     if not hold.is_without_centre:
         return inputs
-    loop = without_centre(text, inputs.mechanism)
+    loop = _without_centre(_require_network(text, inputs.mechanism))
     return Inputs(loop.mechanism, inputs.notes + loop.notes)
 
 
@@ -103,29 +113,25 @@ def read_kinks(texts: Sequence[str], option: str = "--lock") -> dict[str, float]
     return kinks
 
 
-def without_centre(text: str, linkage: Linkage | Mechanism) -> Inputs:
-    """The single loop that is left of a network without the bars inside; raises
-    `CommandError` for anything else."""
+def _require_network(text: str, linkage: Linkage | Mechanism) -> NetworkMechanism:
     from linkages.networks.mechanism import NetworkMechanism
 
-    if not isinstance(linkage, NetworkMechanism):
-        raise no_network(text)
-    loop = linkage.without_centre()
+    return require_kind(linkage, NetworkMechanism, NO_NETWORK.format(text))
+
+
+def _without_centre(network: NetworkMechanism) -> Inputs:
+    """The single loop that is left of a network without the bars inside."""
+    loop = network.without_centre()
     note = (
         "--without-centre: every motion of the network is one of this loop, and the "
         "loop may have more: taking the middle away adds forms and bifurcations"
     )
-    followers = [joint for joint in linkage.still if joint not in linkage.kinks]
+    followers = [joint for joint in network.still if joint not in network.kinks]
     notes: tuple[str, ...] = (note,)
     if followers:
         names = ", ".join(followers)
         notes += (f"--without-centre: replaced as well, for it does not move: {names}",)
     return Inputs(Linkage(loop), notes)
-
-
-def no_network(text: str) -> CommandError:
-    """The error for something that has no centre to be left without."""
-    return CommandError(f"--without-centre: it takes a network, and {text} is none")
 
 
 def _read_locks(mechanism: Mechanism, texts: Sequence[str]) -> dict[str, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from bifurc.settings import SearchSettings
 
 Command = Callable[..., None]
+Option = Callable[[Command], Command]
 
 MOST_STARTS = 1_000_000
 LARGEST_SEED = 2**63 - 1  # files store the seed as a signed number of 64 bits
@@ -111,6 +112,23 @@ SEED = click.IntRange(0, LARGEST_SEED)
 POSITIVE = NumberRange(min=0, min_open=True, allows_infinity=True)
 
 
+def with_record(
+    command: Command, name: str, record: type, options: Mapping[str, Option]
+) -> Command:
+    """``command`` with ``options`` by the names of their values: it takes all of them
+    as one ``record``, whose fields are so called, behind ``name``."""
+
+    @wraps(command)
+    def taking_record(**values: object) -> None:
+        own = {key: values.pop(key) for key in options}
+        command(**{name: record(**own)}, **values)
+
+    decorated: Command = taking_record
+    for option in reversed(list(options.values())):
+        decorated = option(decorated)
+    return decorated
+
+
 @dataclass(frozen=True)
 class SearchOptions:
     """How a linkage is explored: what stands on the command line.
@@ -142,8 +160,8 @@ class SearchOptions:
         )
 
 
-SEARCH_OPTIONS = (
-    click.option(
+SEARCH_OPTIONS = {
+    "starts": click.option(
         "--starts",
         default=200,
         type=STARTS,
@@ -151,45 +169,34 @@ SEARCH_OPTIONS = (
         help="Random starts; of a mechanism up to 16 times as many where some of what "
         "it has is met by few.",
     ),
-    click.option(
+    "seed": click.option(
         "--seed",
         default=0,
         type=SEED,
         show_default=True,
         help="Seed of the random starts.",
     ),
-    click.option(
+    "tolerance": click.option(
         "--tolerance",
         default=1e-13,
         type=NumberRange(1e-14, 1e-7),
         show_default=True,
         help="How closely curves are followed.",
     ),
-    click.option(
+    "budget": click.option(
         "--budget",
         type=POSITIVE,
         default=math.inf,
         metavar="SECONDS",
         help="End the search after so long, with what was found.  [default: none]",
     ),
-)
+}
 
 
 def search_options(command: Command) -> Command:
     """``command`` with the options of a search, which it takes as one `SearchOptions`
     called ``search``."""
-
-    @wraps(command)
-    def with_search(
-        starts: int, seed: int, tolerance: float, budget: float, **others: object
-    ) -> None:
-        search = SearchOptions(starts, seed, tolerance, budget)
-        command(search=search, **others)
-
-    decorated: Command = with_search
-    for option in reversed(SEARCH_OPTIONS):
-        decorated = option(decorated)
-    return decorated
+    return with_record(command, "search", SearchOptions, SEARCH_OPTIONS)
 
 
 @dataclass(frozen=True)
@@ -215,8 +222,8 @@ class HoldOptions:
         return ", ".join(name for name, is_given in given.items() if is_given)
 
 
-HOLD_OPTIONS = (
-    click.option(
+HOLD_OPTIONS = {
+    "locks": click.option(
         "--lock",
         "locks",
         multiple=True,
@@ -227,7 +234,7 @@ HOLD_OPTIONS = (
             "a network at a D-H angle; may be given several times."
         ),
     ),
-    click.option(
+    "driver": click.option(
         "--drive",
         "driver",
         metavar="JOINT",
@@ -236,33 +243,19 @@ HOLD_OPTIONS = (
             "others; says which."
         ),
     ),
-    click.option(
+    "is_without_centre": click.option(
         "--without-centre",
         "is_without_centre",
         is_flag=True,
         help="Of a network with locks, take the single loop that its outer bars leave.",
     ),
-)
+}
 
 
 def hold_options(command: Command) -> Command:
     """``command`` with the options for joints that are held, which it takes as one
     `HoldOptions` called ``hold``."""
-
-    @wraps(command)
-    def with_hold(
-        locks: tuple[str, ...],
-        driver: str | None,
-        is_without_centre: bool,
-        **others: object,
-    ) -> None:
-        hold = HoldOptions(locks, driver, is_without_centre)
-        command(hold=hold, **others)
-
-    decorated: Command = with_hold
-    for option in reversed(HOLD_OPTIONS):
-        decorated = option(decorated)
-    return decorated
+    return with_record(command, "hold", HoldOptions, HOLD_OPTIONS)
 
 
 form_option = click.option(
@@ -284,12 +277,12 @@ verbose_option = click.option(
 )
 
 
-def json_option(angles: str = "") -> Callable[[Command], Command]:
+def json_option(angles: str = "") -> Option:
     """The option ``--json``; ``angles`` says what follows in its help."""
     text = f"Print one JSON document and nothing else{angles}."
     return click.option("--json", "as_json", is_flag=True, help=text)
 
 
-def out_option(content: str) -> Callable[[Command], Command]:
+def out_option(content: str) -> Option:
     """The option ``--out``, a folder for ``content``."""
     return click.option("--out", type=FOLDER, help=f"Folder for {content}.")

@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from linkages.structure.elements import Element, Elements, extent, reaches
+from linkages.structure.rods import Rod
 from linkages.structure.structure import Closure, ClosureKind, Structure
 
 # The translation of a displacement, over its residual where that is at most 0.2: the
@@ -111,10 +112,23 @@ class _Chain:
         self.closure = closure
         self.blocks = elements.blocks
         self.rods = elements.rods
-        self.placement = structure.placement(closure)
-        self.elements: list[Element] = elements.of(closure, self.placement)
+        placement = structure.placement(closure)
+        self.elements: list[Element] = elements.of(closure, placement)
         self._turns = np.array([element.is_turn for element in self.elements])
         self._pitches = np.array([abs(element.advance) for element in self.elements])
+        self._stretches = np.array([element.stretch for element in self.elements])
+        # by how much what comes before each element (e,) may make a vector longer
+        self._before_stretched = np.cumprod([1.0, *self._stretches])[:-1]
+        # the places at both ends: the origin of a cycle, the points of another one
+        start = end = np.zeros(3)
+        if closure.kind is not ClosureKind.CYCLE:
+            start = placement.point(closure.first)
+            end = placement.point(closure.second)
+        # how far every axis (e,) can be from them, where nothing stretches the way
+        self._before = reaches(self.elements[::-1], start)[::-1]
+        self._after = reaches(self.elements, end)
+        # how far the end of the chain can be from its beginning
+        self._total = extent(self.elements, start, end)
 
     def near(self, misclosure: float) -> np.ndarray:
         """Bounds on |d2F / dxi dxj| where F is at most ``misclosure``."""
@@ -122,16 +136,16 @@ class _Chain:
             gap = TRANSLATION * misclosure
             reach = np.minimum(self._before, self._after + gap)
             return self._scattered(self._of_cycle(reach, gap))
-        is_rod = self.closure.kind is ClosureKind.ROD
-        gap = self._distance if is_rod else misclosure
+        rod = self.closure.rod
+        gap = misclosure if rod is None else self.rods.longest(rod)
         reach = self._after
-        if not self._is_stretched:
+        if not np.any(self._stretches > 1.0):
             reach = np.minimum(reach, self._before + gap)
         sizes = self._sizes(reach)
         second = self._of_point(sizes)
-        if is_rod:
-            return self._of_rod(sizes, second, self._distance)
-        return self._scattered(second)
+        if rod is None:
+            return self._scattered(second)
+        return self._of_rod(rod, sizes, second, gap)
 
     def of_all_orders(self) -> np.ndarray:
         """The same for derivatives of the second and all higher orders that are by
@@ -143,9 +157,11 @@ class _Chain:
         largest = max(1.0, float(sizes.max(initial=0.0)))
         sizes = np.full(len(sizes), largest)
         second = np.full((len(sizes), len(sizes)), largest)
-        if self.closure.kind is ClosureKind.POINT:
+        rod = self.closure.rod
+        if rod is None:
             return self._scattered(second)
-        return self._of_rod(sizes, second, max(self._distance, largest))
+        distance = max(self.rods.longest(rod), largest)
+        return self._of_rod(rod, sizes, second, distance)
 
     def _of_cycle(self, reach: np.ndarray, gap: float) -> np.ndarray:
         """Twice a quarter of the product of two screws and a displacement with a
@@ -176,26 +192,18 @@ class _Chain:
         return result
 
     def _of_rod(
-        self, sizes: np.ndarray, second: np.ndarray, distance: float
+        self, rod: Rod, sizes: np.ndarray, second: np.ndarray, distance: float
     ) -> np.ndarray:
         """Bounds by blocks on half the square of the distance of two points, and of the
         length of a leg, over that of the rod, where it is ``distance`` at most."""
+        length = rod.length / self.structure.unit
         products = np.outer(sizes, sizes) + distance * second
-        of_rod = self._scattered(products / self._length)
-        of_rod += self._of_leg()
-        return of_rod
-
-    def _of_leg(self) -> np.ndarray:
-        """The bound by the variable of a leg, half the square of its length, over what
-        that is in the reference configuration; 0 where there is none."""
-        result = np.zeros((self.blocks.count, self.blocks.count))
-        rod = self.closure.rod
-        assert rod is not None
+        of_rod = self._scattered(products / length)
         share = None if rod.leg is None else self.structure.share(rod.leg.variable)
         if share is not None:
             block = self.blocks.of_column[share.column]
-            result[block, block] = share.rate**2 / self._length
-        return result
+            of_rod[block, block] += share.rate**2 / length
+        return of_rod
 
     def _scattered(self, bounds: np.ndarray) -> np.ndarray:
         """Bounds by two elements (e, e) as bounds by two blocks."""
@@ -206,58 +214,3 @@ class _Chain:
                     rates = first.rate * second.rate
                     result[first.block, second.block] += rates * bounds[i, j]
         return result
-
-    # --- reach ------------------------------------------------------------------------
-
-    @property
-    def _length(self) -> float:
-        assert self.closure.rod is not None
-        return self.closure.rod.length / self.structure.unit
-
-    @property
-    def _distance(self) -> float:
-        """How far the point at the end of the chain can be from that at its
-        beginning."""
-        assert self.closure.rod is not None
-        return self.rods.longest(self.closure.rod)
-
-    @property
-    def _stretches(self) -> np.ndarray:
-        return np.array([element.stretch for element in self.elements])
-
-    @property
-    def _before_stretched(self) -> np.ndarray:
-        """By how much what comes before each element (e,) may make a vector longer."""
-        return np.concatenate([[1.0], np.cumprod(self._stretches)[:-1]])
-
-    @property
-    def _is_stretched(self) -> bool:
-        return bool(np.any(self._stretches > 1.0))
-
-    @property
-    def _before(self) -> np.ndarray:
-        """How far every axis (e,) can be from the place at the beginning of the chain:
-        the origin of a cycle, the point of another one. Nothing may stretch it."""
-        return reaches(self.elements[::-1], self._beginning)[::-1]
-
-    @property
-    def _after(self) -> np.ndarray:
-        """The same from the place at the end of the chain."""
-        return reaches(self.elements, self._end)
-
-    @property
-    def _total(self) -> float:
-        """How far the end of the chain can be from its beginning."""
-        return extent(self.elements, self._beginning, self._end)
-
-    @property
-    def _beginning(self) -> np.ndarray:
-        if self.closure.kind is ClosureKind.CYCLE:
-            return np.zeros(3)
-        return self.placement.point(self.closure.first)
-
-    @property
-    def _end(self) -> np.ndarray:
-        if self.closure.kind is ClosureKind.CYCLE:
-            return np.zeros(3)
-        return self.placement.point(self.closure.second)

@@ -21,6 +21,7 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.completeness import Claim, Completeness, Level, Scope
 from bifurc.decisions import is_same_point
+from bifurc.problem import Problem
 from bifurc.seeds import Audit
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
@@ -29,7 +30,7 @@ from linkages.statements import LinkageClaim, estimated
 from linkages.structure.single_loop import SingleLoop, as_single_loop
 from linkages.structure.structure import Structure
 from linkages.turns.turn_classes import passes_but_for_turns
-from linkages.turns.turn_lattice import TurnLattice
+from linkages.turns.turn_lattice import TurnLattice, turn_lattice
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 TURN = 2 * math.pi
 HALVINGS = 60  # of a stretch in which a joint passes a limit
 MOST_STRETCHES = 2000  # that are begun from
+LARGEST_SEED = 2**32
 QUICK = 10.0  # s for the loop without limits where nothing is to be proved
 
 
@@ -48,6 +50,20 @@ class Stretches(NamedTuple):
     points: np.ndarray
     lengths: np.ndarray
     are_all: bool
+
+
+def for_subject(
+    problem: Problem, structure: Structure, rng: np.random.Generator, count: int
+) -> CutMotions | None:
+    """The motions of a mechanism with limits that is a loop without them, to be mapped
+    from ``count`` random starts; None for any other."""
+    single = loop_without_limits(structure)
+    if single is None:
+        return None
+    seed = int(rng.integers(LARGEST_SEED))
+    nowhere = np.empty((0, problem.n))
+    lattice = turn_lattice(structure)
+    return CutMotions(structure, single, lattice, count, seed, nowhere)
 
 
 def loop_without_limits(structure: Structure) -> SingleLoop | None:
@@ -66,15 +82,16 @@ def loop_without_limits(structure: Structure) -> SingleLoop | None:
 @dataclass(eq=False)
 class CutMotions:
     """The motions of a loop without limits, ``single``, mapped from so many random
-    ``starts`` of a ``seed`` and cut at the limits of a ``structure``, to be held
+    starts, ``count``, of a ``seed`` and cut at the limits of a ``structure``, to be held
     against those found within them, which are listed up to whole turns of the
     ``lattice``."""
 
     structure: Structure
     single: SingleLoop
     lattice: TurnLattice
-    starts: int
+    count: int
     seed: int
+    starts: np.ndarray
     _map: tuple[Atlas, Audit | None] | None = field(default=None, init=False)
 
     def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
@@ -106,13 +123,13 @@ class CutMotions:
         from bifurc.search.explore import explore
 
         settings = SearchSettings(
-            starts=self.starts,
+            starts=self.count,
             budget=seconds or QUICK,
             prove=seconds > 0.0,
             near_motions=False,
         )
         problem = LoopClosure(self.single.loop)
-        seeds = problem.seeds(np.random.default_rng(self.seed), self.starts)
+        seeds = problem.seeds(np.random.default_rng(self.seed), self.count)
         judge = seeds.audit
         audits: list[Audit] = []
 

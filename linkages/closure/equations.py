@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
-from typing import Any
 
 import numpy as np
 
@@ -218,7 +217,7 @@ class _ChainWriter:
         moment = np.cross(self.placement.point_on_axis(motion), direction)
         half = 0.5 * value
         advance = self._advance(motion, value)
-        return turn(direction, moment, _cosine(half), _sine(half), advance)
+        return turn(direction, moment, np.cos(half), np.sin(half), advance)
 
     def _advance(self, motion: Motion, value: Number) -> Number:
         """How far a turn by ``value`` advances, in the unit of the structure."""
@@ -254,7 +253,7 @@ class _ChainWriter:
         if not motion.is_turn:
             return _shifted(point, direction, value)
         center = self.placement.point_on_axis(motion)
-        turned = rotated_about(point, direction, center, _cosine(value), _sine(value))
+        turned = rotated_about(point, direction, center, np.cos(value), np.sin(value))
         return _shifted(turned, direction, self._advance(motion, value))
 
     def _carried(self, point: Point, step: Step) -> Point:
@@ -313,11 +312,3 @@ def _shifted(point: Point, direction: np.ndarray, distance: Number) -> Point:
     if isinstance(distance, float) and distance == 0.0:
         return point
     return [x + distance * float(d) for x, d in zip(point, direction, strict=True)]
-
-
-def _cosine(value: Number) -> Any:
-    return value.cos() if isinstance(value, RecordedNumber) else float(np.cos(value))
-
-
-def _sine(value: Number) -> Any:
-    return value.sin() if isinstance(value, RecordedNumber) else float(np.sin(value))

@@ -64,7 +64,7 @@ class JointErrors:
         for is_turn, vector in motions[:: step.sign]:
             size = float(np.linalg.norm(vector))
             if size > 0.0:
-                motion = Motion("error", is_turn, vector / size, place)
+                motion = Motion(is_turn, vector / size, place)
                 yield motion, step.sign * size
 
 

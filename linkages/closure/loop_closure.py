@@ -18,7 +18,6 @@ from bifurc.problem import (
     MarchSettings,
     MarchStatus,
     NodeCorrector,
-    Problem,
     SphereProjection,
 )
 from bifurc.seeding import random_seeds
@@ -144,7 +143,27 @@ class LoopClosure(NumericalProblem):
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
     ) -> March:
         """Taylor pieces of the motion from ``start`` (n,) along ``tangent`` (n,)."""
-        return march(self, self._geometry, start, tangent, settings)
+        anchor, within = np.empty((0, self.n)), 0.0
+        if settings.anchor is not None:
+            anchor, within = np.array(settings.anchor[:2]), settings.anchor.within
+        status, pieces, steps, radii, residuals, _ = _core.march(
+            start=start,
+            tangent=tangent,
+            geometry=self._geometry,
+            order=settings.order,
+            tolerance=settings.tolerance,
+            shortest=settings.shortest,
+            longest=settings.longest,
+            count=settings.count,
+            closing=settings.closing,
+            misclosure=settings.misclosure,
+            anchor=anchor,
+            within=within,
+            periods=self.periods,
+            bounds=self.bounds,
+            length=settings.length,
+        )
+        return March(MarchStatus(status), pieces, steps, radii, residuals)
 
     def valley_corrector(self) -> NodeCorrector | None:
         """What corrects points at the nodes of a piece of the valley along which the
@@ -211,41 +230,6 @@ class LoopClosure(NumericalProblem):
             starts, center, radius, self._geometry, SPHERE_STEPS
         )
         return SphereProjection(*projected)
-
-
-def march(
-    problem: Problem,
-    geometry: np.ndarray,
-    start: np.ndarray,
-    tangent: np.ndarray,
-    settings: MarchSettings,
-    coupling: np.ndarray | None = None,
-) -> March:
-    """Taylor pieces of the motion of a loop with this ``geometry`` (6, n) from
-    ``start`` along ``tangent``, in the joint angles (n,) or in the unknowns (k,) of a
-    ``coupling`` (n, k + 1)."""
-    anchor, within = np.empty((0, problem.n)), 0.0
-    if settings.anchor is not None:
-        anchor, within = np.array(settings.anchor[:2]), settings.anchor.within
-    status, pieces, steps, radii, residuals, _ = _core.march(
-        start=start,
-        tangent=tangent,
-        geometry=geometry,
-        order=settings.order,
-        tolerance=settings.tolerance,
-        shortest=settings.shortest,
-        longest=settings.longest,
-        count=settings.count,
-        closing=settings.closing,
-        misclosure=settings.misclosure,
-        anchor=anchor,
-        within=within,
-        periods=problem.periods,
-        bounds=problem.bounds,
-        length=settings.length,
-        coupling=coupling,
-    )
-    return March(MarchStatus(status), pieces, steps, radii, residuals)
 
 
 def _bound_from_distances(distance: np.ndarray) -> float:

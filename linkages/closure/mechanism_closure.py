@@ -26,21 +26,18 @@ from bifurc.problem import (
 )
 from bifurc.seeding import random_seeds, start_region
 from bifurc.seeds import Seeds
+from linkages.closure import cut_at_limits
 from linkages.closure.curvature import CurvatureBounds
-from linkages.closure.cut_at_limits import CutMotions, loop_without_limits
 from linkages.closure.equations import Equations, write_equations
 from linkages.closure.errors import JointErrors
 from linkages.closure.within_limits import brought_within_limits
-from linkages.dyads.slices import slice_by_dyads
+from linkages.dyads import slices as dyads
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.structure.source import ForSubject, Source
 from linkages.structure.structure import Structure
+from linkages.turns import whole_turns
 from linkages.turns.turn_lattice import TurnLattice, turn_lattice
 from linkages.turns.turned_ends import TurnedEnds
-from linkages.turns.whole_turns import (
-    WholeTurns,
-    starts_at_every_turn,
-    turns_that_advance,
-)
 
 if TYPE_CHECKING:
     import mpmath
@@ -50,8 +47,13 @@ if TYPE_CHECKING:
 # Python: for sections with spheres, and for curves of equations that are not sparse
 LARGEST_COMPILED = 250
 MOST_BEYOND = 60  # solutions beyond the limits that are brought back to them
-LARGEST_SEED = 2**32
 STRIDE_OF = 12  # joints, the most of a loop: up to there a stride is the scale
+# what gives starts and judges what is traced: the first that applies to a mechanism
+SOURCES: tuple[ForSubject, ...] = (
+    dyads.for_subject,
+    whole_turns.for_subject,
+    cut_at_limits.for_subject,
+)
 
 
 class MechanismClosure(NumericalProblem):
@@ -59,17 +61,23 @@ class MechanismClosure(NumericalProblem):
 
     Angles are in radians, slides in characteristic lengths. All derivatives are exact:
     they come from the tape of the equations. With ``errors`` it is the mechanism as it
-    is made, in the same unknowns, and need not close anywhere.
+    is made, in the same unknowns, and need not close anywhere. ``structure`` is that of
+    the mechanism, where it is there already.
     """
 
     curvature_residual = 0.2
     hessian_error = 1e-14
     derivatives = "recorded"
 
-    def __init__(self, mechanism: Mechanism, errors: JointErrors | None = None):
+    def __init__(
+        self,
+        mechanism: Mechanism,
+        errors: JointErrors | None = None,
+        structure: Structure | None = None,
+    ):
         check_type("mechanism", mechanism, Mechanism)
         self.mechanism = mechanism
-        self.structure = Structure(mechanism)
+        self.structure = structure or Structure(mechanism)
         unknowns = self.structure.unknowns
         self.names = tuple(unknown.label for unknown in unknowns)
         self.units = tuple(unknown.unit for unknown in unknowns)
@@ -220,19 +228,16 @@ class MechanismClosure(NumericalProblem):
         return self.structure.reference
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
-        """The closed configuration nearest to the reference, those that dyads build,
-        what is reached from every turn of a joint that advances, and from ``count``
-        random starts or, where these lead beyond given limits, from within."""
+        """The closed configuration nearest to the reference, what the starts of a
+        source lead to and what ``count`` random starts do or, where these lead beyond
+        given limits, others within, and those that the mechanism knows itself."""
         drawn = self._drawn(rng, count)
         lattice = self.lattice
-        turns = turns_that_advance(self.structure)
-        starts = [self.reference[None]]
-        slices = slice_by_dyads(self.structure, rng)
-        if slices is not None:
-            starts.append(slices.points)
-        elif not lattice:
-            starts.append(starts_at_every_turn(self, turns, rng))
-        points, gaps = self.project(np.concatenate(starts))
+        judge = self._judge(rng, count)
+        starts = self.reference[None]
+        if judge is not None:
+            starts = np.concatenate([starts, judge.starts])
+        points, gaps = self.project(starts)
         solutions = points[is_start_solved(gaps)]
         brought = self._from_beyond_limits(solutions, drawn, rng)
         solutions = np.concatenate([solutions, brought])
@@ -240,26 +245,30 @@ class MechanismClosure(NumericalProblem):
             # what is outside the limits may have a translate inside
             solutions = lattice.homes(solutions)
         seeds = drawn.with_constructed(solutions[self.are_inside(solutions)])
-        judge = slices or self._audit(turns, count, rng)
         if judge is None:
             seeds = replace(seeds, more=self._drawn)
-        if not lattice:
-            return replace(seeds, audit=judge)
-        audit = TurnedEnds(self, lattice, judge)
-        return replace(seeds, home=lattice.home, audit=audit)
+        seeds = replace(seeds, audit=judge)
+        if lattice:
+            ends = TurnedEnds(self, lattice, judge)
+            seeds = replace(seeds, home=lattice.home, audit=ends)
+        return seeds.with_constructed(self._assemblies())
 
-    def _audit(
-        self, turns: dict[int, float], count: int, rng: np.random.Generator
-    ) -> WholeTurns | CutMotions | None:
-        """What can be said of the motions of a mechanism that dyads do not build, with
-        ``turns`` that advance."""
-        if turns:
-            return WholeTurns(self, turns, self.lattice)
-        single = loop_without_limits(self.structure)
-        if single is None:
-            return None
-        seed = int(rng.integers(LARGEST_SEED))
-        return CutMotions(self.structure, single, self.lattice, count, seed)
+    def _judge(self, rng: np.random.Generator, count: int) -> Source | None:
+        """The first of the sources that applies to the mechanism; None where none
+        does."""
+        for for_subject in SOURCES:
+            source = for_subject(self, self.structure, rng, count)
+            if source is not None:
+                return source
+        return None
+
+    def _assemblies(self) -> np.ndarray:
+        """Closed configurations (k, n) that the mechanism knows."""
+        known = self.mechanism.assemblies()
+        if not len(known):
+            return np.empty((0, self.n))
+        points, _ = self.project(known[:, list(self.structure.column_of)])
+        return points
 
     def _from_beyond_limits(
         self, solutions: np.ndarray, drawn: Seeds, rng: np.random.Generator
@@ -271,7 +280,8 @@ class MechanismClosure(NumericalProblem):
             return np.empty((0, self.n))
         missed = drawn.missed[is_start_solved(drawn.gaps)]
         beyond = np.concatenate([solutions[~self.are_inside(solutions)], missed])
-        return brought_within_limits(self, beyond[:MOST_BEYOND], rng)
+        hold = self.project_with_held
+        return brought_within_limits(self, hold, beyond[:MOST_BEYOND], rng)
 
     def _drawn(
         self, rng: np.random.Generator, count: int, deadline: Deadline | None = None

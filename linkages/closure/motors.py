@@ -58,6 +58,12 @@ def product(first: Motor, second: Motor) -> Motor:
     return Motor(_quaternion_product(first.real, second.real), dual)
 
 
+def translation(motor: Motor) -> Point:
+    """The translation (3,) of a displacement, after its rotation."""
+    w, x, y, z = motor.real
+    return [2 * part for part in _quaternion_product(motor.dual, (w, -x, -y, -z))[1:]]
+
+
 def _quaternion_product(a: Quaternion, b: Quaternion) -> Quaternion:
     return (
         a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],

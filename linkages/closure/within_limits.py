@@ -10,48 +10,26 @@ once.
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Callable
+from typing import TypeAlias
 
 import numpy as np
 
 from bifurc.decisions import is_start_solved
+from bifurc.problem import Problem
 
 TIMES_BACK = 4  # that each is brought back, where closure leads beyond other limits
 STEPS = 30  # along the solutions towards the limits
 FARTHER, LONGEST = 8.0, 0.5  # times as far as the next solution, up to so many scales
 TINY = 1e-300  # keeps a length of zero from being divided by
 
-
-class HoldingProblem(Protocol):
-    """What is asked of a problem: those of its unknowns that are held stay."""
-
-    @property
-    def n(self) -> int:
-        """How many unknowns there are."""
-
-    @property
-    def scale(self) -> float:
-        """The size of the unknowns."""
-
-    @property
-    def bounds(self) -> np.ndarray:
-        """Their lower and upper limits (n, 2)."""
-
-    def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Solutions (k, n) near starts (k, n) and the residuals (k,)."""
-
-    def are_inside(self, points: np.ndarray) -> np.ndarray:
-        """Which points (k, n) lie within the limits (k,)."""
-
-    def project_with_held(
-        self, starts: np.ndarray, is_held: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Solutions (k, n) near starts (k, n), the same in what is held (n,), and the
-        residuals (k,)."""
+# Gives solutions (k, n) near starts (k, n), the same in what is held (n,), and the
+# residuals (k,).
+Holding: TypeAlias = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 def brought_within_limits(
-    problem: HoldingProblem, beyond: np.ndarray, rng: np.random.Generator
+    problem: Problem, hold: Holding, beyond: np.ndarray, rng: np.random.Generator
 ) -> np.ndarray:
     """Solutions (k, n) within the limits, from others ``beyond`` (j, n) them."""
     inside = [_led_within(problem, beyond)]
@@ -59,14 +37,14 @@ def brought_within_limits(
     for _ in range(TIMES_BACK):
         if not len(beyond):
             break
-        points, held = _held_within(problem, beyond, kept, rng)
+        points, held = _held_within(problem, hold, beyond, kept, rng)
         is_inside = problem.are_inside(points)
         inside.append(points[is_inside])
         beyond, kept = points[~is_inside], held[~is_inside]
     return np.concatenate(inside)
 
 
-def _led_within(problem: HoldingProblem, beyond: np.ndarray) -> np.ndarray:
+def _led_within(problem: Problem, beyond: np.ndarray) -> np.ndarray:
     """Solutions (k, n) within the limits to which the way leads along the solutions,
     from others ``beyond`` (j, n) them.
 
@@ -86,7 +64,7 @@ def _led_within(problem: HoldingProblem, beyond: np.ndarray) -> np.ndarray:
     return np.concatenate(inside)
 
 
-def _nearer(problem: HoldingProblem, points: np.ndarray) -> np.ndarray:
+def _nearer(problem: Problem, points: np.ndarray) -> np.ndarray:
     """The solutions (k, n) to which one step leads from others (k, n)."""
     beside, gaps = problem.project(_middles(problem, points))
     steps = beside - points
@@ -104,7 +82,7 @@ def _nearer(problem: HoldingProblem, points: np.ndarray) -> np.ndarray:
     return np.where(is_any[:, None], nearer, points)
 
 
-def _middles(problem: HoldingProblem, points: np.ndarray) -> np.ndarray:
+def _middles(problem: Problem, points: np.ndarray) -> np.ndarray:
     """The points (k, n) of the middle half of the limits that are next to points
     (k, n)."""
     low, high = problem.bounds.T
@@ -115,14 +93,15 @@ def _middles(problem: HoldingProblem, points: np.ndarray) -> np.ndarray:
     return middles
 
 
-def _distances(problem: HoldingProblem, points: np.ndarray) -> np.ndarray:
+def _distances(problem: Problem, points: np.ndarray) -> np.ndarray:
     """How far points (k, n) are from the middle half of the limits (k,)."""
     distances: np.ndarray = np.linalg.norm(points - _middles(problem, points), axis=1)
     return distances
 
 
 def _held_within(
-    problem: HoldingProblem,
+    problem: Problem,
+    hold: Holding,
     beyond: np.ndarray,
     kept: np.ndarray,
     rng: np.random.Generator,
@@ -139,7 +118,7 @@ def _held_within(
     points, held = [], []
     for number in range(len(choices)):
         is_held = choices[number]
-        ends, gaps = _project(problem, starts, is_held)
+        ends, gaps = _project(hold, starts, is_held)
         is_solved = is_start_solved(gaps)
         points.append(ends[is_solved])
         held.append(is_held[is_solved])
@@ -148,7 +127,7 @@ def _held_within(
 
 
 def _drawn_within(
-    problem: HoldingProblem,
+    problem: Problem,
     points: np.ndarray,
     is_beyond: np.ndarray,
     rng: np.random.Generator,
@@ -164,7 +143,7 @@ def _drawn_within(
 
 
 def _project(
-    problem: HoldingProblem, starts: np.ndarray, is_held: np.ndarray
+    hold: Holding, starts: np.ndarray, is_held: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """What is reached from starts (k, n), each with unknowns of its own held (k, n),
     and the residuals (k,)."""
@@ -172,5 +151,5 @@ def _project(
     patterns, of_start = np.unique(is_held, axis=0, return_inverse=True)
     for number, pattern in enumerate(patterns):
         own = of_start.reshape(-1) == number
-        points[own], gaps[own] = problem.project_with_held(starts[own], pattern)
+        points[own], gaps[own] = hold(starts[own], pattern)
     return points, gaps

@@ -124,56 +124,6 @@ private:
     View<const double> geometry_;
 };
 
-// The closure of a loop in fewer unknowns v, with theta = M v + c. ``coupling`` (n, k + 1) is
-// [M c].
-class CoupledClosure {
-public:
-    using Bordered = DenseBordered;
-    using Damped = bifurc::DenseDamped;
-
-    CoupledClosure(const Closure& closure, View<const double> coupling) : closure_(closure), coupling_(coupling) {}
-
-    Index unknowns() const { return coupling_.columns - 1; }
-    Index equations() const { return closure_.equations(); }
-    Index joints() const { return coupling_.rows; }
-    double ratio(Index joint, Index unknown) const { return coupling_(joint, unknown); }
-
-    std::vector<double> angles(Vector<const double> unknowns) const {
-        std::vector<double> theta(joints());
-        for (Index i = 0; i < joints(); ++i) {
-            theta[i] = coupling_(i, coupling_.columns - 1);
-            for (Index j = 0; j < this->unknowns(); ++j) theta[i] += coupling_(i, j) * unknowns[j];
-        }
-        return theta;
-    }
-
-    void residual(Vector<const double> unknowns, Vector<double> residual) const {
-        closure_.residual(angles(unknowns), residual);
-    }
-
-    void linearize(Vector<const double> unknowns, Vector<double> residual, View<double> jacobian) const {
-        Matrix<double> by_angles(equations(), joints());
-        closure_.linearize(angles(unknowns), residual, by_angles);
-        for (Index row = 0; row < equations(); ++row) {
-            for (Index j = 0; j < this->unknowns(); ++j) {
-                double total = 0.0;
-                for (Index i = 0; i < joints(); ++i) total += by_angles(row, i) * coupling_(i, j);
-                jacobian(row, j) = total;
-            }
-        }
-    }
-
-    Bordered bordered() const { return {equations(), unknowns()}; }
-    Damped damped() const { return {equations(), unknowns()}; }
-
-    void series(Vector<const double> unknowns, Vector<const double> tangent, const DenseBordered& bordered,
-                View<double> coefficients) const;
-
-private:
-    Closure closure_;
-    View<const double> coupling_;
-};
-
 // The screws of four joints, lane by lane.
 struct ScrewLanes {
     std::array<Lanes, 6> rows;
@@ -308,61 +258,35 @@ private:
     std::vector<ScrewLanes> products_;  // of rates and screws, of the coefficient that is made
 };
 
-namespace detail {
-
-// `Closure::series` for either kind of unknowns; ``spread(own, k, motion)`` turns their rates of
-// order k into those of the joints.
-template <class Spread>
-void fill_series(const Closure& closure, Vector<const double> theta, Vector<const double> start,
-                 Vector<const double> tangent, const DenseBordered& bordered, Spread spread,
-                 View<double> coefficients) {
+inline void Closure::series(Vector<const double> theta, Vector<const double> tangent,
+                            const DenseBordered& bordered, View<double> coefficients) const {
     const Index order = coefficients.rows - 1, count = coefficients.columns;
-    MotionSeries motion(closure.unknowns(), order);
-    closure.follow(theta, [&](Index i, const Screw<double>& screw) { motion.set_screw(i, screw); });
-    Matrix<double> own(order, count);
-    std::vector<double> right(Closure::equation_count + 1);
-    std::copy(start.begin(), start.end(), coefficients.row(0).begin());
+    MotionSeries motion(count, order);
+    follow(theta, [&](Index i, const Screw<double>& screw) { motion.set_screw(i, screw); });
+    Matrix<double> rates(order, count);
+    std::vector<double> right(equation_count + 1);
+    std::copy(theta.begin(), theta.end(), coefficients.row(0).begin());
     for (Index k = 0; k < order; ++k) {
         const Screw<double> known = motion.known_part(k);
         if (k == 0) {
-            std::copy(tangent.begin(), tangent.end(), own.row(0).begin());
+            std::copy(tangent.begin(), tangent.end(), rates.row(0).begin());
         } else {
             for (Index row = 0; row < 3; ++row) {
                 right[row] = -known.direction[row];
                 right[row + 3] = -known.moment[row];
             }
             double excess = 0.0;  // of the squared speed
-            for (Index m = 1; 2 * m < k; ++m) excess += 2.0 * bifurc::dot(own.row(m), own.row(k - m));
-            if (k % 2 == 0) excess += bifurc::squared_length(own.row(k / 2));
-            right[Closure::equation_count] = -0.5 * excess;
-            bordered.solve(right, own.row(k));
+            for (Index m = 1; 2 * m < k; ++m) excess += 2.0 * bifurc::dot(rates.row(m), rates.row(k - m));
+            if (k % 2 == 0) excess += bifurc::squared_length(rates.row(k / 2));
+            right[equation_count] = -0.5 * excess;
+            bordered.solve(right, rates.row(k));
         }
-        spread(own.row(k), k, motion);
-        for (Index j = 0; j < count; ++j) coefficients(k + 1, j) = own(k, j) / static_cast<double>(k + 1);
+        for (Index i = 0; i < count; ++i) {
+            motion.rate(k, i) = rates(k, i);
+            coefficients(k + 1, i) = rates(k, i) / static_cast<double>(k + 1);
+        }
         if (k + 1 < order) motion.advance(k);
     }
-}
-
-}  // namespace detail
-
-inline void Closure::series(Vector<const double> theta, Vector<const double> tangent,
-                            const DenseBordered& bordered, View<double> coefficients) const {
-    const auto spread = [](Vector<const double> own, Index k, MotionSeries& motion) {
-        for (Index i = 0; i < static_cast<Index>(own.size()); ++i) motion.rate(k, i) = own[i];
-    };
-    detail::fill_series(*this, theta, theta, tangent, bordered, spread, coefficients);
-}
-
-inline void CoupledClosure::series(Vector<const double> unknowns, Vector<const double> tangent,
-                                   const DenseBordered& bordered, View<double> coefficients) const {
-    const auto spread = [this](Vector<const double> own, Index k, MotionSeries& motion) {
-        for (Index i = 0; i < joints(); ++i) {
-            double total = 0.0;
-            for (Index j = 0; j < this->unknowns(); ++j) total += ratio(i, j) * own[j];
-            motion.rate(k, i) = total;
-        }
-    };
-    detail::fill_series(closure_, angles(unknowns), unknowns, tangent, bordered, spread, coefficients);
 }
 
 }  // namespace linkages

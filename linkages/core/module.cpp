@@ -37,12 +37,10 @@ nb::object hessians(const Table& thetas, const Table& geometry) {
 nb::tuple march(const Doubles& start, const Doubles& tangent, const Table& geometry, Index order,
                 double tolerance, double shortest, double longest, Index count, double closing,
                 double misclosure, const Table& anchor, double within, const Doubles& periods,
-                const Table& bounds, double length, const std::optional<Table>& coupling) {
+                const Table& bounds, double length) {
     const bifurc::MarchSettings settings{order, tolerance, shortest, longest, count, closing, misclosure};
     const auto region = python::region_of(anchor, within, periods, bounds, length);
-    const Closure closure(view(geometry));
-    if (coupling) return python::march(CoupledClosure(closure, view(*coupling)), start, tangent, settings, region);
-    return python::march(closure, start, tangent, settings, region);
+    return python::march(Closure(view(geometry)), start, tangent, settings, region);
 }
 
 nb::tuple project(const Table& starts, const Table& geometry, double noise, int iterations) {
@@ -70,7 +68,7 @@ NB_MODULE(_core, module) {
     module.def("march", &march, nb::arg("start"), nb::arg("tangent"), nb::arg("geometry"), nb::arg("order"),
                nb::arg("tolerance"), nb::arg("shortest"), nb::arg("longest"), nb::arg("count"),
                nb::arg("closing"), nb::arg("misclosure"), nb::arg("anchor"), nb::arg("within"), nb::arg("periods"),
-               nb::arg("bounds"), nb::arg("length"), nb::arg("coupling") = nb::none());
+               nb::arg("bounds"), nb::arg("length"));
     module.def("project", &project, nb::arg("starts"), nb::arg("geometry"), nb::arg("noise"),
                nb::arg("iterations"));
     module.def("project_to_sphere", &project_to_sphere, nb::arg("starts"), nb::arg("center"), nb::arg("radius"),

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any, TypeAlias
 
 import numpy as np
 
+from linkages.dyads.geometry import PlaneGeometry
 from linkages.dyads.plan import Contact, Plan, Step
+from linkages.dyads.space import SpaceGeometry
 from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.mechanism import Pair
 from linkages.structure.structure import Structure
@@ -19,33 +21,8 @@ class TooManyError(ArithmeticError):
     """There are more configurations than are worth the time."""
 
 
-class Geometry(Protocol):
-    """How bodies move and dyads close, in a plane or in space; poses have ``after`` and
-    ``inverse``."""
-
-    rest: Any
-
-    def motion(self, motion: Motion, value: float) -> Any:
-        """The displacement that a joint variable makes."""
-
-    def value(self, relative: Any, motion: Motion) -> float:
-        """The joint variable that makes a displacement."""
-
-    def end(self, pose: Any, own: Any, motion: Motion) -> Any:
-        """A joint on a standing body with this ``pose``, of a body that has the pose
-        ``own`` in the part that is placed."""
-
-    def middle(self, first: Any, second: Any, motion: Motion) -> Any:
-        """A joint between bodies that have these poses in two parts."""
-
-    def close_monad(self, one: Any, other: Any) -> list[Any]:
-        """The poses of a part that two joints hold on what stands."""
-
-    def close_dyad(self, one: Any, middle: Any, other: Any) -> list[tuple[Any, Any]]:
-        """The poses of both parts of a dyad, in every way in which it closes."""
-
-    def may_be_degenerate(self, one: Any, middle: Any, other: Any) -> bool:
-        """Whether a dyad may close in a whole curve of configurations somewhere."""
+# How bodies move and dyads close.
+Geometry: TypeAlias = PlaneGeometry | SpaceGeometry
 
 
 class Builder:
@@ -131,7 +108,7 @@ class Builder:
         return self.plan.part[self.numbers[pair.base]]
 
     def _pair_motion(self, pair: Pair, values: Sequence[float]) -> Any:
-        pose = self.geometry.rest
+        pose: Any = self.geometry.rest
         for number in pair.variables:
             motion = self.mechanism.variables[number].motion
             pose = pose.after(self.geometry.motion(motion, values[number]))

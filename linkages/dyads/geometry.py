@@ -2,8 +2,8 @@
 stands.
 
 Of the three joints each turns or slides; at most two configurations close (Artobolevsky
-1975, groups of the second class). Where a circle meets a circle or a line, it is at two
-points or at none.
+1975, groups of the second class). What stands leaves a point of a body a circle or a
+line, and these meet at two points at most.
 """
 
 from __future__ import annotations
@@ -15,13 +15,53 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from linkages.decisions import is_degenerate_dyad
-from linkages.dyads.poses import AT_REST, PlanePose
 from linkages.mechanisms.joint import Motion
 
 # of the square of a length, over that of the mechanism: a circle that is touched. It
 # costs starts only: what does not close is left out later.
 TOUCHING = 1e-9
 MISFIT = 1e-5  # of the distance of two joints on a body: they do not fit
+
+
+class DegenerateDyadError(ArithmeticError):
+    """A dyad closes in a whole curve of configurations."""
+
+
+class PlanePose(NamedTuple):
+    """A displacement that takes z to ``turn`` z + ``shift``; ``turn`` is a unit
+    number."""
+
+    turn: complex
+    shift: complex
+
+    def __call__(self, place: complex) -> complex:
+        """Where a place is taken."""
+        return self.turn * place + self.shift
+
+    def after(self, other: PlanePose) -> PlanePose:
+        """The displacement that does the ``other`` one first."""
+        return PlanePose(self.turn * other.turn, self(other.shift))
+
+    def inverse(self) -> PlanePose:
+        """The displacement back."""
+        return PlanePose(1 / self.turn, -self.shift / self.turn)
+
+
+AT_REST = PlanePose(1 + 0j, 0j)
+
+
+class Circle(NamedTuple):
+    """A circle."""
+
+    center: complex
+    radius: float
+
+
+class Line(NamedTuple):
+    """A line from a ``start`` ``along`` a unit direction."""
+
+    start: complex
+    along: complex
 
 
 class Pivot(NamedTuple):
@@ -31,13 +71,34 @@ class Pivot(NamedTuple):
     place: complex
     local: complex
 
+    def path(self, point: complex) -> Circle | Line:
+        """Where a point of the body may be."""
+        return Circle(self.place, abs(point - self.local))
+
+    def pose(self, point: complex, place: complex) -> PlanePose:
+        """The pose of the body with a point of it in a place on its path."""
+        ratio = (place - self.place) / (point - self.local)
+        return self.turned(ratio / abs(ratio))
+
+    def turned(self, turn: complex) -> PlanePose:
+        """The pose of the body with this ``turn``."""
+        return PlanePose(turn, self.place - turn * self.local)
+
 
 class Rail(NamedTuple):
-    """A sliding joint on what stands: the ``pose`` of the body from which it slides
-    ``along`` a unit direction."""
+    """A sliding joint on what stands: the pose of the body at its ``start``, from which
+    it slides ``along`` a unit direction."""
 
-    pose: PlanePose
+    start: PlanePose
     along: complex
+
+    def path(self, point: complex) -> Circle | Line:
+        """Where a point of the body may be."""
+        return Line(self.start(point), self.along)
+
+    def pose(self, point: complex, place: complex) -> PlanePose:
+        """The pose of the body with a point of it in a place on its path."""
+        return PlanePose(self.start.turn, place - self.start.turn * point)
 
 
 class Pin(NamedTuple):
@@ -46,22 +107,27 @@ class Pin(NamedTuple):
     first: complex
     second: complex
 
+    def reversed(self) -> Pin:
+        """The joint as the other body sees it."""
+        return Pin(self.second, self.first)
+
 
 class Slider(NamedTuple):
-    """A sliding joint between both bodies: the ``pose`` of the second one in the first,
-    from which it slides ``along`` a unit direction of the first."""
+    """A sliding joint between both bodies: the pose of the second one in the first at
+    its ``start``, from which it slides ``along`` a unit direction of the first."""
 
-    pose: PlanePose
+    start: PlanePose
     along: complex
+
+    def reversed(self) -> Slider:
+        """The joint as the other body sees it."""
+        inverse = self.start.inverse()
+        return Slider(inverse, -inverse.turn * self.along)
 
 
 End: TypeAlias = Pivot | Rail
 Middle: TypeAlias = Pin | Slider
 Poses: TypeAlias = list[tuple[PlanePose, PlanePose]]
-
-
-class DegenerateDyadError(ArithmeticError):
-    """A dyad closes in a whole curve of configurations."""
 
 
 class PlaneGeometry:
@@ -108,18 +174,6 @@ class PlaneGeometry:
         along = first.turn * self._flat(motion.direction)
         return Slider(first.after(second.inverse()), along)
 
-    def close_monad(self, one: End, other: End) -> list[PlanePose]:
-        """As the function of this name."""
-        return close_monad(one, other, self.size)
-
-    def close_dyad(self, one: End, middle: Middle, other: End) -> Poses:
-        """As the function of this name."""
-        return close_dyad(one, middle, other, self.size)
-
-    def may_be_degenerate(self, one: End, middle: Middle, other: End) -> bool:
-        """As the function of this name."""
-        return may_be_degenerate(one, middle, other, self.size)
-
     def _sense(self, motion: Motion) -> float:
         """1 where a turn is about the normal, -1 where it is the other way round."""
         return 1.0 if motion.direction @ self.normal > 0 else -1.0
@@ -129,178 +183,131 @@ class PlaneGeometry:
         x, y = self._axes @ vector
         return complex(x, y)
 
+    # --- one body and two bodies ------------------------------------------------------
 
-# --- one body -------------------------------------------------------------------------
+    def close_monad(self, one: End, other: End) -> list[PlanePose]:
+        """The poses of a body that two joints hold on what stands; none where they do
+        not fit. Raises `DegenerateDyadError`."""
+        if isinstance(one, Pivot) and isinstance(other, Pivot):
+            gap, own = other.place - one.place, other.local - one.local
+            self._require_length(abs(own))
+            if abs(abs(gap) - abs(own)) > MISFIT * self.size:
+                return []
+            return [one.pose(other.local, other.place)]
+        if isinstance(one, Rail) and isinstance(other, Rail):
+            if abs(one.start.turn - other.start.turn) > MISFIT:
+                return []
+            (place,) = self._meetings(one.path(0j), other.path(0j))
+            return [one.pose(0j, place)]
+        if isinstance(one, Pivot):
+            one, other = other, one
+        assert isinstance(one, Rail) and isinstance(other, Pivot)
+        pose = other.turned(one.start.turn)
+        beside = ((pose.shift - one.start.shift) / one.along).imag
+        return [pose] if abs(beside) <= MISFIT * self.size else []
 
+    def close_dyad(self, one: End, middle: Middle, other: End) -> Poses:
+        """The poses of both bodies of a dyad, in every configuration that closes.
+        Raises `DegenerateDyadError`."""
+        if isinstance(middle, Pin):
+            paths = one.path(middle.first), other.path(middle.second)
+            return [
+                (one.pose(middle.first, place), other.pose(middle.second, place))
+                for place in self._meetings(*paths)
+            ]
+        if isinstance(one, Rail):
+            swapped = self.close_dyad(other, middle.reversed(), one)
+            return [(first, second) for second, first in swapped]
+        if isinstance(other, Rail):
+            first = one.turned(other.start.turn / middle.start.turn)
+            path = Line(first.after(middle.start).shift, first.turn * middle.along)
+            (place,) = self._meetings(path, other.path(0j))
+            return [(first, other.pose(0j, place))]
+        return self._sliding(one, middle, other)
 
-def close_monad(one: End, other: End, size: float) -> list[PlanePose]:
-    """The poses of a body that two joints hold on what stands; none where they do not
-    fit. ``size`` is a length of the mechanism. Raises `DegenerateDyadError`."""
-    if isinstance(one, Pivot) and isinstance(other, Pivot):
-        gap, own = other.place - one.place, other.local - one.local
-        if is_degenerate_dyad(abs(own) / size):
-            raise DegenerateDyadError
-        if abs(abs(gap) - abs(own)) > MISFIT * size:
+    def _sliding(self, one: Pivot, slider: Slider, other: Pivot) -> Poses:
+        """The same of two bodies that slide along each other, on two pivots."""
+        gap = other.place - one.place
+        # the far pivot, as the first body sees it
+        circle = Circle(one.local, abs(gap))
+        line = Line(slider.start(other.local), slider.along)
+        results = []
+        for place in self._meetings(circle, line):
+            first = one.pose(place, other.place)
+            shift = slider.start.shift + place - line.start
+            results.append((first, first.after(PlanePose(slider.start.turn, shift))))
+        return results
+
+    def may_be_degenerate(self, one: End, middle: Middle, other: End) -> bool:
+        """Whether a dyad may close in a whole curve of configurations somewhere; what
+        the joints stand on may be anywhere."""
+        if isinstance(one, Rail) and isinstance(other, Pivot):
+            return self.may_be_degenerate(other, middle.reversed(), one)
+        if isinstance(other, Rail):
+            if isinstance(one, Rail) or isinstance(middle, Slider):
+                return True  # two lines may be one
+            # a circle and a line never are, if there is a circle
+            return self._is_nothing(abs(middle.first - one.local))
+        assert isinstance(one, Pivot)
+        if isinstance(middle, Pin):
+            arms = abs(middle.first - one.local), abs(middle.second - other.local)
+            return self._is_nothing(min(*arms, abs(arms[0] - arms[1])))
+        beside = ((middle.start(other.local) - one.local) / middle.along).imag
+        return self._is_nothing(abs(beside))
+
+    # --- circles and lines ------------------------------------------------------------
+
+    def _meetings(self, one: Circle | Line, other: Circle | Line) -> list[complex]:
+        """Where two paths meet. Raises `DegenerateDyadError` where they do all along,
+        and where a circle about the same point as another path is one point."""
+        if isinstance(one, Line):
+            if isinstance(other, Circle):
+                return self._meetings(other, one)
+            return [_crossing(one, other)]
+        if isinstance(other, Line):
+            return self._on_line(one, other)
+        self._require_length(min(one.radius, other.radius))
+        gap = other.center - one.center
+        distance = abs(gap)
+        if self._is_nothing(distance):
+            self._require_length(abs(one.radius - other.radius))
             return []
-        return [_placed(gap / own / abs(gap / own), one)]
-    if isinstance(one, Rail) and isinstance(other, Rail):
-        if abs(one.pose.turn - other.pose.turn) > MISFIT:
-            return []
-        start, end = one.pose.shift, other.pose.shift
-        where = _meeting(start, one.along, end, other.along)
-        return [PlanePose(one.pose.turn, where)]
-    if isinstance(one, Pivot):
-        one, other = other, one
-    assert isinstance(one, Rail) and isinstance(other, Pivot)
-    pose = _placed(one.pose.turn, other)
-    beside = ((pose.shift - one.pose.shift) / one.along).imag
-    return [pose] if abs(beside) <= MISFIT * size else []
-
-
-def _placed(turn: complex, pivot: Pivot) -> PlanePose:
-    """The pose of a body with this ``turn`` on a pivot."""
-    return PlanePose(turn, pivot.place - turn * pivot.local)
-
-
-# --- two bodies -----------------------------------------------------------------------
-
-
-def close_dyad(one: End, middle: Middle, other: End, size: float) -> Poses:
-    """The poses of both bodies of a dyad, in every configuration that closes. ``size``
-    is a length of the mechanism. Raises `DegenerateDyadError`."""
-    if isinstance(one, Rail) and isinstance(other, Pivot):
-        swapped = close_dyad(other, _reversed(middle), one, size)
-        return [(first, second) for second, first in swapped]
-    if isinstance(middle, Pin):
-        return _pinned(one, middle, other, size)
-    return _sliding(one, middle, other, size)
-
-
-def _reversed(middle: Middle) -> Middle:
-    """The joint as the other body sees it."""
-    if isinstance(middle, Pin):
-        return Pin(middle.second, middle.first)
-    inverse = middle.pose.inverse()
-    return Slider(inverse, -inverse.turn * middle.along)
-
-
-def _pinned(one: End, pin: Pin, other: End, size: float) -> Poses:
-    if isinstance(one, Pivot) and isinstance(other, Pivot):
-        arms = pin.first - one.local, pin.second - other.local
-        if is_degenerate_dyad(min(abs(arms[0]), abs(arms[1])) / size):
-            raise DegenerateDyadError  # a body on one axis turns freely
-        places = _circles(one.place, abs(arms[0]), other.place, abs(arms[1]), size)
+        squares = distance**2 + one.radius**2 - other.radius**2
+        along = squares / (2 * distance)
         return [
-            (
-                _placed(_unit((place - one.place) / arms[0]), one),
-                _placed(_unit((place - other.place) / arms[1]), other),
-            )
-            for place in places
+            one.center + gap / distance * complex(along, height)
+            for height in self._roots(one.radius**2 - along**2)
         ]
-    assert isinstance(other, Rail)
-    start = other.pose(pin.second)
-    if isinstance(one, Rail):
-        place = _meeting(one.pose(pin.first), one.along, start, other.along)
-        first = PlanePose(one.pose.turn, place - one.pose.turn * pin.first)
-        second = PlanePose(other.pose.turn, place - other.pose.turn * pin.second)
-        return [(first, second)]
-    arm = pin.first - one.local
-    results = []
-    for place in _circle_and_line(one.place, abs(arm), start, other.along, size):
-        second = PlanePose(other.pose.turn, other.pose.shift + place - start)
-        results.append((_placed(_unit((place - one.place) / arm), one), second))
-    return results
 
+    def _on_line(self, circle: Circle, line: Line) -> list[complex]:
+        """Where a circle meets a line."""
+        offset = (line.start - circle.center) / line.along  # in a frame along the line
+        if self._is_nothing(circle.radius):
+            self._require_length(abs(offset.imag))
+            return []
+        return [
+            circle.center + line.along * complex(root, offset.imag)
+            for root in self._roots(circle.radius**2 - offset.imag**2)
+        ]
 
-def _sliding(one: End, slider: Slider, other: End, size: float) -> Poses:
-    assert isinstance(one, Pivot)
-    if isinstance(other, Rail):
-        first = _placed(other.pose.turn / slider.pose.turn, one)
-        start = first.after(slider.pose).shift
-        along = first.turn * slider.along
-        where = _meeting(start, along, other.pose.shift, other.along)
-        return [(first, PlanePose(other.pose.turn, where))]
-    gap = other.place - one.place
-    start = slider.pose(other.local)  # the far pivot, as the first body sees it
-    results = []
-    places = _circle_and_line(one.local, abs(gap), start, slider.along, size)
-    for place in places:
-        first = _placed(_unit(gap / (place - one.local)), one)
-        slid = PlanePose(slider.pose.turn, slider.pose.shift + place - start)
-        second = first.after(slid)
-        results.append((first, second))
-    return results
+    def _roots(self, square: float) -> list[float]:
+        if square < -TOUCHING * self.size**2:
+            return []
+        root = math.sqrt(max(square, 0.0))
+        return [root, -root] if root > 0 else [0.0]
 
+    def _is_nothing(self, length: float) -> bool:
+        return is_degenerate_dyad(length / self.size)
 
-def may_be_degenerate(one: End, middle: Middle, other: End, size: float) -> bool:
-    """Whether a dyad may close in a whole curve of configurations somewhere; what the
-    joints stand on may be anywhere."""
-    if isinstance(one, Rail) and isinstance(other, Pivot):
-        return may_be_degenerate(other, _reversed(middle), one, size)
-    if isinstance(other, Rail):
-        if isinstance(one, Rail) or isinstance(middle, Slider):
-            return True  # two lines may be one
-        # a circle and a line never are, if there is a circle
-        return is_degenerate_dyad(abs(middle.first - one.local) / size)
-    assert isinstance(one, Pivot)
-    if isinstance(middle, Pin):
-        arms = abs(middle.first - one.local), abs(middle.second - other.local)
-        least = min(*arms, abs(arms[0] - arms[1]))
-        return is_degenerate_dyad(least / size)
-    beside = ((middle.pose(other.local) - one.local) / middle.along).imag
-    return is_degenerate_dyad(abs(beside) / size)
-
-
-# --- circles and lines ----------------------------------------------------------------
-
-
-def _unit(number: complex) -> complex:
-    return number / abs(number)
-
-
-def _circles(
-    one: complex, first: float, other: complex, second: float, size: float
-) -> list[complex]:
-    """Where circles about two places, of these radii, meet."""
-    gap = other - one
-    distance = abs(gap)
-    if is_degenerate_dyad(distance / size):
-        if is_degenerate_dyad(abs(first - second) / size):
+    def _require_length(self, length: float) -> None:
+        if self._is_nothing(length):
             raise DegenerateDyadError
-        return []
-    along = (distance**2 + first**2 - second**2) / (2 * distance)
-    return [
-        one + gap / distance * complex(along, height)
-        for height in _roots(first**2 - along**2, size)
-    ]
 
 
-def _circle_and_line(
-    center: complex, radius: float, start: complex, along: complex, size: float
-) -> list[complex]:
-    """Where a circle meets a line from a ``start`` along a unit direction."""
-    offset = (start - center) / along  # in a frame along the line
-    if is_degenerate_dyad(radius / size):
-        if is_degenerate_dyad(abs(offset.imag) / size):
-            raise DegenerateDyadError
-        return []
-    return [
-        center + along * complex(root, offset.imag)
-        for root in _roots(radius**2 - offset.imag**2, size)
-    ]
-
-
-def _roots(square: float, size: float) -> list[float]:
-    if square < -TOUCHING * size**2:
-        return []
-    root = math.sqrt(max(square, 0.0))
-    return [root, -root] if root > 0 else [0.0]
-
-
-def _meeting(start: complex, along: complex, end: complex, other: complex) -> complex:
-    """Where two lines meet."""
-    sine = (along.conjugate() * other).imag
+def _crossing(one: Line, other: Line) -> complex:
+    """Where two lines meet. Raises `DegenerateDyadError` where they are parallel."""
+    sine = (one.along.conjugate() * other.along).imag
     if is_degenerate_dyad(abs(sine)):
         raise DegenerateDyadError
-    way = ((end - start).conjugate() * other).imag / sine
-    return start + way * along
+    way = ((other.start - one.start).conjugate() * other.along).imag / sine
+    return one.start + way * one.along

@@ -19,6 +19,7 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.completeness import Level, Scope
+from bifurc.problem import Problem
 from bifurc.seeds import Audit
 from linkages.dyads.build import Builder, Geometry, TooManyError
 from linkages.dyads.geometry import DegenerateDyadError, PlaneGeometry
@@ -47,14 +48,14 @@ class _Slice(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class DyadSlices:
-    """Configurations ``points`` (k, n) of a ``structure``, all that there are at the
+    """Configurations ``starts`` (k, n) of a ``structure``, all that there are at the
     values of some ``drivers``, numbers of unknowns, ``step`` apart.
 
     ``misses_none``: a motion that is not among them is a small one.
     """
 
     structure: Structure
-    points: np.ndarray
+    starts: np.ndarray
     drivers: tuple[int, ...]
     steps: tuple[float, ...]
     misses_none: bool
@@ -86,7 +87,9 @@ class DyadSlices:
         return f"on which {', or '.join(parts)}"
 
 
-def slice_by_dyads(structure: Structure, rng: np.random.Generator) -> DyadSlices | None:
+def for_subject(
+    problem: Problem, structure: Structure, rng: np.random.Generator, count: int
+) -> DyadSlices | None:
     """Slices of the mechanism of a ``structure`` at evenly spaced values, the first one
     drawn, of a few of its variables; None where dyads do not build it, or build too
     many configurations."""

@@ -18,6 +18,7 @@ from linkages.dyads.geometry import (
     TOUCHING,
     DegenerateDyadError,
 )
+from linkages.mechanisms.displacements import transforms
 from linkages.mechanisms.joint import Motion
 
 
@@ -72,13 +73,8 @@ class SpaceGeometry:
 
     def motion(self, motion: Motion, value: float) -> SpacePose:
         """The displacement that a joint variable makes."""
-        from scipy.spatial.transform import Rotation
-
-        if not motion.is_turn:
-            return SpacePose(np.eye(3), value * motion.direction)
-        turn = Rotation.from_rotvec(value * motion.direction).as_matrix()
-        advance = value * motion.advance * motion.direction
-        return SpacePose(turn, motion.point - turn @ motion.point + advance)
+        (transform,) = transforms(motion, np.array([value]))
+        return SpacePose(transform[:3, :3], transform[:3, 3])
 
     def value(self, relative: SpacePose, motion: Motion) -> float:
         """The variable, between -pi and pi, that makes a displacement."""
@@ -105,10 +101,9 @@ class SpaceGeometry:
         """The poses of a part that two joints hold; none where they do not fit. Raises
         `DegenerateDyadError`."""
         far, own = _between(one.standing, other.standing), _between(one.own, other.own)
-        rotation = _rotation((one.own.direction, own), (one.standing.direction, far))
-        pose = _placed(rotation, one)
+        pose = _placed(one, own, far)
         aside = np.abs(pose(other.own.point) - other.standing.point).max()
-        turned = rotation @ other.own.direction - other.standing.direction
+        turned = pose.rotation @ other.own.direction - other.standing.direction
         fits = max(float(aside) / self.size, float(np.abs(turned).max())) <= MISFIT
         return [pose] if fits else []
 
@@ -119,20 +114,8 @@ class SpaceGeometry:
         `DegenerateDyadError`, also where its axes are parallel."""
         results = []
         for along in self._directions(one, pin, other):
-            first = _placed(
-                _rotation(
-                    (one.own.direction, pin.first.direction),
-                    (one.standing.direction, along),
-                ),
-                one,
-            )
-            second = _placed(
-                _rotation(
-                    (other.own.direction, pin.second.direction),
-                    (other.standing.direction, along),
-                ),
-                other,
-            )
+            first = _placed(one, pin.first.direction, along)
+            second = _placed(other, pin.second.direction, along)
             gap = np.abs(first(pin.first.point) - second(pin.second.point)).max()
             if gap <= MISFIT * self.size:
                 results.append((first, second))
@@ -190,10 +173,12 @@ def _moved(pose: SpacePose, motion: Motion) -> _Line:
     return _Line(pose(motion.point), pose.rotation @ motion.direction)
 
 
-def _placed(rotation: np.ndarray, axis: Axis) -> SpacePose:
-    """The pose of a body with this rotation on an axis."""
-    shift = axis.standing.point - rotation @ axis.own.point
-    return SpacePose(rotation, shift)
+def _placed(axis: Axis, own: np.ndarray, standing: np.ndarray) -> SpacePose:
+    """The pose of a body on an axis, with a vector (3,) of its ``own`` as near as can be
+    to a ``standing`` one. Raises `DegenerateDyadError` where one is along the axis."""
+    frame = _frame(axis.standing.direction, standing)
+    rotation: np.ndarray = frame @ _frame(axis.own.direction, own).T
+    return SpacePose(rotation, axis.standing.point - rotation @ axis.own.point)
 
 
 def _between(one: _Line, other: _Line) -> np.ndarray:
@@ -203,16 +188,6 @@ def _between(one: _Line, other: _Line) -> np.ndarray:
     is_parallel = is_degenerate_dyad(_length(across))
     way: np.ndarray = other.point - one.point
     return way if is_parallel else other.direction
-
-
-def _rotation(
-    own: tuple[np.ndarray, np.ndarray], standing: tuple[np.ndarray, np.ndarray]
-) -> np.ndarray:
-    """The rotation (3, 3) that takes the first of two vectors (3,) to its place, and
-    the second one as near as can be. Raises `DegenerateDyadError` where both are
-    parallel."""
-    rotation: np.ndarray = _frame(*standing) @ _frame(*own).T
-    return rotation
 
 
 def _frame(first: np.ndarray, second: np.ndarray) -> np.ndarray:

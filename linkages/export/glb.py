@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 
 from bifurc.figures.style import COLORS
-from linkages.export.gltf import BinaryGltf, Track
+from linkages.export.gltf import BinaryGltf
 from linkages.export.meshes import Mesh, ball, box, cylinder
-from linkages.export.model import Body, LinkageModel, Shape, Symbol
+from linkages.export.model import LinkageModel, Symbol
 from linkages.export.motion import Motion, Poses
+from linkages.mechanisms.joint import Shape
 from linkages.values import GeometryError
 
 ROD_RADIUS = 0.03  # in characteristic lengths, as all below
@@ -37,13 +38,6 @@ FULL_TURN = 2 * np.pi
 Z_TO_Y = [-(0.5**0.5), 0.0, 0.0, 0.5**0.5]  # glTF has y upwards
 
 
-class _Solids(NamedTuple):
-    """The meshes of rods, one for each colour, and of joints by their shapes."""
-
-    rods: list[int]
-    joints: dict[Shape, int]
-
-
 def make_glb(model: LinkageModel, generator: str) -> bytes:
     """The model in binary glTF, with an animation for every motion.
 
@@ -55,65 +49,72 @@ def make_glb(model: LinkageModel, generator: str) -> bytes:
         allowed = f"between {SMALLEST:g} and {LARGEST:g}, for a model of 32-bit floats"
         raise GeometryError("characteristic length", model.size, allowed)
     file = BinaryGltf(generator)
-    solids = _add_solids(file, model)
+    rods, joints = _add_meshes(file, model)
     first = model.motions[0][1]
-    bodies = [
-        _add_body(file, body, number, solids, model.size, first)
-        for number, body in enumerate(model.bodies)
-    ]
+    bodies = []
+    for number, body in enumerate(model.bodies):
+        rod = rods[number % len(rods)]
+        children = [_add_rod(file, rod, *ends, model.size) for ends in body.rods]
+        for symbol in body.symbols:
+            children.append(_add_symbol(file, joints, symbol, model.size))
+        # the format has no empty list of children
+        parts = {"children": children} if children else {}
+        node = file.add(
+            "nodes",
+            name=body.name,
+            translation=first.translations[number, 0].tolist(),
+            rotation=first.rotations[number, 0].tolist(),
+            **parts,
+        )
+        bodies.append(node)
     for motion, poses in model.motions:
         _add_animation(file, bodies, model.frame, motion, poses)
-    root = file.add_node(model.name, children=bodies, rotation=Z_TO_Y)
+    root = file.add("nodes", name=model.name, children=bodies, rotation=Z_TO_Y)
     return file.to_bytes(root)
 
 
-def _add_solids(file: BinaryGltf, model: LinkageModel) -> _Solids:
-    """Meshes of rods in the colours of bodies, and of the joints that there are."""
+def _add_meshes(
+    file: BinaryGltf, model: LinkageModel
+) -> tuple[list[int], dict[Shape, int]]:
+    """Meshes of rods in the colours of bodies, and of the joints that there are by
+    their shapes."""
     rod = _add_arrays(file, cylinder())
     rods = []
     for i, color in enumerate(COLORS[: len(model.bodies)]):
-        material = file.add_material(f"body {i + 1}", _linear(color))
-        rods.append(file.add_mesh(f"rod {i + 1}", *rod, material))
-    material = file.add_material("joint", _linear(JOINT_COLOR))
+        material = _add_material(file, f"body {i + 1}", color)
+        rods.append(_add_mesh(file, f"rod {i + 1}", rod, material))
+    material = _add_material(file, "joint", JOINT_COLOR)
     shapes = {symbol.shape for body in model.bodies for symbol in body.symbols}
     joints = {}
     for shape in Shape:
         if shape in shapes:
-            arrays = (
-                rod if shape is Shape.CYLINDER else _add_arrays(file, MESHES[shape]())
-            )
-            joints[shape] = file.add_mesh(f"joint, {shape.value}", *arrays, material)
-    return _Solids(rods, joints)
+            is_rod = shape is Shape.CYLINDER
+            arrays = rod if is_rod else _add_arrays(file, MESHES[shape]())
+            name = f"joint, {shape.value}"
+            joints[shape] = _add_mesh(file, name, arrays, material)
+    return rods, joints
 
 
-def _add_arrays(file: BinaryGltf, mesh: Mesh) -> tuple[int, int, int]:
-    return (
-        file.add_vertices(mesh.positions),
-        file.add_vertices(mesh.normals),
-        file.add_triangles(mesh.triangles),
-    )
+def _add_arrays(file: BinaryGltf, mesh: Mesh) -> dict[str, Any]:
+    """The arrays of a mesh, as the format wants them."""
+    positions = file.add_vertices(mesh.positions)
+    normals = file.add_vertices(mesh.normals)
+    attributes = {"POSITION": positions, "NORMAL": normals}
+    return {"attributes": attributes, "indices": file.add_triangles(mesh.triangles)}
 
 
-def _add_body(
-    file: BinaryGltf,
-    body: Body,
-    number: int,
-    solids: _Solids,
-    size: float,
-    poses: Poses,
-) -> int:
-    """The node of a body, with its rods and its joints, where a motion begins."""
-    mesh = solids.rods[number % len(solids.rods)]
-    children = [_add_rod(file, mesh, start, end, size) for start, end in body.rods]
-    children += [_add_symbol(file, solids, one, size) for one in body.symbols]
-    # the format has no empty list of children
-    parts = {"children": children} if children else {}
-    return file.add_node(
-        body.name,
-        translation=poses.translations[number, 0].tolist(),
-        rotation=poses.rotations[number, 0].tolist(),
-        **parts,
-    )
+def _add_mesh(file: BinaryGltf, name: str, arrays: dict[str, Any], color: int) -> int:
+    return file.add("meshes", name=name, primitives=[{**arrays, "material": color}])
+
+
+def _add_material(file: BinaryGltf, name: str, color: str) -> int:
+    """A dull material of a colour "#rrggbb"."""
+    surface = {
+        "baseColorFactor": [*_linear(color), 1.0],
+        "metallicFactor": 0.0,
+        "roughnessFactor": 0.8,
+    }
+    return file.add("materials", name=name, pbrMetallicRoughness=surface)
 
 
 def _add_rod(
@@ -121,8 +122,9 @@ def _add_rod(
 ) -> int:
     way = end - start
     length = float(np.linalg.norm(way))
-    return file.add_node(
-        "rod",
+    return file.add(
+        "nodes",
+        name="rod",
         mesh=mesh,
         translation=((start + end) / 2).tolist(),
         rotation=_rotation_from_z(way / length),
@@ -130,10 +132,13 @@ def _add_rod(
     )
 
 
-def _add_symbol(file: BinaryGltf, solids: _Solids, symbol: Symbol, size: float) -> int:
-    return file.add_node(
-        symbol.name,
-        mesh=solids.joints[symbol.shape],
+def _add_symbol(
+    file: BinaryGltf, meshes: dict[Shape, int], symbol: Symbol, size: float
+) -> int:
+    return file.add(
+        "nodes",
+        name=symbol.name,
+        mesh=meshes[symbol.shape],
         translation=symbol.place.tolist(),
         rotation=_rotation_from_z(symbol.direction),
         scale=[size * share for share in SCALES[symbol.shape]],
@@ -148,15 +153,21 @@ def _add_animation(
     seconds = max(SECONDS * length / FULL_TURN / len(nodes) ** 0.5, SHORTEST)
     share = motion.arclength / length if length > 0 else np.zeros(1)
     times = file.add_floats(seconds * share)
-    tracks = []
+    samplers: list[dict[str, Any]] = []
+    channels: list[dict[str, Any]] = []
     for number, node in enumerate(nodes):
         if number == frame:
             continue
-        way = file.add_floats(poses.translations[number])
-        turns = file.add_floats(poses.rotations[number])
-        tracks.append(Track(node, "translation", way))
-        tracks.append(Track(node, "rotation", turns))
-    file.add_animation(motion.name, times, tracks)
+        tracks = {
+            "translation": poses.translations[number],
+            "rotation": poses.rotations[number],
+        }
+        for path, values in tracks.items():
+            target = {"node": node, "path": path}
+            channels.append({"sampler": len(samplers), "target": target})
+            output = {"output": file.add_floats(values), "interpolation": "LINEAR"}
+            samplers.append({"input": times, **output})
+    file.add("animations", name=motion.name, samplers=samplers, channels=channels)
 
 
 def _rotation_from_z(direction: np.ndarray) -> list[float]:

@@ -7,7 +7,6 @@ Places are in the frame of the body that has them, in the unit of the linkage.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -21,27 +20,11 @@ from linkages.links.mechanism_drawing import (
 )
 from linkages.links.rods import link_corners, seat_heights
 from linkages.loop import Loop
-from linkages.mechanisms.joint import JointKind
+from linkages.mechanisms.joint import JointKind, Shape
 from linkages.readout.readout import Readout
 
 NOTHING = 1e-9  # in characteristic lengths: a rod that is none
 UPWARD = np.array([0.0, 0.0, 1.0])
-
-
-class Shape(Enum):
-    """What stands for a joint."""
-
-    CYLINDER = "cylinder"
-    BOX = "box"
-    PLATE = "plate"
-    BALL = "ball"
-
-
-SHAPES = {
-    JointKind.PRISMATIC.value: Shape.BOX,
-    JointKind.PLANAR.value: Shape.PLATE,
-    JointKind.SPHERICAL.value: Shape.BALL,
-}
 
 
 class Symbol(NamedTuple):
@@ -130,9 +113,10 @@ def _symbols_on(
     other body, and a rigid joint has no symbol."""
     symbols = []
     for drawing in drawings:
-        if drawing["kind"] == JointKind.RIGID.value:
+        kind = JointKind(drawing["kind"])
+        if kind is JointKind.RIGID:
             continue
-        shape = SHAPES.get(drawing["kind"], Shape.CYLINDER)
+        shape = kind.facets.shape
         name = f"joint {drawing['label']}".strip()
         directions = drawing["directions"] or [UPWARD.tolist()]
         holders = (drawing["holder"], drawing["other"])

@@ -3,6 +3,7 @@ poses of its bodies along them."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -78,3 +79,26 @@ def quaternions_without_jumps(matrices: np.ndarray) -> np.ndarray:
     signs = np.cumprod(np.where(turns < 0, -1.0, 1.0), axis=1)
     rotations[:, 1:] *= signs[..., None]
     return rotations
+
+
+# --- a table --------------------------------------------------------------------------
+
+
+def make_angle_table(
+    arclength: np.ndarray, variables: np.ndarray, names: Sequence[str]
+) -> str:
+    """A line for every configuration of a motion, with all digits: its arclength (k,)
+    and the joint variables (k, v), below a line of their ``names``."""
+    heads = [_cell(name) for name in ("arclength", *names)]
+    lines = [",".join(heads)]
+    rows = np.column_stack([arclength, variables])
+    for row in rows:
+        lines.append(",".join(repr(float(value)) for value in row))
+    return "\n".join(lines) + "\n"
+
+
+def _cell(name: str) -> str:
+    """A name as a cell; joints may be called anything (RFC 4180)."""
+    if not set(name) & set(',"\r\n'):
+        return name
+    return '"' + name.replace('"', '""') + '"'

@@ -322,8 +322,8 @@ def patterns(
     k_d = _constructive(sign, alpha, gamma, delta)
     k_b = _constructive(sign, alpha, gamma, beta)
     base = _products(+1, k_d, k_b)
-    # where tan(theta4/2) tends on the plus root as theta1 tends to pi (WDG), or to -pi
-    # (DSG)
+    # where tan(theta4/2) tends on the plus root as theta1 tends to pi in the WDG, to -pi
+    # in the DSG
     t4_infinite = k_b < 1
     if sign < 0:
         m1 = _ratio(beta, alpha)

@@ -1,32 +1,26 @@
-"""Planar mechanisms given as points and bars between them.
-
-Every bar is a body, and so is the frame, which holds the fixed points. A point is a
-revolute joint of all bodies that it lies on.
-"""
+"""Planar mechanisms given as points and bars between them (`linkages.files.figures`)."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from linkages.decisions import is_bar_assembled
-from linkages.files.figure_bodies import (
-    Piece,
-    bodies_of_figure,
-    check_held,
-    check_point,
-    read_fixed,
+from linkages.files.figures import (
+    Figure,
+    FigureKind,
+    joints_of_figure,
+    read_figure,
+    table_of_points,
 )
-from linkages.files.joined_names import check_joined_names, joined_name
-from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.origin import Coordinates, counted_from_near, origin_of
+from linkages.mechanisms.origin import counted_from_near, origin_of
 from linkages.values import GeometryError, check_number, quoted
 
 Content: TypeAlias = Mapping[str, Any]
+Bars: TypeAlias = Figure[complex, complex]
 
 POLISHING_STEPS = 12
 EPSILON = float(np.finfo(float).eps)
@@ -36,40 +30,6 @@ RANK = 1e-9  # singular value, over the largest, of a motion: no step along it
 TINY = 1e-300  # length of a bar that has none
 
 
-@dataclass(frozen=True)
-class Bar:
-    """A bar between two points, with the ``length`` that is given for it."""
-
-    start: str
-    end: str
-    length: float | None = None
-
-    @property
-    def name(self) -> str:
-        """What the body is called."""
-        return joined_name(self.start, self.end)
-
-
-@dataclass(frozen=True)
-class PointOnBar:
-    """A point start + ratio (end - start), as complex numbers."""
-
-    start: str
-    end: str
-    ratio: complex
-
-
-@dataclass(frozen=True)
-class _Bars:
-    """What a file says: places of ``points``, which of them are ``fixed``, ``bars``,
-    and the points ``on_bars``, in an order in which each follows its bar's ends."""
-
-    points: dict[str, complex]
-    fixed: tuple[str, ...]
-    bars: tuple[Bar, ...]
-    on_bars: dict[str, PointOnBar]
-
-
 def read_bars(content: Content, name: str) -> Mechanism:
     """The mechanism of the points and bars of a file.
 
@@ -77,17 +37,23 @@ def read_bars(content: Content, name: str) -> Mechanism:
     do (least squares). Raises `GeometryError` for anything wrong, and where bars of
     these lengths cannot be assembled next to the points.
     """
-    points, near = _read_points(content)
-    on_bars = _read_points_on_bars(content, points)
-    known = [*points, *on_bars]
-    fixed = read_fixed(content, known)
-    bars = _read_bars(content, known)
-    system = _Bars(points, fixed, bars, on_bars)
-    places = _assembled(system)
-    joints = _joints(system, places)
-    check_held(fixed, joints)
+    table = table_of_points(content, "[x, y]")
+    near = counted_from_near(list(table.values()))
+    rows = zip(table, near.rows, strict=True)
+    points = {point: _complex(f"point {point}", row) for point, row in rows}
+    figure = read_figure(content, BARS, points)
+    places = _assembled(figure)
+    for bar in figure.pieces:
+        if places[bar.end] == places[bar.start]:
+            raise GeometryError(f"bar {bar.name}", "of length 0", "longer")
+    joints = joints_of_figure(
+        figure,
+        places,
+        lambda points: len({places[point] for point in points}) > 1,
+        lambda place: ((place.real, place.imag, 0.0), (0, 0, 1)),
+    )
     return Mechanism(
-        tuple(joints),
+        joints,
         name,
         is_planar=True,
         origin=origin_of(content, near.origin),
@@ -95,21 +61,8 @@ def read_bars(content: Content, name: str) -> Mechanism:
     )
 
 
-# --- keys -----------------------------------------------------------------------------
-
-
-def _read_points(content: Content) -> tuple[dict[str, complex], Coordinates]:
-    """The points, and their coordinates as they are counted from near."""
-    table = content.get("points")
-    if not isinstance(table, Mapping) or not table:
-        raise GeometryError("points", quoted(table), "a table of points [x, y]")
-    near = counted_from_near(list(table.values()))
-    places = dict(zip(table, near.rows, strict=True))
-    points = {name: _complex(f"point {name}", row) for name, row in places.items()}
-    return points, near
-
-
 def _complex(what: str, row: object) -> complex:
+    """Two numbers of a file: a place, or the ratio r of start + r (end - start)."""
     if not isinstance(row, list) or len(row) != 2:
         raise GeometryError(what, quoted(row), "a list of two numbers")
     for value in row:
@@ -117,110 +70,73 @@ def _complex(what: str, row: object) -> complex:
     return complex(float(row[0]), float(row[1]))
 
 
-def _read_points_on_bars(
-    content: Content, points: dict[str, complex]
-) -> dict[str, PointOnBar]:
-    table = content.get("points_on_bars", {})
-    if not isinstance(table, Mapping):
-        allowed = 'a table of points ["A", "B", [re, im]]'
-        raise GeometryError("points_on_bars", quoted(table), allowed)
-    on_bars: dict[str, PointOnBar] = {}
-    for name, row in table.items():
-        what = f"points_on_bars {name}"
-        if name in points:
-            raise GeometryError(what, quoted(name), "no name of a point in [points]")
-        if not isinstance(row, list) or len(row) != 3:
-            raise GeometryError(what, quoted(row), 'a list ["A", "B", [re, im]]')
-        for end in row[:2]:
-            if end not in points and end not in on_bars:
-                raise GeometryError(what, quoted(end), "a point that stands before it")
-        on_bars[name] = PointOnBar(row[0], row[1], _complex(what, row[2]))
-    return on_bars
+def _length(what: str, value: Any) -> float:
+    check_number(what, value)
+    length = float(value)
+    if not length > 0:
+        raise GeometryError(what, length, "positive")
+    return length
 
 
-def _read_bars(content: Content, known: Sequence[str]) -> tuple[Bar, ...]:
-    rows = content.get("bars")
-    if not isinstance(rows, list) or not rows:
-        raise GeometryError("bars", quoted(rows), 'a list of bars ["A", "B"]')
-    bars: list[Bar] = []
-    for number, row in enumerate(rows, start=1):
-        what = f"bars[{number}]"
-        if not isinstance(row, list) or len(row) not in (2, 3):
-            raise GeometryError(what, quoted(row), '["A", "B"] or ["A", "B", length]')
-        for name in row[:2]:
-            check_point(what, name, known)
-        if row[0] == row[1]:
-            raise GeometryError(what, row[:2], "a bar between two points")
-        if any({bar.start, bar.end} == set(row[:2]) for bar in bars):
-            raise GeometryError(what, row[:2], "a bar that stands there once")
-        length = None
-        if len(row) == 3:
-            check_number(f"length of {what}", row[2])
-            length = float(row[2])
-            if not length > 0:
-                raise GeometryError(f"length of {what}", length, "positive")
-        bars.append(Bar(row[0], row[1], length))
-    check_joined_names("bar", [(bar.start, bar.end) for bar in bars])
-    return tuple(bars)
+BARS = FigureKind("bar", "a", "length", "[re, im]", _length, _complex)
 
 
 # --- assembly -------------------------------------------------------------------------
 
 
-def _places(system: _Bars, points: Mapping[str, complex]) -> dict[str, complex]:
+def _places(figure: Bars, points: Mapping[str, complex]) -> dict[str, complex]:
     """The places of all points, those on bars among them."""
     places = dict(points)
-    for name, one in system.on_bars.items():
+    for name, one in figure.on_pieces.items():
         start, end = places[one.start], places[one.end]
-        places[name] = start + one.ratio * (end - start)
+        places[name] = start + one.numbers * (end - start)
     return places
 
 
-def _assembled(system: _Bars) -> dict[str, complex]:
+def _assembled(figure: Bars) -> dict[str, complex]:
     """The places of all points where every bar has its length."""
-    places = _places(system, system.points)
+    places = _places(figure, figure.points)
     size = max(abs(place - next(iter(places.values()))) for place in places.values())
-    misfit = np.abs(_misfits(system, places)).max(initial=0.0)
+    misfit = np.abs(_misfits(figure, places)).max(initial=0.0)
     if misfit == 0.0:
         return places
-    free = [name for name in system.points if name not in system.fixed]
-    places = _least_squares(system, free)
-    misfits = np.abs(_misfits(system, places))
+    places = _least_squares(figure, figure.free)
+    misfits = np.abs(_misfits(figure, places))
     if not is_bar_assembled(float(misfits.max()), size):
-        given = [bar for bar in system.bars if bar.length is not None]
+        given = [bar for bar in figure.pieces if bar.measure is not None]
         worst = given[int(np.argmax(misfits))]
         allowed = (
             "such that the bars can be assembled next to the points; as near as they "
             f"come, bar {worst.name} misses its length by {misfits.max():.3g}"
         )
-        raise GeometryError(f"length of bar {worst.name}", worst.length, allowed)
+        raise GeometryError(f"length of bar {worst.name}", worst.measure, allowed)
     return places
 
 
-def _misfits(system: _Bars, places: Mapping[str, complex]) -> np.ndarray:
+def _misfits(figure: Bars, places: Mapping[str, complex]) -> np.ndarray:
     """How much longer than given the bars (k,) are that have a length."""
     misfits = []
-    for bar in system.bars:
-        if bar.length is not None:
-            misfits.append(abs(places[bar.end] - places[bar.start]) - bar.length)
+    for bar in figure.pieces:
+        if bar.measure is not None:
+            misfits.append(abs(places[bar.end] - places[bar.start]) - bar.measure)
     # the lengths of bars without one are those that they have at first
     return np.array(misfits)
 
 
-def _least_squares(system: _Bars, free: Sequence[str]) -> dict[str, complex]:
+def _least_squares(figure: Bars, free: Sequence[str]) -> dict[str, complex]:
     """The places of all points where the lengths of all bars are best fitted."""
     if not free:
-        return _places(system, system.points)
+        return _places(figure, figure.points)
     from scipy.optimize import least_squares
 
-    shape = _Shape(system, free)
-    start = _pairs(np.array([system.points[name] for name in free]))
+    shape = _Shape(figure, free)
+    start = _pairs(np.array([figure.points[name] for name in free]))
     exact = {"ftol": EPSILON, "xtol": EPSILON, "gtol": EPSILON}
     solution = least_squares(shape.gaps, start, shape.derivatives, **exact).x
     solution = _polished(shape, solution)
     moved = zip(free, _complex_numbers(solution), strict=True)
-    points = dict(system.points) | {name: complex(place) for name, place in moved}
-    return _places(system, points)
+    points = dict(figure.points) | {name: complex(place) for name, place in moved}
+    return _places(figure, points)
 
 
 def _polished(shape: _Shape, solution: np.ndarray) -> np.ndarray:
@@ -282,16 +198,18 @@ class _Shape:
     complex numbers.
     """
 
-    def __init__(self, system: _Bars, free: Sequence[str]):
-        at_rest = dict(system.points) | dict.fromkeys(free, 0j)
-        self.constant = _vectors(system, at_rest)
+    def __init__(self, figure: Bars, free: Sequence[str]):
+        at_rest = dict(figure.points) | dict.fromkeys(free, 0j)
+        self.constant = _vectors(figure, at_rest)
         columns = []
         for name in free:
-            moved = _vectors(system, at_rest | {name: 1 + 0j})
+            moved = _vectors(figure, at_rest | {name: 1 + 0j})
             columns.append(moved - self.constant)
         self.factors = np.column_stack(columns)
-        now = np.abs(_vectors(system, system.points))
-        given = [np.nan if bar.length is None else bar.length for bar in system.bars]
+        now = np.abs(_vectors(figure, figure.points))
+        given = [
+            np.nan if bar.measure is None else bar.measure for bar in figure.pieces
+        ]
         self.lengths = np.where(np.isnan(given), now, given)
 
     def _along(self, values: np.ndarray) -> np.ndarray:
@@ -341,48 +259,7 @@ class _Shape:
         return bending
 
 
-def _vectors(system: _Bars, points: Mapping[str, complex]) -> np.ndarray:
+def _vectors(figure: Bars, points: Mapping[str, complex]) -> np.ndarray:
     """The vectors (b,) along all bars, as complex numbers."""
-    places = _places(system, points)
-    return np.array([places[bar.end] - places[bar.start] for bar in system.bars])
-
-
-# --- bodies and joints ----------------------------------------------------------------
-
-
-def _joints(system: _Bars, places: Mapping[str, complex]) -> list[Joint]:
-    """A revolute joint at every point on two bodies or more."""
-    bodies = _bodies(system, places)
-    joints = []
-    for name, place in places.items():
-        here = [body for body, points in bodies.items() if name in points]
-        if not here and name not in system.on_bars:
-            raise GeometryError(f"point {name}", "on no bar", "the end of a bar")
-        if len(here) < 2:
-            continue
-        point = (place.real, place.imag, 0.0)
-        joint = Joint(
-            name, JointKind.REVOLUTE, tuple(here), point=point, direction=(0, 0, 1)
-        )
-        joints.append(joint)
-    return joints
-
-
-def _bodies(system: _Bars, places: Mapping[str, complex]) -> dict[str, list[str]]:
-    """The points on every body, the frame first."""
-    bars = {bar.name: Piece(bar.start, bar.end) for bar in system.bars}
-    for name, bar in bars.items():
-        if places[bar.end] == places[bar.start]:
-            raise GeometryError(f"bar {name}", "of length 0", "longer")
-    on_bars = {name: Piece(one.start, one.end) for name, one in system.on_bars.items()}
-
-    def are_apart(points: Sequence[str]) -> bool:
-        return len({places[point] for point in points}) > 1
-
-    bodies = bodies_of_figure(system.fixed, bars, on_bars, are_apart)
-    for name, one in system.on_bars.items():
-        if not any(name in points for points in bodies.values()):
-            ends = f"{one.start} and {one.end}"
-            allowed = f"on a bar; there is none between {ends}"
-            raise GeometryError(f"points_on_bars {name}", f"{ends}", allowed)
-    return bodies
+    places = _places(figure, points)
+    return np.array([places[bar.end] - places[bar.start] for bar in figure.pieces])

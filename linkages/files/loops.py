@@ -15,7 +15,7 @@ import numpy as np
 from bifurc.decisions import is_start_solved
 from linkages.closure.loop_closure import LoopClosure
 from linkages.decisions import is_parallel_axis, meets_in_one_point
-from linkages.files.joined_names import check_joined_names, joined_name
+from linkages.files.figures import check_joined_names, joined_name
 from linkages.files.misfits import check_moved
 from linkages.loop import Loop
 from linkages.mechanisms.displacements import transforms
@@ -168,7 +168,7 @@ def _check_placed(ring: _Ring, reason: str) -> None:
 def _turned(frame: np.ndarray, axis: Axis, ring: _Ring) -> np.ndarray:
     """A frame turned about an axis and shifted along it, as the table of a loop
     says."""
-    screw = Motion("", True, axis.direction, axis.point)
+    screw = Motion(True, axis.direction, axis.point)
     turned: np.ndarray = transforms(screw, np.array([ring.turn]))[0] @ frame
     turned[:3, 3] += ring.shift * axis.direction
     return turned

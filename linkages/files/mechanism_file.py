@@ -19,7 +19,7 @@ from linkages.files.arcs import read_arcs
 from linkages.files.bars import read_bars
 from linkages.files.loops import read_loops
 from linkages.mechanisms.couplings import Coupling
-from linkages.mechanisms.joint import WITHOUT_PLACE, Joint, Motion
+from linkages.mechanisms.joint import DRAWN_ONLY, Joint, Motion
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.origin import Coordinates, counted_from_near, origin_of
 from linkages.structure.plane import normal_of_plane
@@ -90,7 +90,7 @@ def _from_near(tables: Sequence[object]) -> tuple[list[object], Coordinates]:
         table.get("point") if isinstance(table, Mapping) else None for table in tables
     ]
     are_anywhere = [
-        isinstance(table, Mapping) and table.get("kind") in WITHOUT_PLACE
+        isinstance(table, Mapping) and table.get("kind") in DRAWN_ONLY
         for table in tables
     ]
     near = counted_from_near(points, are_anywhere)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -12,11 +13,15 @@ from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import LARGEST, JointKind, Limits, Vector
 from linkages.values import GeometryError, quoted
 
-# what the variables of a joint of several are called
-PARTS = {
-    JointKind.CYLINDRICAL: ("turn", "slide"),
-    JointKind.UNIVERSAL: ("first", "second"),
-    JointKind.PLANAR: ("x", "y", "turn"),
+# what variables are: turns about the third axis of the first frame, and slides along its
+# axes
+TURN, SLIDES = "turn", "xyz"
+MOVES: dict[JointKind, tuple[str, ...]] = {
+    JointKind.REVOLUTE: (TURN,),
+    JointKind.HELICAL: (TURN,),
+    JointKind.PRISMATIC: ("z",),
+    JointKind.CYLINDRICAL: (TURN, "z"),
+    JointKind.PLANAR: ("x", "y", TURN),
 }
 
 
@@ -46,11 +51,8 @@ class BodyJoint:
     @property
     def labels(self) -> tuple[str, ...]:
         """What every variable is called in the mechanism."""
-        parts = PARTS.get(self.kind)
-        if parts is not None:
-            return tuple(f"{self.name}.{part}" for part in parts)
-        is_single = self.kind not in (JointKind.SPHERICAL, JointKind.RIGID)
-        return (self.name,) if is_single else ()
+        parts = self.kind.facets.parts
+        return tuple(f"{self.name}.{part}" if part else self.name for part in parts)
 
     @property
     def points(self) -> tuple[np.ndarray, np.ndarray]:
@@ -93,6 +95,18 @@ class Assembly:
             if joint.bodies[0] == joint.bodies[1]:
                 what = f"bodies of joint {joint.name}"
                 raise GeometryError(what, list(joint.bodies), "two different bodies")
+
+    @cached_property
+    def numbers(self) -> dict[str, int]:
+        """The number of every body."""
+        return {body: k for k, body in enumerate(self.bodies)}
+
+    def placed(
+        self, joint: BodyJoint, poses: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Both frames (4, 4) of a joint where the bodies are at ``poses`` (b, 4, 4)."""
+        first, second = (poses[self.numbers[body]] for body in joint.bodies)
+        return first @ joint.frames[0], second @ joint.frames[1]
 
 
 def _check_size(what: str, points: Sequence[np.ndarray]) -> None:
@@ -152,3 +166,11 @@ def listed(names: Sequence[str]) -> str:
     if len(names) <= most:
         return ", ".join(names)
     return f"{', '.join(names[:most])} and {len(names) - most} more"
+
+
+def in_bodies(
+    poses: Sequence[np.ndarray], frames: Sequence[np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Two ``frames`` (4, 4) as they are in the bodies at two ``poses`` (4, 4)."""
+    first, second = (np.linalg.inv(p) @ f for p, f in zip(poses, frames, strict=True))
+    return first, second

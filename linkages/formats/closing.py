@@ -1,4 +1,4 @@
-"""Poses of bodies in which all joints of an assembly fit.
+"""Poses of bodies in which all joints of an assembly fit, and random ones to start from.
 
 Unknowns are the six freedoms of every body, small turns and slides of it; equations say
 that the two frames of a joint agree as far as its kind asks. They are linear in the
@@ -8,14 +8,15 @@ Levenberg and Marquardt (Marquardt 1963), the last ones of Gauss and Newton.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from linkages.formats.assembly import Assembly, BodyJoint
-from linkages.mechanisms.joint import JointKind
+from linkages.formats.assembly import MOVES, SLIDES, TURN, Assembly, BodyJoint
+from linkages.mechanisms.joint import JointKind, Limits
 
 MOST_STEPS = 100
 POLISHING_STEPS = 4
@@ -64,7 +65,6 @@ class Closing:
 
     def __init__(self, assembly: Assembly):
         self.assembly = assembly
-        self.numbers = {body: k for k, body in enumerate(assembly.bodies)}
 
     @cached_property
     def size(self) -> float:
@@ -131,7 +131,7 @@ class Closing:
         residuals, blocks = [], []
         row = 0
         for joint in self.assembly.joints:
-            first, second = (self.numbers[body] for body in joint.bodies)
+            first, second = (self.assembly.numbers[body] for body in joint.bodies)
             rows = self._rows(joint, poses[first], poses[second])
             residuals.append(rows.residuals)
             blocks.append((row, first, rows.by_first))
@@ -224,3 +224,90 @@ def _moved(poses: np.ndarray, step: np.ndarray) -> np.ndarray:
     moved[:, :3, 3] = np.einsum("kij,kj->ki", rotations, poses[:, :3, 3])
     moved[:, :3, 3] += steps[:, 3:]
     return moved
+
+
+# --- random poses ---------------------------------------------------------------------
+
+
+class Starts:
+    """Poses of an ``assembly`` in which the joints of a spanning tree fit, with random
+    variables; slides without limits are within ``size`` of 0."""
+
+    def __init__(self, assembly: Assembly, size: float):
+        self.assembly = assembly
+        self.size = size
+        self._tree = self._spanning_tree()
+
+    def draw(self, rng: np.random.Generator) -> np.ndarray:
+        """Poses (b, 4, 4); the first body is at rest."""
+        poses = np.tile(np.eye(4), (len(self.assembly.bodies), 1, 1))
+        for joint, is_forward in self._tree:
+            first, second = (self.assembly.numbers[body] for body in joint.bodies)
+            own, far = joint.frames
+            motion = own @ self._motion(joint, rng) @ np.linalg.inv(far)
+            if is_forward:
+                poses[second] = poses[first] @ motion
+            else:
+                poses[first] = poses[second] @ np.linalg.inv(motion)
+        return poses
+
+    def _spanning_tree(self) -> list[tuple[BodyJoint, bool]]:
+        """Joints that reach every body from the first one, and whether from their first
+        body to the second one."""
+        tree = []
+        reached = [self.assembly.bodies[0]]
+        for body in reached:  # it grows on the way
+            for joint in self.assembly.joints:
+                if body not in joint.bodies:
+                    continue
+                is_forward = joint.bodies[0] == body
+                there = joint.bodies[1] if is_forward else joint.bodies[0]
+                if there not in reached:
+                    reached.append(there)
+                    tree.append((joint, is_forward))
+        return tree
+
+    def _motion(self, joint: BodyJoint, rng: np.random.Generator) -> np.ndarray:
+        """A random motion (4, 4) of the second frame in the first one."""
+        motion = np.eye(4)
+        if joint.kind is JointKind.UNIVERSAL:
+            first, second = (_turn(_random_angle(rng, None)) for _ in range(2))
+            motion[:3, :3] = first @ _tilt(joint.cosine) @ second
+        elif joint.kind is JointKind.SPHERICAL:
+            motion[:3, :3] = _any_rotation(rng)
+        elif joint.kind is not JointKind.HELICAL:
+            limits = [*joint.limits, None, None, None]
+            for move, pair in zip(MOVES.get(joint.kind, ()), limits, strict=False):
+                if move == TURN:
+                    motion[:3, :3] = _turn(_random_angle(rng, pair))
+                else:
+                    motion[SLIDES.index(move), 3] = self._slide(rng, pair)
+        return motion
+
+    def _slide(self, rng: np.random.Generator, limits: Limits | None) -> float:
+        low, high = limits or (-self.size, self.size)
+        return float(rng.uniform(low, high))
+
+
+def _random_angle(rng: np.random.Generator, limits: Limits | None) -> float:
+    low, high = limits or (-math.pi, math.pi)
+    return float(rng.uniform(low, high))
+
+
+def _turn(angle: float) -> np.ndarray:
+    """The rotation (3, 3) about the third axis."""
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def _tilt(cosine: float) -> np.ndarray:
+    """The rotation (3, 3) about the first axis by an angle of this cosine."""
+    sine = math.sqrt(max(0.0, 1 - cosine**2))
+    return np.array([[1.0, 0.0, 0.0], [0.0, cosine, -sine], [0.0, sine, cosine]])
+
+
+def _any_rotation(rng: np.random.Generator) -> np.ndarray:
+    from scipy.spatial.transform import Rotation
+
+    rotation: np.ndarray = Rotation.random(rng=rng).as_matrix()
+    return rotation

@@ -1,19 +1,34 @@
-"""Joints that several joints one after the other make together, in MJCF and in SDF."""
+"""Joints that several joints one after the other make together, in MJCF and in SDF.
+
+SDF knows no cylindrical and no planar joint. In files that are written here a joint C is
+written as C.turn and C.slide with a link C.turn.link between them, a planar one as C.x,
+C.y and C.turn. Read as one again, it has its name, and the mechanism its size and
+Grübler's count.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, MutableMapping
+from collections import Counter
+from collections.abc import Callable, Mapping, MutableMapping, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from linkages.decisions import is_one_joint
-from linkages.formats.assembly import frame_along, translation
+from linkages.formats.assembly import (
+    BodyJoint,
+    frame_along,
+    in_bodies,
+    translation,
+)
 from linkages.formats.xml_tree import Element
 from linkages.mechanisms.joint import JointKind, Limits
 
 TINY = 1e-300  # of coordinates that are all 0
+WHOLE = JointKind.CYLINDRICAL, JointKind.PLANAR
+WORDS = {JointKind.REVOLUTE: "hinge", JointKind.PRISMATIC: "slide"}
 
 
 class Axis(NamedTuple):
@@ -110,22 +125,28 @@ def _is_plane(axes: list[Axis]) -> bool:
     return is_one_joint(float(np.linalg.norm(np.cross(normal, x) - y)))
 
 
-def _name(axes: list[Axis]) -> str:
-    """What the names of axes have in common before their last point: "J" of "J.turn"
-    and "J.slide"; else all of them."""
-    names = [axis.name for axis in axes]
+def _joint(
+    kind: JointKind,
+    axes: list[Axis],
+    locks: Mapping[str, float],
+    frames: Sequence[np.ndarray],
+    pitch: float | None = None,
+) -> WorldJoint:
+    """The joint that has the variables of some axes. It is called as their names begin
+    before the last point: "J" of "J.turn" and "J.slide"; else by all of them."""
+    names = tuple(axis.name for axis in axes)
     stems = {name.rpartition(".")[0] for name in names}
-    if len(stems) == 1 and stems != {""}:
-        return stems.pop()
-    return "+".join(names)
-
-
-def _names(axes: list[Axis]) -> tuple[str, ...]:
-    return tuple(axis.name for axis in axes)
-
-
-def _locked(axes: list[Axis], locks: Mapping[str, float]) -> tuple[float | None, ...]:
-    return tuple(locks.get(axis.name) for axis in axes)
+    is_stem = len(names) > 1 and len(stems) == 1 and stems != {""}
+    return WorldJoint(
+        stems.pop() if is_stem else "+".join(names),
+        kind,
+        frames[0],
+        frames[-1],
+        limits=tuple(axis.limits for axis in axes),
+        locked=tuple(locks.get(name) for name in names),
+        axes=names,
+        pitch=pitch,
+    )
 
 
 def _single(axis: Axis, locks: Mapping[str, float]) -> WorldJoint:
@@ -133,10 +154,7 @@ def _single(axis: Axis, locks: Mapping[str, float]) -> WorldJoint:
         frame = translation(axis.point)
         return WorldJoint(axis.name, JointKind.SPHERICAL, frame, frame, (), (), ())
     kind = JointKind.REVOLUTE if axis.kind == "hinge" else JointKind.PRISMATIC
-    frame = frame_along(axis.point, axis.direction)
-    locked = _locked([axis], locks)
-    limits, names = (axis.limits,), (axis.name,)
-    return WorldJoint(axis.name, kind, frame, frame, limits, locked, names)
+    return _joint(kind, [axis], locks, [frame_along(axis.point, axis.direction)])
 
 
 def _turn_and_slide(
@@ -145,36 +163,85 @@ def _turn_and_slide(
     couplings: MutableMapping[str, AxisCoupling],
     locks: Mapping[str, float],
 ) -> WorldJoint:
-    frame = frame_along(turn.point, turn.direction)
+    frames = [frame_along(turn.point, turn.direction)]
     coupling = couplings.get(slide.name)
-    if coupling is not None and coupling.to == turn.name and not coupling.offset:
-        del couplings[slide.name]
-        locked = _locked([turn], locks)
-        pitch = 2 * math.pi * coupling.ratio
-        kind = JointKind.HELICAL
-        limits: tuple[Limits | None, ...] = (turn.limits,)
-        names: tuple[str, ...] = (turn.name,)
-        return WorldJoint(turn.name, kind, frame, frame, limits, locked, names, pitch)
-    axes = [turn, slide]
-    limits = (turn.limits, slide.limits)
-    name = _name(axes)
-    kind = JointKind.CYLINDRICAL
-    names = (turn.name, slide.name)
-    return WorldJoint(name, kind, frame, frame, limits, _locked(axes, locks), names)
+    if coupling is None or coupling.to != turn.name or coupling.offset:
+        return _joint(JointKind.CYLINDRICAL, [turn, slide], locks, frames)
+    del couplings[slide.name]
+    pitch = 2 * math.pi * coupling.ratio
+    return _joint(JointKind.HELICAL, [turn], locks, frames, pitch)
 
 
 def _universal(axes: list[Axis], locks: Mapping[str, float]) -> WorldJoint:
-    first, second = (frame_along(axis.point, axis.direction) for axis in axes)
-    limits = (axes[0].limits, axes[1].limits)
-    locked = _locked(axes, locks)
-    kind = JointKind.UNIVERSAL
-    return WorldJoint(_name(axes), kind, first, second, limits, locked, _names(axes))
+    frames = [frame_along(axis.point, axis.direction) for axis in axes]
+    return _joint(JointKind.UNIVERSAL, axes, locks, frames)
 
 
 def _plane(axes: list[Axis], locks: Mapping[str, float]) -> WorldJoint:
     x, _, normal = axes
     frame = frame_along(normal.point, normal.direction, x.direction)
-    limits = tuple(axis.limits for axis in axes)
-    kind = JointKind.PLANAR
-    locked = _locked(axes, locks)
-    return WorldJoint(_name(axes), kind, frame, frame, limits, locked, _names(axes))
+    return _joint(JointKind.PLANAR, axes, locks, [frame])
+
+
+# --- chains ---------------------------------------------------------------------------
+
+
+def link_behind(label: str) -> str:
+    """What the link behind a variable is called in a chain."""
+    return f"{label}.link"
+
+
+def with_joints_of_chains(
+    joints: Sequence[BodyJoint], pose_of: Callable[[str], np.ndarray]
+) -> tuple[BodyJoint, ...]:
+    """The ``joints`` with every chain as the joint that it stands for; ``pose_of`` gives
+    the pose (4, 4) of a link. No joint has the links between any more."""
+    by_name = {joint.name: joint for joint in joints}
+    uses = Counter(body for joint in joints for body in joint.bodies)
+    result: dict[str, BodyJoint | None] = dict(by_name)
+    for kind in WHOLE:
+        first, *_ = kind.facets.parts
+        for start in joints:
+            stem = start.name.removesuffix(f".{first}")
+            names = [f"{stem}.{part}" for part in kind.facets.parts]
+            links = [link_behind(name) for name in names[:-1]]
+            is_chain = stem not in by_name and all(name in by_name for name in names)
+            if not is_chain or any(uses[link] != 2 for link in links):
+                continue
+            chain = [by_name[name] for name in names]
+            whole = _joined(stem, kind, chain, links, pose_of)
+            if whole is not None:
+                result |= {**dict.fromkeys(names), names[0]: whole}
+    return tuple(joint for joint in result.values() if joint is not None)
+
+
+def _joined(
+    name: str,
+    kind: JointKind,
+    chain: Sequence[BodyJoint],
+    links: Sequence[str],
+    pose_of: Callable[[str], np.ndarray],
+) -> BodyJoint | None:
+    """The joint of this kind that a chain across ``links`` makes; None where it makes
+    none."""
+    base = next((one for one in chain[0].bodies if one != links[0]), "")
+    moved = next((one for one in chain[-1].bodies if one != links[-1]), "")
+    axes = []
+    for joint, pair in zip(chain, pairwise([base, *links, moved]), strict=True):
+        if set(joint.bodies) != {*pair} or joint.kind not in WORDS:
+            return None
+        frame = pose_of(joint.bodies[0]) @ joint.frames[0]
+        # the world, which is no child in SDF, may be the body that moves
+        sign = 1.0 if joint.bodies == pair else -1.0
+        (limits,) = joint.limits
+        word = WORDS[joint.kind]
+        axes.append(Axis(joint.name, word, frame[:3, 3], sign * frame[:3, 2], limits))
+    wholes = joints_of_axes(axes, {}, {})
+    if len(wholes) > 1 or wholes[0].kind is not kind or wholes[0].is_reversed:
+        return None
+    (whole,) = wholes
+    poses = pose_of(base), pose_of(moved)
+    frames = in_bodies(poses, (whole.first, whole.second))
+    coupled = {label: to for joint in chain for label, to in joint.coupled.items()}
+    bodies = base, moved
+    return BodyJoint(name, kind, bodies, frames, limits=whole.limits, coupled=coupled)

@@ -36,12 +36,7 @@ from linkages.formats.cuik_tokens import Cursor, tokens_of
 from linkages.mechanisms.joint import JointKind, Limits, Vector
 from linkages.values import GeometryError, quoted
 
-JOINTS = (
-    *("revolute", "crevolute", "prismatic", "spherical", "universal", "fix"),
-    *("in_patch", "sph_sph", "sph_prs_sph", "spring", "xyspring"),
-    *("c_cable", "c_spring", "c_leg"),
-)
-NAMED = ("sph_sph", "sph_prs_sph", "spring", "xyspring", "c_cable", "c_spring", "c_leg")
+NAMED = ("sph_sph", "sph_prs_sph")
 NOT_TAKEN = {
     "crevolute": "a revolute joint coupled to another one",
     "in_patch": "a point on a curved patch",
@@ -145,13 +140,13 @@ class _Side:
 def _read_joint(cursor: Cursor, world: _World) -> None:
     line = cursor.token.line
     word = cursor.name("a joint").lower()
-    if word not in JOINTS:
-        allowed = f"one of {', '.join(j for j in JOINTS if j not in NOT_TAKEN)}"
-        raise GeometryError(f"joint on line {line}", quoted(word), allowed)
     if word in NOT_TAKEN:
         allowed = "a joint of a mechanism of rigid bodies"
         value = f"{word}, {NOT_TAKEN[word]},"
         raise GeometryError(f"joint on line {line}", value, allowed)
+    if word not in _READERS:
+        allowed = f"one of {', '.join(_READERS)}"
+        raise GeometryError(f"joint on line {line}", quoted(word), allowed)
     name = f"J{len(world.joints) + 1}"
     if word in NAMED and cursor.token.text != ":":
         name = cursor.name("the name of a joint")
@@ -269,11 +264,7 @@ def _referred(
 
 def _read_range(cursor: Cursor, name: str) -> Limits:
     line = cursor.token.line
-    cursor.expect("[")
-    low = cursor.number()
-    cursor.expect(",")
-    high = cursor.number()
-    cursor.expect("]")
+    low, high = cursor.row("[]", 2)
     if not low <= high:
         allowed = "a smaller number and a larger one"
         raise GeometryError(
@@ -312,9 +303,7 @@ def _read_spherical(cursor: Cursor, world: _World, name: str) -> None:
     sides = _read_two_sides(cursor, world, has_axis=False)
     if cursor.take("range"):
         world.notes.append(f"left out: the range of the spherical joint {name}")
-        cursor.expect("[")
-        cursor.number()
-        cursor.expect("]")
+        cursor.row("[]", 1)
         while cursor.token.text in ("(", "+"):
             read_end(cursor, (0.0, 0.0, 0.0))
     _skip_options(cursor)

@@ -19,7 +19,7 @@ COLORS = (
 SHAPES = ("body", "box", "prism", "sphere", "cylinder", "line", "segments")
 TURNS = {"rx": (1.0, 0.0, 0.0), "ry": (0.0, 1.0, 0.0), "rz": (0.0, 0.0, 1.0)}
 SLIDES = {"tx": (1.0, 0.0, 0.0), "ty": (0.0, 1.0, 0.0), "tz": (0.0, 0.0, 1.0)}
-INERTIAS = {"rod": 1, "cylinder": 3, "sphere": 1, "box": 3, "ellipsoid": 3}
+INERTIAS = ("rod", "cylinder", "sphere", "box", "ellipsoid")
 MOST_POINTS = 100_000  # of a body in a file of its own
 
 
@@ -94,25 +94,20 @@ def _read_shape(cursor: Cursor, folder: Path) -> list[Vector] | Path:
 def skip_appearance(cursor: Cursor) -> bool:
     """Whether a color or another word on how a shape looks stands here; the cursor goes
     on behind it."""
-    token = cursor.token
-    if token.kind == "number" and cursor.ahead(1) == "*":
+    is_name = cursor.ahead(1) in (":", "-")
+    if cursor.token.kind == "number" and cursor.ahead(1) == "*":
         cursor.place += 2
-        return True
-    if cursor.take("+"):
-        return True
-    if cursor.is_word("color") and cursor.ahead(1) == "(":
+    elif cursor.is_word("color") and cursor.ahead(1) == "(":
         cursor.next()
         read_point(cursor)
-        return True
-    if cursor.is_word("granularity"):
+    elif cursor.is_word("granularity"):
         cursor.next()
         cursor.number()
-        return True
-    words = (*COLORS, "hidden", "decoration")
-    if cursor.is_word(*words) and cursor.ahead(1) not in (":", "-"):
+    elif cursor.is_word(*COLORS, "hidden", "decoration") and not is_name:
         cursor.next()
-        return True
-    return False
+    else:
+        return cursor.take("+")
+    return True
 
 
 def skip_dynamics(cursor: Cursor) -> bool:
@@ -120,12 +115,10 @@ def skip_dynamics(cursor: Cursor) -> bool:
     if cursor.is_word("mass") and cursor.ahead(1) not in (":", "-"):
         cursor.next()
         cursor.number()
-        return True
-    if cursor.is_word("inertial") and cursor.ahead(1).lower() == "frame":
+    elif cursor.is_word("inertial") and cursor.ahead(1).lower() == "frame":
         cursor.place += 2
         read_transforms(cursor)
-        return True
-    if cursor.is_word("inertia") and cursor.ahead(1).lower() == "matrix":
+    elif cursor.is_word("inertia") and cursor.ahead(1).lower() == "matrix":
         cursor.place += 2
         cursor.take("solid")
         if cursor.token.text.lower().split("_")[0] in INERTIAS:
@@ -133,8 +126,9 @@ def skip_dynamics(cursor: Cursor) -> bool:
         cursor.number()
         while cursor.take(","):
             cursor.number()
-        return True
-    return False
+    else:
+        return False
+    return True
 
 
 # --- points ---------------------------------------------------------------------------
@@ -142,13 +136,7 @@ def skip_dynamics(cursor: Cursor) -> bool:
 
 def read_point(cursor: Cursor) -> Vector:
     """The point (x, y, z) that stands here."""
-    cursor.expect("(")
-    x = cursor.number()
-    cursor.expect(",")
-    y = cursor.number()
-    cursor.expect(",")
-    z = cursor.number()
-    cursor.expect(")")
+    x, y, z = cursor.row("()", 3)
     return (x, y, z)
 
 
@@ -168,32 +156,20 @@ def read_end(cursor: Cursor, start: Vector) -> Vector:
 
 
 def _read_segments(cursor: Cursor) -> list[Vector]:
-    points = []
     cursor.expect("(")
-    while True:
-        x = cursor.number()
-        cursor.expect(",")
-        y = cursor.number()
-        cursor.expect(",")
-        points.append((x, y, cursor.number()))
-        if not cursor.take(";"):
-            break
+    points = [cursor.numbers(3)]
+    while cursor.take(";"):
+        points.append(cursor.numbers(3))
     cursor.expect(")")
-    return points
+    return [(x, y, z) for x, y, z in points]
 
 
 def _points_of_off(path: Path) -> list[Vector]:
     """The vertices of a body in an OFF file; raises `GeometryError`."""
     try:
         text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        allowed = f"a file that can be read ({error.strerror})"
-        raise GeometryError("body", quoted(path), allowed) from None
-    except UnicodeDecodeError:
-        raise GeometryError("body", quoted(path), "an OFF file of text") from None
-    lines = [line.split("#")[0] for line in text.splitlines()]
-    words = " ".join(lines).split()
-    try:
+        lines = [line.split("#")[0] for line in text.splitlines()]
+        words = " ".join(lines).split()
         start = 1 if words[0].upper().endswith("OFF") else 0
         count = int(words[start])
         if not 0 <= count <= MOST_POINTS:
@@ -201,7 +177,10 @@ def _points_of_off(path: Path) -> list[Vector]:
         numbers = [float(word) for word in words[start + 3 : start + 3 + 3 * count]]
         if len(numbers) < 3 * count or not np.all(np.isfinite(numbers)):
             raise ValueError
-    except (ValueError, IndexError):
+    except OSError as error:
+        allowed = f"a file that can be read ({error.strerror})"
+        raise GeometryError("body", quoted(path), allowed) from None
+    except (ValueError, IndexError):  # of text that is not UTF-8, among others
         raise GeometryError("body", quoted(path), "an OFF file of text") from None
     rows = [numbers[k : k + 3] for k in range(0, 3 * count, 3)]
     return [(x, y, z) for x, y, z in rows]
@@ -229,9 +208,7 @@ def _read_transform(cursor: Cursor) -> np.ndarray:
     if word == "tr":
         cursor.place -= 1
         cursor.refuse("one of Id, Tx, Ty, Tz, Txyz, Rx, Ry, Rz")
-    cursor.expect("(")
-    value = cursor.number()
-    cursor.expect(")")
+    (value,) = cursor.row("()", 1)
     result = (
         translation(value * np.array(SLIDES[word]))
         if word in SLIDES

@@ -8,6 +8,7 @@ which a sign binds closer than a power.
 from __future__ import annotations
 
 import math
+import operator
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -25,25 +26,25 @@ TOKEN = re.compile(
     r"|(?P<unknown>.)"
 )
 ONE_ARGUMENT: dict[str, Callable[[float], float]] = {
-    "sin": math.sin,
-    "cos": math.cos,
-    "tan": math.tan,
-    "cot": lambda angle: math.tan(math.pi / 2 - angle),
-    "asin": math.asin,
-    "acos": math.acos,
-    "atan": math.atan,
-    "exp": math.exp,
-    "sqrt": math.sqrt,
-    "abs": abs,
+    name: getattr(math, name)
+    for name in ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "sqrt")
 }
-COMPARISONS: dict[str, Callable[[float, float], bool]] = {
-    "==": lambda a, b: a == b,
-    "!=": lambda a, b: a != b,
-    "<=": lambda a, b: a <= b,
-    ">=": lambda a, b: a >= b,
-    "<": lambda a, b: a < b,
-    ">": lambda a, b: a > b,
-}
+ONE_ARGUMENT["cot"] = lambda angle: math.tan(math.pi / 2 - angle)
+ONE_ARGUMENT["abs"] = abs
+# what stands between two numbers, from what binds least
+OPERATIONS: tuple[dict[str, Callable[[float, float], float]], ...] = (
+    {
+        "==": operator.eq,
+        "!=": operator.ne,
+        "<=": operator.le,
+        ">=": operator.ge,
+        "<": operator.lt,
+        ">": operator.gt,
+    },
+    {"+": operator.add, "-": operator.sub},
+    {"*": operator.mul, "/": operator.truediv},
+    {"^": operator.pow},
+)
 END = "the end of the file"
 DEEPEST = 100  # parentheses inside each other
 
@@ -142,13 +143,28 @@ class Cursor:
         shown = token.text if token.kind in ("end", "text") else quoted(token.text)
         raise GeometryError(f"line {token.line}", shown, allowed)
 
+    def numbers(self, count: int) -> list[float]:
+        """So many numbers with commas between them."""
+        numbers = [self.number()]
+        while len(numbers) < count:
+            self.expect(",")
+            numbers.append(self.number())
+        return numbers
+
+    def row(self, brackets: str, count: int) -> list[float]:
+        """So many numbers with commas between them, in these brackets."""
+        self.expect(brackets[0])
+        numbers = self.numbers(count)
+        self.expect(brackets[1])
+        return numbers
+
     # --- expressions ------------------------------------------------------------------
 
     def number(self) -> float:
         """The value of the expression that stands here; raises `GeometryError`."""
         line = self.token.line
         try:
-            value = self._comparison()
+            value = self._value()
         except (ArithmeticError, ValueError) as error:
             if isinstance(error, GeometryError):
                 raise
@@ -156,36 +172,17 @@ class Cursor:
             raise GeometryError(f"line {line}", message, "a number") from None
         if isinstance(value, complex) or not math.isfinite(value):
             raise GeometryError(f"line {line}", value, "a finite number")
-        return value
+        return float(value)
 
-    def _comparison(self) -> float:
-        value = self._sum()
-        while self.token.text in COMPARISONS:
-            compare = COMPARISONS[self.next().text]
-            value = float(compare(value, self._sum()))
-        return value
-
-    def _sum(self) -> float:
-        value = self._product()
-        # "1+(0,1,0)" is a point and a vector, which `points` takes apart
-        while self.token.text in ("+", "-"):
-            sign = self.next().text
-            term = self._product()
-            value = value + term if sign == "+" else value - term
-        return value
-
-    def _product(self) -> float:
-        value = self._power()
-        while self.token.text in ("*", "/"):
-            sign = self.next().text
-            factor = self._power()
-            value = value * factor if sign == "*" else value / factor
-        return value
-
-    def _power(self) -> float:
-        value = self._signed()
-        while self.take("^"):
-            value = value ** self._signed()
+    def _value(self, level: int = 0) -> float:
+        """The value of operations that bind so much at least."""
+        if level == len(OPERATIONS):
+            return self._signed()
+        value = self._value(level + 1)
+        # "1+(0,1,0)" is a point and a vector, which `read_end` takes apart
+        while self.token.text in OPERATIONS[level]:
+            operate = OPERATIONS[level][self.next().text]
+            value = operate(value, self._value(level + 1))
         return value
 
     def _signed(self) -> float:
@@ -219,11 +216,11 @@ class Cursor:
         if self._depth >= DEEPEST:
             self.refuse(f"at most {DEEPEST} parentheses inside each other")
         self._depth += 1
-        value = self._comparison()
+        value = self._value()
         if self.take("?"):
-            yes = self._comparison()
+            yes = self._value()
             self.expect(":")
-            no = self._comparison()
+            no = self._value()
             value = yes if value else no
         self.expect(")")
         self._depth -= 1
@@ -231,10 +228,10 @@ class Cursor:
 
     def _function(self, name: str) -> float:
         self.expect("(")
-        value = self._comparison()
+        value = self._value()
         if name == "atan2":
             self.expect(",")
-            value = math.atan2(value, self._comparison())
+            value = math.atan2(value, self._value())
         else:
             value = ONE_ARGUMENT[name](value)
         self.expect(")")

@@ -17,9 +17,15 @@ from linkages.decisions import (
     is_file_nearly_closed,
     is_rounding_of_zero,
 )
-from linkages.formats.assembly import Assembly, BodyJoint, listed
-from linkages.formats.closing import ClosedPoses, Closing
-from linkages.formats.starts import Starts
+from linkages.formats.assembly import (
+    MOVES,
+    SLIDES,
+    TURN,
+    Assembly,
+    BodyJoint,
+    listed,
+)
+from linkages.formats.closing import ClosedPoses, Closing, Starts
 from linkages.mechanisms.couplings import Coupling, leaders
 from linkages.mechanisms.joint import Joint, JointKind, Limits, Vector
 from linkages.mechanisms.mechanism import FRAMES, Mechanism
@@ -31,16 +37,6 @@ MOST_STARTS = 50  # random starts until one closes within the limits
 SEED = 0
 FULL_TURN = 2 * math.pi
 ROUNDING = 1e-9  # rad, of an angle at the end of its limits
-WITH_POINT = (
-    JointKind.REVOLUTE,
-    JointKind.PRISMATIC,
-    JointKind.CYLINDRICAL,
-    JointKind.HELICAL,
-    JointKind.UNIVERSAL,
-    JointKind.SPHERICAL,
-    JointKind.PLANAR,
-)
-WITHOUT_DIRECTION = (JointKind.SPHERICAL, JointKind.RIGID)
 
 
 def mechanism_of_assembly(assembly: Assembly) -> Mechanism:
@@ -60,19 +56,15 @@ def mechanism_of_assembly(assembly: Assembly) -> Mechanism:
             "exactly, and each is put halfway between its bodies"
         )
     names = _merged_bodies(assembly, notes)
-    numbers = {body: k for k, body in enumerate(assembly.bodies)}
     joints = []
     values: dict[str, float] = {}
     for joint in assembly.joints:
         bodies = tuple(names[body] for body in joint.bodies)
         if bodies[0] == bodies[1]:
             continue
-        frames = [
-            closed.poses[numbers[body]] @ frame
-            for body, frame in zip(joint.bodies, joint.frames, strict=True)
-        ]
-        joints.append(_placed(joint, bodies, frames[0], frames[1]))
-        values |= zip(joint.labels, _values(joint, frames[0], frames[1]), strict=False)
+        frames = assembly.placed(joint, closed.poses)
+        joints.append(_placed(joint, bodies, *frames))
+        values |= zip(joint.labels, _values(joint, *frames), strict=False)
     if not joints:
         allowed = "one with a joint that can move"
         raise GeometryError("mechanism", "rigid: no joint is left in a loop", allowed)
@@ -192,13 +184,8 @@ def _from_random_starts(assembly: Assembly, closing: Closing) -> ClosedPoses:
 
 
 def _is_within_limits(assembly: Assembly, poses: np.ndarray) -> bool:
-    numbers = {body: k for k, body in enumerate(assembly.bodies)}
     for joint in assembly.joints:
-        frames = [
-            poses[numbers[body]] @ frame
-            for body, frame in zip(joint.bodies, joint.frames, strict=True)
-        ]
-        values = _values(joint, frames[0], frames[1])
+        values = _values(joint, *assembly.placed(joint, poses))
         for pair, value in zip(joint.limits, values, strict=False):
             if pair is not None and not pair[0] <= value <= pair[1]:
                 return False
@@ -260,21 +247,16 @@ def _coupled(
 
 def _values(joint: BodyJoint, first: np.ndarray, second: np.ndarray) -> list[float]:
     """The variables that have limits, at the places of the frames (4, 4)."""
+    if joint.kind is JointKind.UNIVERSAL:
+        return [0.0, 0.0]
     gap = second[:3, 3] - first[:3, 3]
-    x, y, z = (float(first[:3, k] @ gap) for k in range(3))
-    match joint.kind:
-        case JointKind.REVOLUTE | JointKind.HELICAL:
-            return [_angle(joint, 0, first, second)]
-        case JointKind.PRISMATIC:
-            return [z]
-        case JointKind.CYLINDRICAL:
-            return [_angle(joint, 0, first, second), z]
-        case JointKind.PLANAR:
-            return [x, y, _angle(joint, 2, first, second)]
-        case JointKind.UNIVERSAL:
-            return [0.0, 0.0]
-        case _:
-            return []
+    values = []
+    for number, move in enumerate(MOVES.get(joint.kind, ())):
+        if move == TURN:
+            values.append(_angle(joint, number, first, second))
+        else:
+            values.append(float(first[:3, SLIDES.index(move)] @ gap))
+    return values
 
 
 def _angle(
@@ -303,13 +285,15 @@ def _placed(
 ) -> Joint:
     """The joint with its frames (4, 4) at these places, halfway between them."""
     middle = (first[:3] + second[:3]) / 2
-    limits: list[Limits | None] = []
     values = _values(joint, first, second)
-    for pair, value in zip(joint.limits, values, strict=False):
-        limits.append(None if pair is None else (pair[0] - value, pair[1] - value))
-    locked: list[float | None] = []
-    for lock, value in zip(joint.locked, values, strict=False):
-        locked.append(None if lock is None else lock - value)
+    limits = [
+        None if pair is None else (pair[0] - value, pair[1] - value)
+        for pair, value in zip(joint.limits, values, strict=False)
+    ]
+    locked = [
+        None if lock is None else lock - value
+        for lock, value in zip(joint.locked, values, strict=False)
+    ]
     direction, second_direction = _vector(middle[:, 2]), None
     if joint.kind is JointKind.UNIVERSAL:
         direction, second_direction = _vector(first[:3, 2]), _vector(second[:3, 2])
@@ -319,8 +303,8 @@ def _placed(
         joint.name,
         joint.kind,
         bodies,
-        point=_vector(middle[:, 3]) if joint.kind in WITH_POINT else None,
-        direction=None if joint.kind in WITHOUT_DIRECTION else direction,
+        point=_vector(middle[:, 3]) if joint.kind is not JointKind.RIGID else None,
+        direction=direction if "direction" in joint.kind.facets.required else None,
         second_direction=second_direction,
         pitch=joint.pitch,
         limits=tuple(limits),

@@ -22,6 +22,7 @@ from linkages.formats.assembly import (
     Assembly,
     BodyJoint,
     frame_along,
+    in_bodies,
     translation,
 )
 from linkages.formats.composites import (
@@ -34,7 +35,6 @@ from linkages.formats.exact_poses import (
     ExactPose,
     Origin,
 )
-from linkages.formats.mjcf_names import TakenNames, numbered
 from linkages.formats.mjcf_poses import (
     AT_REST,
     Settings,
@@ -42,6 +42,7 @@ from linkages.formats.mjcf_poses import (
     read_settings,
     rotation_of_quaternion,
 )
+from linkages.formats.names import TakenNames, numbered
 from linkages.formats.xml_tree import Element
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import JointKind, Limits
@@ -180,8 +181,7 @@ def _read_body(
     if name is None:
         numbers = itertools.count(len(model.names))
         name = model.taken.new_body(f"body{number}" for number in numbers)
-    if name in model.names:
-        element.refuse("name", quoted(name), "given once")
+    element.check_new(name, model.names)
     pose = pose @ pose_of(element, model.settings)
     joints = [
         model.settings.attributes(joint, childclass)
@@ -210,8 +210,7 @@ def _read_axis(joint: Element, pose: ExactPose, model: _Model) -> Axis:
     if name is None:
         numbers = itertools.count(len(model.axes) + 1)
         name = model.taken.new_axis(f"J{number}" for number in numbers)
-    if name in model.axes:
-        joint.refuse("name", quoted(name), "given once")
+    joint.check_new(name, model.axes)
     point = ExactPose.at(joint.numbers("pos", (3,)) or AT_REST)
     direction = np.array(joint.numbers("axis", (3,)) or (0.0, 0.0, 1.0))
     if kind != "ball" and not np.any(direction):
@@ -273,10 +272,7 @@ def _add_chains(model: _Model) -> None:
                 second = _Body(name, body.frame)
                 model.bodies.append(second)
             base, moved = (second, first) if joint.is_reversed else (first, second)
-            frames = (
-                np.linalg.inv(base.frame) @ joint.first,
-                np.linalg.inv(moved.frame) @ joint.second,
-            )
+            frames = in_bodies((base.frame, moved.frame), (joint.first, joint.second))
             body_joint = BodyJoint(
                 joint.name,
                 joint.kind,
@@ -330,13 +326,12 @@ def _read_couplings(equality: Element, model: _Model) -> None:
             raise GeometryError(f"equality on line {element.line}", value, allowed)
         if element.tag != "joint" or not _is_active(element):
             continue
-        names = [element.attributes.get(key) for key in ("joint1", "joint2")]
-        for key, name in zip(("joint1", "joint2"), names, strict=True):
-            if (name is None and key == "joint2") or name in model.axes:
-                continue
-            allowed = f"one of the joints {', '.join(model.axes)}"
-            element.refuse(key, quoted(name), allowed)
-        first, second = names
+        first, second = (element.attributes.get(key) for key in ("joint1", "joint2"))
+        allowed = f"one of the joints {', '.join(model.axes)}"
+        if first not in model.axes:
+            element.refuse("joint1", quoted(first), allowed)
+        if second is not None and second not in model.axes:
+            element.refuse("joint2", quoted(second), allowed)
         given = element.numbers("polycoef", (1, 2, 3, 4, 5)) or []
         # those that are not given stay at MuJoCo's default
         offset, ratio, *higher = [*given, *(0.0, 1.0, 0.0, 0.0, 0.0)[len(given) :]]
@@ -401,14 +396,9 @@ class _Anchor:
 
 
 def _read_bodies(element: Element, model: _Model) -> tuple[_Body, _Body]:
-    first = element.attributes.get("body1")
-    second = element.attributes.get("body2", WORLD)
-    for key, name in (("body1", first), ("body2", second)):
-        if name not in model.names:
-            shown = "missing" if name is None else quoted(name)
-            allowed = f"one of the bodies {', '.join(model.names)}"
-            element.refuse(key, shown, allowed)
-    assert first is not None
+    allowed = f"one of the bodies {', '.join(model.names)}"
+    first = element.reference("body1", model.names, allowed)
+    second = element.reference("body2", model.names, allowed, default=WORLD)
     return model.names[first], model.names[second]
 
 
@@ -418,14 +408,11 @@ def _read_sites(
     """The two sites of an equality; None where it has none."""
     if "site1" not in element.attributes and "site2" not in element.attributes:
         return None
-    sites = []
-    for key in ("site1", "site2"):
-        name = element.attributes.get(key)
-        if name is None or name not in model.sites:
-            shown = "missing" if name is None else quoted(name)
-            element.refuse(key, shown, "the name of a site")
-        sites.append(model.sites[name])
-    return sites[0], sites[1]
+    first, second = (
+        model.sites[element.reference(key, model.sites, "the name of a site")]
+        for key in ("site1", "site2")
+    )
+    return first, second
 
 
 def _read_connect(element: Element, name: str, model: _Model) -> _Anchor:
@@ -460,31 +447,26 @@ def _read_weld(element: Element, name: str, model: _Model) -> BodyJoint:
         # the same frames of both, brought near
         near = ExactPose(place=other.inverse().place)
         one, other = one @ near, other @ near
-    frames = (
-        np.linalg.inv(first.frame) @ one.matrix(),
-        np.linalg.inv(second.frame) @ other.matrix(),
-    )
+    frames = in_bodies((first.frame, second.frame), (one.matrix(), other.matrix()))
     return BodyJoint(name, JointKind.RIGID, (first.name, second.name), frames)
 
 
 def _joint_of_anchors(anchors: list[_Anchor]) -> BodyJoint:
     """The joint that two bodies have when they share these points."""
-    bodies = anchors[0].bodies
-    inverses = [np.linalg.inv(body.frame) for body in bodies]
+    first, second = anchors[0].bodies
     places = [np.array([a.points[side] for a in anchors]) for side in (0, 1)]
     kind, columns = _kind_of_points(places[0])
-    name = _name_of_anchors(anchors)
     frames = []
-    for inverse, points in zip(inverses, places, strict=True):
+    for points in places:
         frame = translation(points[0])
         if kind is JointKind.REVOLUTE:
             frame = frame_along(points[0], points[columns[0]] - points[0])
         elif kind is JointKind.RIGID:
             across, other = (points[column] - points[0] for column in columns)
             frame = frame_along(points[0], np.cross(across, other), across)
-        frames.append(inverse @ frame)
-    pair = bodies[0].name, bodies[1].name
-    return BodyJoint(name, kind, pair, (frames[0], frames[1]))
+        frames.append(frame)
+    own = in_bodies((first.frame, second.frame), frames)
+    return BodyJoint(_name_of_anchors(anchors), kind, (first.name, second.name), own)
 
 
 def _name_of_anchors(anchors: list[_Anchor]) -> str:

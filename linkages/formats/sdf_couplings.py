@@ -64,11 +64,8 @@ def with_mimics(
 
 
 def _coupling(mimic: Element, joints: Mapping[str, BodyJoint]) -> Coupling:
-    name = mimic.attributes.get("joint")
-    leader = joints.get(name or "")
-    if leader is None:
-        shown = "missing" if name is None else quoted(name)
-        mimic.refuse("joint", shown, f"one of the joints {', '.join(joints)}")
+    allowed = f"one of the joints {', '.join(joints)}"
+    leader = joints[mimic.reference("joint", joints, allowed)]
     number = AXES.index(mimic.choice("axis", AXES, AXES[0]))
     if number >= len(leader.labels):
         shown = f"{AXES[number]} of {leader.name}"

@@ -17,10 +17,11 @@ from linkages.formats.assembly import (
     Assembly,
     BodyJoint,
     frame_along,
+    in_bodies,
     without_joints,
 )
+from linkages.formats.composites import with_joints_of_chains
 from linkages.formats.exact_poses import ExactPose, Origin
-from linkages.formats.sdf_chains import with_joints_of_chains
 from linkages.formats.sdf_couplings import (
     AXES,
     GEARBOX,
@@ -29,7 +30,7 @@ from linkages.formats.sdf_couplings import (
     with_mimics,
 )
 from linkages.formats.xml_tree import Element
-from linkages.mechanisms.joint import WITHOUT_PLACE, JointKind, Limits
+from linkages.mechanisms.joint import JointKind, Limits
 from linkages.values import quoted
 
 OLDEST, NEWEST = (1, 5), (1, 11)
@@ -126,7 +127,9 @@ def read_sdf(root: Element, name: str) -> Assembly:
 
 def _joints_with_places(element: Element) -> list[str]:
     """The names of the joints of a model that are at a place."""
-    elsewhere = [word for word, kind in KINDS.items() if kind in WITHOUT_PLACE]
+    elsewhere = [
+        word for word, kind in KINDS.items() if kind.facets.is_point_drawn_only
+    ]
     return [
         joint.attributes["name"]
         for joint in element.all("joint")
@@ -167,8 +170,7 @@ def _collect(model: _Model) -> None:
         name = element.attributes.get("name")
         if not name:
             element.refuse("name", "missing", "a name")
-        if name in model.posed or name in (WORLD, MODEL):
-            element.refuse("name", quoted(name), "given once")
+        element.check_new(name, (*model.posed, WORLD, MODEL))
         relative_to = MODEL
         if element.tag == "joint":
             relative_to = _link_name(element, "child")
@@ -281,13 +283,9 @@ def _read_joint(element: Element, model: _Model) -> BodyJoint:
         other = frame_along(place[:3, 3], second_axis)
         cosine = float(one[:3, 2] @ other[:3, 2])
         limits = (*limits, _limits(element, "axis2", word, model))
-    frames = (
-        np.linalg.inv(model.frame(first)) @ one,
-        np.linalg.inv(model.frame(second)) @ other,
-    )
+    frames = in_bodies((model.frame(first), model.frame(second)), (one, other))
     pitch = _pitch(element, model) if kind is JointKind.HELICAL else None
-    bodies = first, second
-    return BodyJoint(name, kind, bodies, frames, cosine, pitch, limits)
+    return BodyJoint(name, kind, (first, second), frames, cosine, pitch, limits)
 
 
 def _read_gearbox(element: Element, model: _Model) -> Gearbox:

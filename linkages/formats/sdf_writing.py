@@ -12,8 +12,8 @@ import math
 from collections.abc import Iterable
 from xml.sax.saxutils import escape, quoteattr
 
+from linkages.formats.composites import link_behind
 from linkages.formats.names import NameRules, with_names_for
-from linkages.formats.sdf_chains import link_behind
 from linkages.formats.sdf_couplings import AXES
 from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism, Pair, Variable

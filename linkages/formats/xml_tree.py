@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from dataclasses import dataclass, field
 from typing import NoReturn
 from xml.parsers import expat
@@ -76,6 +76,21 @@ class Element:
         if value not in allowed:
             self.refuse(attribute, quoted(value), f"one of {', '.join(allowed)}")
         return value
+
+    def reference(
+        self, attribute: str, known: Container[str], allowed: str, default: str = ""
+    ) -> str:
+        """The name of something ``known``; raises `GeometryError`."""
+        name = self.attributes.get(attribute, default or None)
+        if name is None or name not in known:
+            shown = "missing" if name is None else quoted(name)
+            self.refuse(attribute, shown, allowed)
+        return name
+
+    def check_new(self, name: str, known: Container[str]) -> None:
+        """Raise `GeometryError` where the ``name`` of this element is known."""
+        if name in known:
+            self.refuse("name", quoted(name), "given once")
 
 
 def parse_xml(content: bytes) -> Element:

@@ -8,7 +8,7 @@ from typing import NamedTuple, TypedDict
 
 import numpy as np
 
-from linkages.mechanisms.joint import Joint, JointKind
+from linkages.mechanisms.joint import Joint, JointKind, Place
 from linkages.mechanisms.mechanism import Mechanism, Pair
 from linkages.readout.poses import Poses
 from linkages.scene import View, breadth, clearest_view
@@ -19,11 +19,6 @@ ASIDE = 0.7  # how far along its axis a joint is drawn that would cover another 
 RAIL_END = 0.15  # how far a rail goes on beyond the places that the slide comes to
 ENOUGH_OF_AN_AXIS = 0.35  # of its length: showing more of it makes no view better
 TRIANGLE = 3  # joints of a body that is drawn as a polygon; one of more is a star
-TURNING = (JointKind.REVOLUTE, JointKind.CYLINDRICAL, JointKind.HELICAL)
-SLIDING = (JointKind.PRISMATIC, JointKind.CYLINDRICAL, JointKind.HELICAL)
-PLACELESS = (JointKind.PRISMATIC, JointKind.PLANAR, JointKind.RIGID)
-# joints whose bodies all share one symbol, however many they are
-SHARED = (JointKind.REVOLUTE, JointKind.SPHERICAL)
 
 Segment = list[list[float]]
 
@@ -121,7 +116,7 @@ def _rails(
     for pair in mechanism.pairs:
         number = numbers[pair.joint]
         joint = mechanism.joints[number]
-        if joint.kind not in SLIDING:
+        if not joint.kind.facets.has_rail:
             continue
         sides = _sides(mechanism, pair)
         shifts = sides.sign * _shifts(structure, pair, points)
@@ -161,7 +156,7 @@ def draw_symbols(structure: Structure) -> list[SymbolDrawing]:
     for number, joint in enumerate(mechanism.joints):
         pairs = range(first, first + len(joint.bodies) - 1)
         first += len(pairs)
-        groups = [pairs] if joint.kind in SHARED else [[pair] for pair in pairs]
+        groups = [pairs] if joint.kind.facets.is_shared else [[pair] for pair in pairs]
         for k, group in enumerate(groups):
             label = joint.name if k == 0 else ""
             symbols.append(_symbol(structure, label, list(group), places[number]))
@@ -175,7 +170,7 @@ def _symbol(
     pair = mechanism.pairs[pairs[0]]
     joint = mechanism.joint(pair.joint)
     holder, other = pair.base, pair.moved
-    if joint.kind in SLIDING:
+    if joint.kind.facets.has_rail:
         sides = _sides(mechanism, pair)
         holder, other = sides.box, sides.rail
     elif joint.kind is JointKind.PLANAR:
@@ -223,9 +218,12 @@ def _places(structure: Structure) -> np.ndarray:
     mechanism = structure.mechanism
     places = structure.size.points / structure.unit
     for number, joint in enumerate(mechanism.joints):
-        if joint.kind in PLACELESS and joint.point is not None:
+        if joint.kind.facets.place is Place.ANYWHERE and joint.point is not None:
             places[number] = joint.place / structure.unit
-        elif joint.kind in PLACELESS and mechanism.frame in joint.bodies:
+        elif (
+            joint.kind.facets.place is Place.ANYWHERE
+            and mechanism.frame in joint.bodies
+        ):
             places[number] = _place_on_slider(mechanism, number, places)
     apart: np.ndarray = places + _steps_aside(mechanism, places)
     return apart
@@ -255,10 +253,10 @@ def _steps_aside(mechanism: Mechanism, places: np.ndarray) -> np.ndarray:
         is_joined = set(joints[0].bodies) & set(joints[1].bodies)
         if not is_joined or np.linalg.norm(places[first] - places[second]) > SAME:
             continue
-        if any(joint.kind in PLACELESS for joint in joints):
+        if any(joint.kind.facets.place is Place.ANYWHERE for joint in joints):
             continue
         for number, joint in zip((first, second), joints, strict=True):
-            if joint.kind in TURNING:
+            if joint.kind.facets.place is Place.ALONG:
                 steps[number] = ASIDE * joint.motions[0].direction
     return steps
 
@@ -296,7 +294,7 @@ def best_view_of_mechanism(structure: Structure, point: np.ndarray) -> View:
     axes = []
     for joint in mechanism.joints:
         pose = poses[mechanism.bodies.index(joint.bodies[0])]
-        if joint.kind in TURNING:
+        if joint.kind.facets.place is Place.ALONG:
             axes.append(pose[:3, :3] @ joint.motions[0].direction)
     return clearest_view(lambda look: _clarity(spots, axes, look))
 

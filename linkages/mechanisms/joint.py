@@ -8,9 +8,9 @@ in radians.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
+from enum import Enum, StrEnum
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -42,27 +42,32 @@ class JointKind(StrEnum):
     PLANAR = "planar"
     RIGID = "rigid"
 
-
-class _Needs(NamedTuple):
-    """Which keys a kind of joint needs, and those that it may have besides."""
-
-    required: tuple[str, ...]
-    optional: tuple[str, ...] = ()
+    @property
+    def facets(self) -> KindFacets:
+        """All that the kind is."""
+        return _FACETS[self]
 
 
-# `point` may stand anywhere: it says where to draw a joint that needs none.
-NEEDS = {
-    JointKind.REVOLUTE: _Needs(("point", "direction")),
-    JointKind.PRISMATIC: _Needs(("direction",), ("point",)),
-    JointKind.CYLINDRICAL: _Needs(("point", "direction")),
-    JointKind.HELICAL: _Needs(("point", "direction", "pitch")),
-    JointKind.UNIVERSAL: _Needs(("point", "direction", "second_direction")),
-    JointKind.SPHERICAL: _Needs(("point",)),
-    JointKind.PLANAR: _Needs(("direction",), ("point", "second_direction")),
-    JointKind.RIGID: _Needs((), ("point",)),
-}
-# the point of such a joint is for drawing alone
-WITHOUT_PLACE = (JointKind.PRISMATIC, JointKind.RIGID)
+class Place(Enum):
+    """Where the point of a joint may be chosen, without another joint coming of it."""
+
+    # Nowhere else.
+    FIXED = "fixed"
+    # Along the axis of the joint.
+    ALONG = "along"
+    # Anywhere.
+    ANYWHERE = "anywhere"
+
+
+class Shape(Enum):
+    """What stands for a joint in models."""
+
+    CYLINDER = "cylinder"
+    BOX = "box"
+    PLATE = "plate"
+    BALL = "ball"
+
+
 LARGEST = 1e100  # coordinate
 GEOMETRY = ("point", "direction", "second_direction", "pitch")
 
@@ -70,9 +75,8 @@ GEOMETRY = ("point", "direction", "second_direction", "pitch")
 class Motion(NamedTuple):
     """An elementary motion: a turn about an axis through ``point`` (3,) along the unit
     vector ``direction`` (3,) that advances by so much a radian, or, without a turn, a
-    slide along it. ``part`` is what the variable is called in a joint of several."""
+    slide along it."""
 
-    part: str
     is_turn: bool
     direction: np.ndarray
     point: np.ndarray
@@ -133,21 +137,20 @@ class Joint:
     def motions(self) -> tuple[Motion, ...]:
         """The elementary motions of one body with respect to the first one, in their
         order; those of a spherical joint are its own, and none stand here."""
-        return _MOTIONS[self.kind](self)
+        return self.kind.facets.motions(self)
 
     @property
     def parts(self) -> tuple[str, ...]:
         """What every variable is called within the joint, empty where it is the only
         one."""
-        motions = self.motions
-        parts = []
-        for body in self.bodies[1:]:
-            for motion in motions:
-                words = [body] if len(self.bodies) > 2 else []
-                if len(motions) > 1:
-                    words.append(motion.part)
-                parts.append(".".join(words))
-        return tuple(parts)
+        parts = self.kind.facets.parts
+        if len(self.bodies) == 2:
+            return parts
+        return tuple(
+            f"{body}.{part}" if part else body
+            for body in self.bodies[1:]
+            for part in parts
+        )
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -185,11 +188,11 @@ def _unit(vector: Sequence[float] | None) -> np.ndarray:
 
 
 def _turn(joint: Joint) -> tuple[Motion, ...]:
-    return (Motion("turn", True, _unit(joint.direction), joint.place),)
+    return (Motion(True, _unit(joint.direction), joint.place),)
 
 
 def _slide(joint: Joint) -> tuple[Motion, ...]:
-    return (Motion("slide", False, _unit(joint.direction), joint.place, 1.0),)
+    return (Motion(False, _unit(joint.direction), joint.place, 1.0),)
 
 
 def _turn_and_slide(joint: Joint) -> tuple[Motion, ...]:
@@ -199,14 +202,14 @@ def _turn_and_slide(joint: Joint) -> tuple[Motion, ...]:
 def _screw(joint: Joint) -> tuple[Motion, ...]:
     assert joint.pitch is not None
     advance = joint.pitch / (2 * math.pi)
-    return (Motion("turn", True, _unit(joint.direction), joint.place, advance),)
+    return (Motion(True, _unit(joint.direction), joint.place, advance),)
 
 
 def _two_turns(joint: Joint) -> tuple[Motion, ...]:
     second = _unit(joint.second_direction)
     return (
-        Motion("first", True, _unit(joint.direction), joint.place),
-        Motion("second", True, second, joint.place),
+        Motion(True, _unit(joint.direction), joint.place),
+        Motion(True, second, joint.place),
     )
 
 
@@ -220,9 +223,9 @@ def _plane(joint: Joint) -> tuple[Motion, ...]:
     first = _unit(inside.tolist())
     second = np.cross(normal, first)
     return (
-        Motion("x", False, first, joint.place, 1.0),
-        Motion("y", False, second, joint.place, 1.0),
-        Motion("turn", True, normal, joint.place),
+        Motion(False, first, joint.place, 1.0),
+        Motion(False, second, joint.place, 1.0),
+        Motion(True, normal, joint.place),
     )
 
 
@@ -230,16 +233,85 @@ def _nothing(joint: Joint) -> tuple[Motion, ...]:
     return ()
 
 
-_MOTIONS = {
-    JointKind.REVOLUTE: _turn,
-    JointKind.PRISMATIC: _slide,
-    JointKind.CYLINDRICAL: _turn_and_slide,
-    JointKind.HELICAL: _screw,
-    JointKind.UNIVERSAL: _two_turns,
-    JointKind.SPHERICAL: _nothing,
-    JointKind.PLANAR: _plane,
-    JointKind.RIGID: _nothing,
+class KindFacets(NamedTuple):
+    """All that a kind of joint is: the ``motions`` of one body with respect to another,
+    and the ``parts`` that variables are called after; which keys it needs, and may
+    have besides (``optional``); where its ``place`` may be, and whether its point is
+    for drawing alone. It is drawn as a ``shape``, on a rail where it slides along its
+    axis, one for all its bodies where they share it."""
+
+    motions: Callable[[Joint], tuple[Motion, ...]]
+    parts: tuple[str, ...]
+    required: tuple[str, ...]
+    optional: tuple[str, ...] = ()
+    place: Place = Place.FIXED
+    is_point_drawn_only: bool = False
+    shape: Shape = Shape.CYLINDER
+    has_rail: bool = False
+    is_shared: bool = False
+
+
+_FACETS = {
+    JointKind.REVOLUTE: KindFacets(
+        _turn,
+        ("",),
+        required=("point", "direction"),
+        place=Place.ALONG,
+        is_shared=True,
+    ),
+    JointKind.PRISMATIC: KindFacets(
+        _slide,
+        ("",),
+        required=("direction",),
+        optional=("point",),
+        place=Place.ANYWHERE,
+        is_point_drawn_only=True,
+        shape=Shape.BOX,
+        has_rail=True,
+    ),
+    JointKind.CYLINDRICAL: KindFacets(
+        _turn_and_slide,
+        ("turn", "slide"),
+        required=("point", "direction"),
+        place=Place.ALONG,
+        has_rail=True,
+    ),
+    JointKind.HELICAL: KindFacets(
+        _screw,
+        ("",),
+        required=("point", "direction", "pitch"),
+        place=Place.ALONG,
+        has_rail=True,
+    ),
+    JointKind.UNIVERSAL: KindFacets(
+        _two_turns,
+        ("first", "second"),
+        required=("point", "direction", "second_direction"),
+    ),
+    JointKind.SPHERICAL: KindFacets(
+        _nothing, (), required=("point",), shape=Shape.BALL, is_shared=True
+    ),
+    JointKind.PLANAR: KindFacets(
+        _plane,
+        ("x", "y", "turn"),
+        required=("direction",),
+        optional=("point", "second_direction"),
+        place=Place.ANYWHERE,
+        shape=Shape.PLATE,
+    ),
+    JointKind.RIGID: KindFacets(
+        _nothing,
+        (),
+        required=(),
+        optional=("point",),
+        place=Place.ANYWHERE,
+        is_point_drawn_only=True,
+    ),
 }
+
+
+# kinds whose point is for drawing alone
+DRAWN_ONLY = [kind for kind, facets in _FACETS.items() if facets.is_point_drawn_only]
 
 
 # --- checks ---------------------------------------------------------------------------
@@ -297,7 +369,8 @@ def _check_size(joint: Joint) -> None:
 
 
 def _check_needs(joint: Joint) -> None:
-    required, optional = NEEDS[joint.kind]
+    facets = joint.kind.facets
+    required, optional = facets.required, facets.optional
     for key in required:
         if getattr(joint, key) is None:
             allowed = f"given, as joint {joint.name} is {joint.kind}"
@@ -328,14 +401,11 @@ def _check_second_direction(joint: Joint) -> None:
 
 
 def _checked_limits(joint: Joint) -> tuple[Limits | None, ...]:
-    count = len(joint.parts)
     what = f"limits of joint {joint.name}"
     allowed = "a list with [low, high] or None for each variable"
-    given = _listed(what, joint.limits, allowed) or (None,) * count
-    if len(given) != count:
-        raise GeometryError(f"number of {what}", len(given), f"{count}")
+    _listed(what, joint.limits, allowed)
     limits: list[Limits | None] = []
-    for pair, motion in zip(given, _motions_of_parts(joint), strict=True):
+    for pair, motion in _by_variable(joint, "limits", f"number of {what}", ""):
         if pair is None:
             limits.append(None)
             continue
@@ -354,6 +424,18 @@ def _checked_limits(joint: Joint) -> tuple[Limits | None, ...]:
     return tuple(limits)
 
 
+def _by_variable(
+    joint: Joint, key: str, number: str, what_for: str = ", one for each variable"
+) -> list[tuple[Any, Motion]]:
+    """What a joint has under a ``key`` for each of its variables, None where nothing is
+    given, and what the variable does; raises `GeometryError` for another ``number``."""
+    motions = joint.motions * (len(joint.bodies) - 1)
+    given = tuple(getattr(joint, key)) or (None,) * len(motions)
+    if len(given) != len(motions):
+        raise GeometryError(number, len(given), f"{len(motions)}{what_for}")
+    return list(zip(given, motions, strict=True))
+
+
 def _listed(what: str, given: object, allowed: str) -> tuple[Any, ...]:
     """What is given as a tuple; raises `GeometryError` where it is no list."""
     if isinstance(given, str) or not isinstance(given, Iterable):
@@ -364,25 +446,15 @@ def _listed(what: str, given: object, allowed: str) -> tuple[Any, ...]:
 def _checked_locks(
     joint: Joint, limits: tuple[Limits | None, ...]
 ) -> tuple[float | None, ...]:
-    count = len(joint.parts)
-    locked = tuple(joint.locked) or (None,) * count
     what = f"locked of joint {joint.name}"
-    if len(locked) != count:
-        allowed = f"{count}, one for each variable"
-        raise GeometryError(f"number of values of {what}", len(locked), allowed)
-    rows = zip(locked, limits, _motions_of_parts(joint), strict=True)
-    for value, pair, motion in rows:
+    rows = _by_variable(joint, "locked", f"number of values of {what}")
+    for (value, motion), pair in zip(rows, limits, strict=True):
         if value is None:
             continue
         _check_value(what, value, motion)
         if pair is not None and not pair[0] <= value <= pair[1]:
             raise GeometryError(what, value, f"within the limits {list(pair)}")
-    return locked
-
-
-def _motions_of_parts(joint: Joint) -> tuple[Motion, ...]:
-    """What each variable does."""
-    return joint.motions * (len(joint.bodies) - 1)
+    return tuple(value for value, _ in rows)
 
 
 def _check_value(what: str, value: object, motion: Motion) -> None:
@@ -391,13 +463,9 @@ def _check_value(what: str, value: object, motion: Motion) -> None:
 
 
 def _checked_couplings(joint: Joint) -> tuple[Coupling | None, ...]:
-    count = len(joint.parts)
-    coupled = tuple(joint.coupled) or (None,) * count
     what = f"coupled of joint {joint.name}"
-    if len(coupled) != count:
-        allowed = f"{count}, one for each variable"
-        raise GeometryError(f"number of values of {what}", len(coupled), allowed)
-    for coupling, value in zip(coupled, joint.locked, strict=True):
+    rows = _by_variable(joint, "coupled", f"number of values of {what}")
+    for (coupling, _), value in zip(rows, joint.locked, strict=True):
         if coupling is None:
             continue
         if not isinstance(coupling, Coupling):
@@ -405,4 +473,4 @@ def _checked_couplings(joint: Joint) -> tuple[Coupling | None, ...]:
         if value is not None:
             allowed = f"left out, as the variable is coupled to {coupling.to}"
             raise GeometryError(f"locked of joint {joint.name}", value, allowed)
-    return coupled
+    return tuple(coupling for coupling, _ in rows)

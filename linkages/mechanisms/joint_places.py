@@ -14,12 +14,9 @@ from itertools import combinations
 import numpy as np
 
 from linkages.decisions import is_parallel_axis
-from linkages.mechanisms.joint import Joint, JointKind
+from linkages.mechanisms.joint import Joint, JointKind, Place
 from linkages.mechanisms.mechanism import Mechanism
 
-# freedoms of the point of a joint: along its axis, or anywhere
-ALONG = (JointKind.REVOLUTE, JointKind.CYLINDRICAL, JointKind.HELICAL)
-ANYWHERE = (JointKind.PRISMATIC, JointKind.PLANAR, JointKind.RIGID)
 TURNS = (JointKind.REVOLUTE, JointKind.HELICAL)
 
 
@@ -127,8 +124,10 @@ def _sine(first: Joint, second: Joint) -> float:
 
 def _free_directions(joint: Joint) -> np.ndarray:
     """Unit vectors (k, 3) along which the point of a joint may be chosen."""
-    if joint.kind in ANYWHERE:
-        return np.eye(3)
-    if joint.kind in ALONG:
-        return joint.motions[0].direction[None]
-    return np.empty((0, 3))
+    match joint.kind.facets.place:
+        case Place.ANYWHERE:
+            return np.eye(3)
+        case Place.ALONG:
+            return joint.motions[0].direction[None]
+        case Place.FIXED:
+            return np.empty((0, 3))

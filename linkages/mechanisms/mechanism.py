@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -13,7 +13,6 @@ from bifurc.text_tables import count_of
 from linkages.coordinates import are_near_origin, is_fine, rounding_of_doubles
 from linkages.mechanisms.couplings import Coupling, Leader, leaders
 from linkages.mechanisms.joint import (
-    WITHOUT_PLACE,
     Joint,
     JointKind,
     Limits,
@@ -224,9 +223,21 @@ class Mechanism:
         points = [
             joint.point
             for joint in self.joints
-            if joint.point is not None and joint.kind not in WITHOUT_PLACE
+            if joint.point is not None and not joint.kind.facets.is_point_drawn_only
         ]
         return np.array(points or [(0.0, 0.0, 0.0)])
+
+    # --- what a class of mechanisms knows ---------------------------------------------
+
+    def assemblies(self) -> np.ndarray:
+        """Closed configurations (k, v) that are known without a search, in all
+        variables; none, unless a class has a closed form."""
+        return np.empty((0, len(self.variables)))
+
+    def subject_values(self) -> dict[str, Any]:
+        """What the ``subject`` of an atlas says of it besides its joints, in values that
+        JSON holds; nothing, unless a class is made of more."""
+        return {}
 
     # --- other mechanisms -------------------------------------------------------------
 
@@ -367,8 +378,8 @@ def _mirrored(joint: Joint) -> Joint:
     """A joint in the mirror: a turn about the mirrored direction has the other sense,
     so that the direction is turned round as well; its values are those of the joint."""
     x, y, z = joint.place
-    turns = joint.kind not in (JointKind.PRISMATIC, JointKind.PLANAR)
-    sign = -1.0 if turns else 1.0
+    slides = joint.motions and not joint.motions[0].is_turn
+    sign = 1.0 if slides else -1.0
 
     def reflected(vector: Vector | None) -> Vector | None:
         if vector is None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import asdict
+from enum import StrEnum
 from typing import Any
 
 from bifurc.atlas import Atlas
@@ -28,7 +29,11 @@ def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
             {"body": panel.body, "corners": [list(corner) for corner in panel.corners]}
             for panel in mechanism.panels
         ]
-    return {"name": mechanism.name, "mechanism": values}
+    return {
+        "name": mechanism.name,
+        "mechanism": values,
+        **mechanism.subject_values(),
+    }
 
 
 def mechanism_of(atlas: Atlas) -> Mechanism | None:
@@ -52,28 +57,20 @@ def mechanism_of(atlas: Atlas) -> Mechanism | None:
 def joint_values(joint: Joint) -> dict[str, Any]:
     """A joint in values that JSON can hold: angles in rad, lengths in the user's unit;
     without the keys that say nothing."""
-    values: dict[str, Any] = {
-        "name": joint.name,
-        "kind": joint.kind.value,
-        "bodies": list(joint.bodies),
-    }
-    for key in ("point", "direction", "second_direction"):
-        vector = getattr(joint, key)
-        if vector is not None:
-            values[key] = list(vector)
-    if joint.pitch is not None:
-        values["pitch"] = joint.pitch
-    if any(pair is not None for pair in joint.limits):
-        values["limits"] = [
-            None if pair is None else list(pair) for pair in joint.limits
-        ]
-    if any(value is not None for value in joint.locked):
-        values["locked"] = list(joint.locked)
-    if any(coupling is not None for coupling in joint.coupled):
-        values["coupled"] = [
-            None if coupling is None else asdict(coupling) for coupling in joint.coupled
-        ]
+    values: dict[str, Any] = {}
+    for key, value in asdict(joint).items():
+        is_list = isinstance(value, tuple)
+        if value is None or (is_list and all(one is None for one in value)):
+            continue
+        values[key] = [_plain(one) for one in value] if is_list else _plain(value)
     return values
+
+
+def _plain(value: Any) -> Any:
+    """A value as JSON reads it back: no enum and no tuple."""
+    if isinstance(value, StrEnum):
+        return value.value
+    return list(value) if isinstance(value, tuple) else value
 
 
 def mechanism_from(given: object, name: str) -> Mechanism:

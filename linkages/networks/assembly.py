@@ -20,7 +20,7 @@ from linkages.networks.network import Network, Sum, other_angle, wrap_angles
 
 GRID = 24  # values of every cell that is given
 FINE = 720  # intervals in which roots are looked for
-NEWTON_STEPS = 60
+HALVINGS = 60  # of an interval in which there is a root
 
 
 class Equation(NamedTuple):
@@ -68,16 +68,16 @@ def assemble(network: Network, locks: Mapping[str, float]) -> np.ndarray:
     On a motion of one freedom the grid is that of one cell, with every state of the
     others at it. Empty where there is no real configuration.
     """
-    equations = constraints_of(network, locks)
-    order = _order(len(network.plan.cells), equations)
+    order = _order(len(network.plan.cells), constraints_of(network, locks))
+    assembly = _Assembly(network, order)
     is_scanned = bool(order.check and order.given)
     gridded = len(order.given) - is_scanned
     circle = np.linspace(-np.pi, np.pi, GRID, endpoint=False) + 0.1
     rows = list(product(circle, repeat=gridded))
     grid = np.array(rows).reshape(GRID**gridded, gridded)
     if is_scanned:
-        return np.concatenate([_scan(network, order, row) for row in grid])
-    return _that_hold(network, order, _follow(network, order, grid))
+        return np.concatenate([assembly.scan(row) for row in grid])
+    return assembly.that_hold(assembly.follow(grid))
 
 
 # --- order ----------------------------------------------------------------------------
@@ -109,41 +109,73 @@ def _order_from(given: tuple[int, ...], equations: Sequence[Equation]) -> Order:
     return Order(given, tuple(steps), tuple(left))
 
 
-def _follow(network: Network, order: Order, given: np.ndarray) -> np.ndarray:
-    """States (k, c) from those of the cells that are given (k, g)."""
-    states = np.zeros((len(given), len(network.plan.cells)))
-    states[:, list(order.given)] = given
-    for cell, (total, value) in order.steps:
-        (corner,) = (number for of, number in total.corners if of == cell)
-        others = tuple(place for place in total.corners if place[0] != cell)
-        rest = value - network.sums(Sum(total.constant, others), states)
-        states[:, cell] = _state_of(network.factors[cell], corner, rest)
-    return states
+@dataclass(frozen=True)
+class _Assembly:
+    """A ``network`` that is assembled in an ``order``."""
+
+    network: Network
+    order: Order
+
+    def follow(self, given: np.ndarray) -> np.ndarray:
+        """States (k, c) from those of the cells that are given (k, g)."""
+        network = self.network
+        states = np.zeros((len(given), len(network.plan.cells)))
+        states[:, list(self.order.given)] = given
+        for cell, (total, value) in self.order.steps:
+            (corner,) = (number for of, number in total.corners if of == cell)
+            others = tuple(place for place in total.corners if place[0] != cell)
+            rest = value - network.sums(Sum(total.constant, others), states)
+            states[:, cell] = _state_of(network.factors[cell], corner, rest)
+        return states
+
+    def scan(self, given: np.ndarray) -> np.ndarray:
+        """The states (k, c) that satisfy all equations, the last given cell being open
+        and the others at ``given``."""
+        values = _circle(self.network.factors[self.order.given[-1]])
+        for one in self.order.check:
+            gaps = self._gaps(one, self.follow(_rows(given, values)))
+            if not is_network_closed(np.abs(gaps).max()):
+                roots = self._roots(given, values, gaps, one)
+                return self.that_hold(self.follow(_rows(given, roots)))
+        return self.follow(_rows(given, values[:: len(values) // GRID]))
+
+    def that_hold(self, states: np.ndarray) -> np.ndarray:
+        """Those of the states (k, c) that satisfy the equations left to check."""
+        holds = np.ones(len(states), dtype=bool)
+        for one in self.order.check:
+            holds &= is_network_closed(np.abs(self._gaps(one, states)))
+        return states[holds]
+
+    def _gaps(self, one: Equation, states: np.ndarray) -> np.ndarray:
+        """By how much an equation is missed (k,) at states (k, c)."""
+        return wrap_angles(self.network.sums(one.total, states) - one.value)
+
+    def _roots(
+        self, given: np.ndarray, values: np.ndarray, gaps: np.ndarray, one: Equation
+    ) -> np.ndarray:
+        """The values of the open cell at which an equation holds, by bisection of every
+        interval in which its gap changes sign."""
+        signs = gaps[:-1] * gaps[1:] <= 0
+        # where the gap passes half a turn it changes sign as well
+        near = np.abs(gaps[:-1]) + np.abs(gaps[1:]) < np.pi
+        places = np.flatnonzero(signs & near)
+        low, high = values[places], values[places + 1]
+        at_low = gaps[places]
+        for _ in range(HALVINGS):
+            middle = 0.5 * (low + high)
+            at_middle = self._gaps(one, self.follow(_rows(given, middle)))
+            is_below = at_low * at_middle > 0
+            low = np.where(is_below, middle, low)
+            at_low = np.where(is_below, at_middle, at_low)
+            high = np.where(is_below, high, middle)
+        roots: np.ndarray = 0.5 * (low + high)
+        return roots
 
 
 def _state_of(factor: float, corner: int, angle: np.ndarray) -> np.ndarray:
     """The states (k,) of a cell with these angles (k,) at a corner."""
     turned = angle if corner < 2 else -angle
     return other_angle(factor, turned) if corner % 2 == 0 else turned
-
-
-# --- roots ----------------------------------------------------------------------------
-
-
-def _scan(network: Network, order: Order, given: np.ndarray) -> np.ndarray:
-    """The states (k, c) that satisfy all equations, the last given cell being open and
-    the others at ``given``."""
-    values = _circle(network.factors[order.given[-1]])
-    gaps = [_gaps(network, order, given, values, one) for one in order.check]
-    open_ones = [
-        k for k, gap in enumerate(gaps) if not is_network_closed(np.abs(gap).max())
-    ]
-    if not open_ones:
-        chosen = values[:: len(values) // GRID]
-        return _follow(network, order, _rows(given, chosen))
-    first = order.check[open_ones[0]]
-    roots = _roots(network, order, given, values, gaps[open_ones[0]], first)
-    return _that_hold(network, order, _follow(network, order, _rows(given, roots)))
 
 
 def _circle(factor: float) -> np.ndarray:
@@ -155,57 +187,9 @@ def _circle(factor: float) -> np.ndarray:
     return np.append(values, values[0] + 2 * np.pi)
 
 
-def _that_hold(network: Network, order: Order, states: np.ndarray) -> np.ndarray:
-    """Those of the states (k, c) that satisfy the equations left to check."""
-    holds = np.ones(len(states), dtype=bool)
-    for one in order.check:
-        missing = wrap_angles(network.sums(one.total, states) - one.value)
-        holds &= is_network_closed(np.abs(missing))
-    return states[holds]
-
-
 def _rows(given: np.ndarray, values: np.ndarray) -> np.ndarray:
     """The given cells (g,) beside each of the values (k,): (k, g + 1)."""
     return np.column_stack([np.tile(given, (len(values), 1)), values])
-
-
-def _gaps(
-    network: Network,
-    order: Order,
-    given: np.ndarray,
-    values: np.ndarray,
-    one: Equation,
-) -> np.ndarray:
-    """By how much an equation is missed (k,) at values (k,) of the open cell."""
-    states = _follow(network, order, _rows(given, values))
-    return wrap_angles(network.sums(one.total, states) - one.value)
-
-
-def _roots(
-    network: Network,
-    order: Order,
-    given: np.ndarray,
-    values: np.ndarray,
-    gaps: np.ndarray,
-    one: Equation,
-) -> np.ndarray:
-    """The values of the open cell at which an equation holds, by bisection of every
-    interval in which its gap changes sign."""
-    signs = gaps[:-1] * gaps[1:] <= 0
-    # where the gap passes half a turn it changes sign as well
-    near = np.abs(gaps[:-1]) + np.abs(gaps[1:]) < np.pi
-    places = np.flatnonzero(signs & near)
-    low, high = values[places], values[places + 1]
-    at_low = gaps[places]
-    for _ in range(NEWTON_STEPS):
-        middle = 0.5 * (low + high)
-        at_middle = _gaps(network, order, given, middle, one)
-        is_below = at_low * at_middle > 0
-        low = np.where(is_below, middle, low)
-        at_low = np.where(is_below, at_middle, at_low)
-        high = np.where(is_below, high, middle)
-    roots: np.ndarray = 0.5 * (low + high)
-    return roots
 
 
 # --- motion ---------------------------------------------------------------------------

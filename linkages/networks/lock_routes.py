@@ -131,45 +131,6 @@ class _Node(NamedTuple):
     locks: Locks
 
 
-class _Cost(NamedTuple):
-    """What a way costs: how many switches, and then its length."""
-
-    switches: int
-    length: float
-
-
-class _Frontier:
-    """The nodes that were reached, with the least ``costs`` (Dijkstra)."""
-
-    def __init__(self) -> None:
-        self.costs: dict[_Node, _Cost] = {}
-        self._origins: dict[_Node, _Node | None] = {}
-        self._queue: list[tuple[_Cost, int, _Node]] = []
-        self._order = count()  # nodes are not compared
-
-    def reach(self, node: _Node, cost: _Cost, origin: _Node | None) -> None:
-        """Note a way to a node, if it costs less than those before."""
-        if node not in self.costs or cost < self.costs[node]:
-            self.costs[node] = cost
-            self._origins[node] = origin
-            heapq.heappush(self._queue, (cost, next(self._order), node))
-
-    def pop(self) -> _Node | None:
-        """The next node by cost; None where all were taken."""
-        while self._queue:
-            cost, _, node = heapq.heappop(self._queue)
-            if cost == self.costs[node]:
-                return node
-        return None
-
-    def chain(self, node: _Node) -> list[_Node]:
-        """The nodes of the way to a node, from its start."""
-        chain = [node]
-        while (origin := self._origins[chain[-1]]) is not None:
-            chain.append(origin)
-        return chain[::-1]
-
-
 class _Search:
     """What routes over locks are looked for in: places (c,) of the network, and the
     maps of its locked states, each made when it is first needed."""
@@ -298,22 +259,28 @@ class _Search:
         starts = self._starts
         if starts is None:
             starts = list(exchanges.get(self.before, {}))
-        frontier = _Frontier()
-        for place in starts:
-            frontier.reach(_Node(place, self.before), _Cost(0, 0.0), None)
-        while (node := frontier.pop()) is not None:
+        order = count()  # nodes are not compared
+        queue: list[tuple[int, float, int, _Node, _Node | None]] = [
+            (0, 0.0, next(order), _Node(place, self.before), None) for place in starts
+        ]
+        origins: dict[_Node, _Node | None] = {}
+        while queue:
+            switches, length, _, node, origin = heapq.heappop(queue)
+            if node in origins:
+                continue
+            origins[node] = origin
             if self._is_goal(node):
-                return self._route(frontier.chain(node), len(starts))
-            switches, length = frontier.costs[node]
+                return self._route(_chain(origins, node), len(starts))
             places = exchanges.get(node.locks, {})
             for other in places.get(node.place, ()):
                 there = _Node(node.place, other)
-                frontier.reach(there, _Cost(switches + 1, length), node)
+                heapq.heappush(queue, (switches + 1, length, next(order), there, node))
             for target in self._targets(node, places):
                 route = self._way(node.locks, node.place, target)
                 if route is not None:
-                    cost = _Cost(switches, length + route.length)
-                    frontier.reach(_Node(target, node.locks), cost, node)
+                    there = _Node(target, node.locks)
+                    cost = length + route.length
+                    heapq.heappush(queue, (switches, cost, next(order), there, node))
         return None
 
     def _is_goal(self, node: _Node) -> bool:
@@ -369,3 +336,11 @@ class _Search:
             steps.append(Travel(first.locks, atlas, route, end))
         start = self.network.ring_angles(self._places[chain[0].place])
         return LockRoute(tuple(steps), start, self.before, self.after, starts)
+
+
+def _chain(origins: Mapping[_Node, _Node | None], node: _Node) -> list[_Node]:
+    """The nodes of the way to a node, from its start."""
+    chain = [node]
+    while (origin := origins[chain[-1]]) is not None:
+        chain.append(origin)
+    return chain[::-1]

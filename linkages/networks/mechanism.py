@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 
 from bifurc.atlas import Atlas
-from bifurc.seeds import Seeds
-from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.construction.constructions import lock, locked_angles
 from linkages.loop import Loop
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.subject import mechanism_of
 from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.entries import NETWORKS
 from linkages.networks.network import Network, wrap_angles
@@ -54,6 +53,25 @@ class NetworkMechanism(Mechanism):
         placed = self.placed
         motion = motion_at(placed.network, placed.locks, placed.reference)
         return motion.still(placed.network.plan.ring)
+
+    def assemblies(self) -> np.ndarray:
+        """Configurations (k, v) on every motion of one freedom, by the closed form; none
+        where there are more freedoms."""
+        states = assemble(self.placed.network, self.kinks)
+        if len(states) > MOST_CONSTRUCTED:
+            return super().assemblies()
+        return self.placed.variables(states)
+
+    def subject_values(self) -> dict[str, Any]:
+        """The plan, the parameters and the locks of the network."""
+        placed = self.placed
+        network = {
+            "name": placed.network.name,
+            "parameters": dict(placed.network.parameters),
+            "reference": placed.reference.tolist(),
+            "kinks": dict(placed.kinks),
+        }
+        return {"network": network}
 
     def without_centre(self) -> Loop:
         """The single loop that is left where the bars inside are taken away, and every
@@ -108,41 +126,7 @@ def _mechanism(placed: PlacedNetwork) -> NetworkMechanism:
     return NetworkMechanism(plain.joints, plain.name, placed=placed)
 
 
-# --- closure --------------------------------------------------------------------------
-
-
-class NetworkClosure(MechanismClosure):
-    """The closure of a network, with configurations by its closed form to start
-    from."""
-
-    def __init__(self, mechanism: NetworkMechanism):
-        super().__init__(mechanism)
-        self._placed = mechanism.placed
-
-    def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
-        """Those of any mechanism, and configurations on every motion of one freedom."""
-        seeds = super().seeds(rng, count)
-        placed = self._placed
-        states = assemble(placed.network, placed.kinks)
-        if len(states) > MOST_CONSTRUCTED:  # more than one freedom
-            return seeds
-        free = list(self.structure.column_of)
-        points, _ = self.project(placed.variables(states)[:, free])
-        return seeds.with_constructed(points)
-
-
 # --- what an atlas keeps --------------------------------------------------------------
-
-
-def network_subject(mechanism: NetworkMechanism) -> dict[str, Any]:
-    """What the ``subject`` of an atlas says of a network, in values that JSON holds."""
-    placed = mechanism.placed
-    return {
-        "name": placed.network.name,
-        "parameters": dict(placed.network.parameters),
-        "reference": placed.reference.tolist(),
-        "kinks": dict(placed.kinks),
-    }
 
 
 def network_of(atlas: Atlas) -> NetworkMechanism | None:
@@ -151,5 +135,9 @@ def network_of(atlas: Atlas) -> NetworkMechanism | None:
     if not isinstance(values, Mapping):
         return None
     network = NETWORKS[str(values["name"])].build(**values["parameters"])
-    reference: Sequence[float] = values["reference"]
-    return _mechanism(PlacedNetwork(network, np.array(reference), values["kinks"]))
+    reference = np.array(values["reference"])
+    placed = PlacedNetwork(network, reference, values["kinks"])
+    mechanism = mechanism_of(atlas)
+    assert mechanism is not None
+    # its joints, of which more may be locked than the kinks of the network say
+    return NetworkMechanism(mechanism.joints, mechanism.name, placed=placed)

@@ -122,13 +122,6 @@ class Network:
         columns = [self.sums(total, states) for total in self.turns.values()]
         return wrap_angles(np.stack(columns, axis=-1))
 
-    def gap(self, states: np.ndarray) -> np.ndarray:
-        """By how many rad (...,) the cells miss to close around the axes inside."""
-        gaps = [np.abs(wrap_angles(self.sums(c, states))) for c in self.closures]
-        shape = np.asarray(states).shape[:-1]
-        largest: np.ndarray = np.max([np.zeros(shape), *gaps], axis=0)
-        return largest
-
     def require_axis(self, axis: str, what: str = "joint") -> None:
         """Raise `GeometryError` for what is no axis of the ring."""
         if axis not in self.plan.ring:

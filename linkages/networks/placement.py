@@ -154,27 +154,6 @@ class PlacedNetwork:
                 columns.append(turned - at_reference)
         return wrap_angles(np.stack(np.broadcast_arrays(*columns), axis=-1))
 
-    def states(self, variables: np.ndarray) -> np.ndarray:
-        """The states (..., c) of the cells at variables (..., v) of the mechanism."""
-        variables = np.asarray(variables, dtype=float)
-        before = self._directions(self.reference)
-        places: dict[tuple[str, str], np.ndarray] = {}
-        column = 0
-        for axis in self.network.plan.axes:
-            first, *others = self.network.plan.bars_at(axis)
-            places[axis, first] = np.zeros(variables.shape[:-1])
-            for bar in others:
-                at_reference = before[axis, bar] - before[axis, first]
-                places[axis, bar] = variables[..., column] + at_reference
-                column += 1
-        columns = []
-        for cell in self.network.plan.cells:
-            axis = cell.axes[1]
-            arrival = self.network.plan.bar(cell, 0)
-            departure = self.network.plan.bar(cell, 1)
-            columns.append(places[axis, departure] - places[axis, arrival] - np.pi)
-        return wrap_angles(np.stack(columns, axis=-1))
-
     def _directions(self, states: np.ndarray) -> dict[tuple[str, str], np.ndarray]:
         """The angle about each axis at which each bar leads away from it, from the
         first one."""

@@ -15,8 +15,7 @@ import numpy as np
 
 from bifurc.atlas import Form
 from linkages.loop import Loop
-from linkages.printing.assembly import Assembly, Seats, place_segments
-from linkages.printing.dimensions import Dimensions
+from linkages.printing.assembly import Assembly, Dimensions, Seats, place_segments
 from linkages.printing.interference import PartApproach, nearest_approach
 
 REACHES = (0.25, 0.5, 1.0, 1.0)  # how far hinges move out, in characteristic lengths

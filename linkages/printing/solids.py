@@ -1,4 +1,5 @@
-"""The solids of printed parts: links, pins and caps, mm.
+"""The solids of printed parts: links, pins and caps, mm; and their files, STEP of the
+assembly and STL of the parts laid out.
 
 Cylinders along the segments of `linkages.printing.assembly`, balls at the corners of
 rods, and eyes with bores. Needs build123d, the extra "cad".
@@ -6,19 +7,35 @@ rods, and eyes with bores. Needs build123d, the extra "cad".
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from build123d import Plane, Shape, Solid
+from build123d import (
+    Color,
+    Compound,
+    Location,
+    Plane,
+    Shape,
+    Solid,
+    export_step,
+    export_stl,
+)
 
-from linkages.printing.assembly import Assembly, link_corners
-from linkages.printing.dimensions import Dimensions
+from bifurc.figures.style import COLORS
+from linkages.printing.assembly import Assembly, Dimensions, link_corners
 
 BEYOND = 1.1  # how far a bore is cut, in heights of the eye
 FLAT_FROM = 45  # deg of latitude; a wall is left beyond the bore of a cap
 OVERLAP = 0.25  # how far a pin goes into its head, in radii of the pin
+PIN_COLOR = "#444444"
+NO_TIME = "2000-01-01T00:00:00"  # the time of day is no part of a linkage
+DEFLECTION, ANGLE = 0.02, 0.2  # mm and rad: of facets from round surfaces
+SPACE = 4.0  # mm between parts that are laid out
+ROW = 220.0  # mm: about how wide the bed of a printer is
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,3 +154,63 @@ def place_solid(solid: Solid, pose: np.ndarray) -> Solid:
         z_dir=tuple(pose[:3, 2].tolist()),
     )
     return solid.moved(plane.location)
+
+
+# --- files ----------------------------------------------------------------------------
+
+
+def write_step(
+    assembly: Assembly,
+    parts: PrintedParts,
+    theta: np.ndarray,
+    names: Sequence[str],
+    title: str,
+    path: Path,
+) -> None:
+    """Write all parts as they stand at joint angles (n,), rad, as named solids of an
+    assembly, mm: each link by its name, then its first pin and cap, which are one part
+    of the file in many places. Raises `OSError`."""
+    links, hinges = link_poses_at(assembly, theta)
+    children = []
+    for i, name in enumerate(names):
+        link = place_solid(parts.links[i], links[i])
+        children.append(_labelled(link, name, COLORS[i % len(COLORS)]))
+        pin, cap = place_solid(parts.pin, hinges[i]), place_solid(parts.cap, hinges[i])
+        children.append(_labelled(pin, "pin", PIN_COLOR))
+        children.append(_labelled(cap, "cap", PIN_COLOR))
+    whole = Compound(label=title, children=children)
+    try:
+        export_step(whole, path, timestamp=NO_TIME)
+    except RuntimeError as error:
+        raise OSError(str(error)) from None
+
+
+def write_stl(parts: PrintedParts, path: Path) -> None:
+    """Write all parts side by side on the plane z = 0, mm: the links in their order,
+    then the pins, then the caps. Raises `OSError`."""
+    whole = Compound(children=lay_out(parts))
+    if not export_stl(whole, path, DEFLECTION, ANGLE):
+        raise OSError("the kernel of solids cannot write it")
+
+
+def lay_out(parts: PrintedParts) -> list[Solid]:
+    """Copies of all parts that are to be printed, in rows on the plane z = 0; the last
+    axis of a link, pins and caps stand upright, caps on their flat faces."""
+    count = len(parts.links)
+    rows = []
+    x = y = depth = 0.0
+    for solid in (*parts.links, *[parts.pin] * count, *[parts.cap] * count):
+        box = solid.bounding_box()
+        if x > 0 and x + box.size.X > ROW:
+            x, y, depth = 0.0, y + depth + SPACE, 0.0
+        move = Location((x - box.min.X, y - box.min.Y, -box.min.Z))
+        rows.append(solid.moved(move))
+        x += box.size.X + SPACE
+        depth = max(depth, box.size.Y)
+    return rows
+
+
+def _labelled(solid: Solid, label: str, color: str) -> Solid:
+    solid.label = label
+    solid.color = Color(color)
+    return solid

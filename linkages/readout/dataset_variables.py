@@ -8,8 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from bifurc.atlas import Atlas, Form
-from bifurc.files.table import make_variable
-from bifurc.files.variable import Variable
+from bifurc.files.table import Variable, make_variable
 from linkages.readout.poses import rotation_vectors
 from linkages.readout.readout import Readout
 

@@ -10,7 +10,6 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.decisions import unit_over_rounding
 from bifurc.numerics.blur import change_by_rounding
-from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.decisions import is_dependent_constraint, keeps_angle
 from linkages.readout.ranges import VariableRange, variable_ranges
 from linkages.readout.readout import Readout
@@ -43,7 +42,7 @@ class LoopFacts:
 
 def loop_facts(readout: Readout, point: np.ndarray) -> list[LoopFacts]:
     """What is redundant in every loop at a configuration (n,) of the atlas."""
-    problem = MechanismClosure(readout.mechanism)
+    problem = readout.closure
     jacobian = problem.jacobians(point[None])[0]
     facts = []
     for closure, rows in zip(
@@ -97,7 +96,7 @@ def form_facts(atlas: Atlas, index: int, readout: Readout) -> FormFacts:
     places = np.array([0.0, branch.length, *turning])
     samples = branch.sample(SAMPLES)
     points = np.concatenate([branch(places), samples])
-    rounding = change_by_rounding(MechanismClosure(readout.mechanism), branch)
+    rounding = change_by_rounding(readout.closure, branch)
     groups = _groups(readout, samples, unit_over_rounding(keeps_angle, rounding))
     ranges = variable_ranges(readout, branch, points)
     return FormFacts(ranges, _still(readout, groups), groups)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linkages.mechanisms.displacements import displacement_of, transforms
+from linkages.mechanisms.displacements import transforms
 from linkages.structure.rods import Rod
 from linkages.structure.structure import Structure
 
@@ -140,22 +140,9 @@ class Poses:
     def inside_rod(self, rod: Rod) -> dict[int, np.ndarray]:
         """The displacements (4, 4) of the bodies of a rod with respect to the one that
         its first joint holds, slides at 0."""
-        bodies = self.mechanism.bodies
-        inside = {self.holder(rod, 0): np.eye(4)}
-        pending = list(rod.inner)
-        while pending:
-            number = pending.pop(0)
-            pair = self.mechanism.pairs[number]
-            base, moved = bodies.index(pair.base), bodies.index(pair.moved)
-            is_slide = rod.leg is not None and rod.leg.variable in pair.variables
-            step = np.eye(4) if is_slide else displacement_of(self.mechanism, number)
-            if base in inside:
-                inside.setdefault(moved, inside[base] @ step)
-            elif moved in inside:
-                inside[base] = inside[moved] @ np.linalg.inv(step)
-            else:
-                pending.append(number)
-        return inside
+        slide = -1 if rod.leg is None else rod.leg.variable
+        start = self.holder(rod, 0)
+        return self.structure.groups.poses_inside(start, rod.inner, slide)
 
 
 def rotation_vectors(rotations: np.ndarray) -> np.ndarray:

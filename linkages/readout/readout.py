@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -12,6 +12,9 @@ from linkages.mechanisms.mechanism import Mechanism
 from linkages.readout.poses import Poses, rotation_vectors
 from linkages.structure.single_loop import SingleLoop, as_single_loop
 from linkages.structure.structure import Structure
+
+if TYPE_CHECKING:
+    from linkages.closure.mechanism_closure import MechanismClosure
 
 # A number for a joint of one variable, a list for another one: rad, the user's unit.
 JointVariables: TypeAlias = dict[str, float | list[float]]
@@ -26,6 +29,14 @@ class Readout:
     def __init__(self, mechanism: Mechanism):
         self.mechanism = mechanism
         self.structure = Structure(mechanism)
+
+    @cached_property
+    def closure(self) -> MechanismClosure:
+        """The closure equations of the mechanism, in the same unknowns."""
+        # what writes equations is not imported where values are only read
+        from linkages.closure.mechanism_closure import MechanismClosure
+
+        return MechanismClosure(self.mechanism, structure=self.structure)
 
     @cached_property
     def single_loop(self) -> SingleLoop | None:

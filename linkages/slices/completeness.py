@@ -26,10 +26,10 @@ All this is checked in doubles, without interval arithmetic.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -109,13 +109,14 @@ class SliceAudit:
         extents = [np.ptp(branch.sample(SAMPLES), axis=0) for branch in branches]
         passes = []
         for joint in range(self.loop.n):
-            turning = []
-            moved_by = []
-            for branch, of_branch, extent in zip(branches, dead, extents, strict=True):
-                if not is_same_dead_point(float(extent[joint])):
-                    moved_by.append(branch)
-                    turning.append(of_branch[joint])
-            passes.append(Passes.of_motions(self.loop.n, joint, moved_by, turning))
+            motions = [
+                (branch, of_branch[joint])
+                for branch, of_branch, extent in zip(
+                    branches, dead, extents, strict=True
+                )
+                if not is_same_dead_point(float(extent[joint]))
+            ]
+            passes.append(Passes.of_motions(self.loop.n, joint, motions))
         return passes
 
     def _differing_joints(self, passes: Sequence[Passes]) -> list[int]:
@@ -210,8 +211,7 @@ def _with_assemblies(motions: Audit, assemblies: Assemblies) -> Audit:
     return Audit((*motions.claims, claim), starts)
 
 
-@dataclass(frozen=True)
-class Following:
+class Following(NamedTuple):
     """What came of following configurations that are not real.
 
     ``room``: joints (from 0) that still have room for one more motion; ``closed``:
@@ -240,18 +240,14 @@ class Passes:
 
     @classmethod
     def of_motions(
-        cls,
-        n: int,
-        joint: int,
-        branches: Sequence[Branch],
-        turning: Sequence[np.ndarray],
+        cls, n: int, joint: int, motions: Sequence[tuple[Branch, np.ndarray]]
     ) -> Passes:
         """From the motions of a loop of ``n`` joints that turn the joint, and the
-        arclengths ``turning`` of their dead points in it."""
+        arclengths of their dead points in it."""
         low = [np.empty(0)]
         high = [np.empty(0)]
         folds = [np.empty((0, n))]
-        for branch, dead in zip(branches, turning, strict=True):
+        for branch, dead in motions:
             angles = branch(_ends_of_stretches(branch, dead))[:, joint]
             low.append(np.minimum(angles[1:], angles[:-1]))
             high.append(np.maximum(angles[1:], angles[:-1]))
@@ -299,52 +295,30 @@ def _ends_of_stretches(branch: Branch, dead: np.ndarray) -> np.ndarray:
 # --- following configurations that are not real ---------------------------------------
 
 
-@dataclass(frozen=True)
-class Nonreal:
-    """Slices of one joint at ``angles`` (m,) in [0, 2 pi), and their ``configurations``
-    (q, n) that are not real, one of every conjugate pair; ``index`` (q,) is the entry
-    of ``angles`` each belongs to."""
+class Nonreal(NamedTuple):
+    """The ``configurations`` (k, n) with a joint at an ``angle`` in [0, 2 pi) that are
+    not real, one of every conjugate pair."""
 
-    angles: np.ndarray
+    angle: float
     configurations: np.ndarray
-    index: np.ndarray
 
-    @classmethod
-    def of_slices(cls, slices: Sequence[Slice]) -> Nonreal:
-        """From the slices at several lists of angles of one joint."""
-        angles = []
-        configurations = []
-        index = []
-        count = 0
-        for cut in slices:
-            # of every conjugate pair one is enough
-            is_upper = _largest_imaginary_parts(cut.nonreal) > 0
-            angles.append(cut.angles % TURN)
-            configurations.append(cut.nonreal[is_upper])
-            index.append(count + cut.nonreal_index[is_upper])
-            count += len(cut.angles)
-        return cls(
-            np.concatenate(angles),
-            np.concatenate(configurations),
-            np.concatenate(index),
-        )
-
-    def at(self, i: int, joint: int, angle: float) -> np.ndarray:
-        """The configurations (k, n) of slice ``i``, with the joint at ``angle``, which
-        is that of the slice but for full turns."""
-        configurations: np.ndarray = self.configurations[self.index == i]
+    def at(self, joint: int, angle: float) -> np.ndarray:
+        """The configurations with the joint at an ``angle`` full turns away."""
+        configurations = self.configurations.copy()
         configurations[:, joint] = angle
         return configurations
 
 
-@dataclass(frozen=True)
-class Sheets:
-    """Configurations ``starts`` (k, n), complex, to be followed until the joint is at
-    ``ends`` (k,), rad, with the folds, one list each, that they may join there."""
-
-    starts: np.ndarray
-    ends: np.ndarray
-    folds: list[list[Fold]]
+def _nonreal(slices: Sequence[Slice]) -> list[Nonreal]:
+    """Those of all slices of one joint, by their angles."""
+    cuts = []
+    for cut in slices:
+        # of every conjugate pair one is enough
+        is_upper = _largest_imaginary_parts(cut.nonreal) > 0
+        for i, angle in enumerate((cut.angles % TURN).tolist()):
+            own = is_upper & (cut.nonreal_index == i)
+            cuts.append(Nonreal(angle, cut.nonreal[own]))
+    return sorted(cuts, key=lambda one: one.angle)
 
 
 def _follow(
@@ -362,10 +336,16 @@ def _follow(
     number = _number(cut)
     if any(np.any(each.n_complex != number) for each in slices):
         return None
-    nonreal = Nonreal.of_slices(slices)
-    sheets = _sheets(nonreal, passes, _known_folds(loop, passes), loop.n)
+    folds = _known_folds(loop, passes)
+    starts = [np.empty((0, loop.n), dtype=complex)]
+    ends: list[float] = []
+    near: list[list[Fold]] = []
+    for sheets, end in _sheets(_nonreal(slices), passes):
+        starts.append(sheets)
+        ends += [end] * len(sheets)
+        near += [_folds_at(end, passes.joint, folds)] * len(sheets)
     cleared, last = follow_sheets(
-        loop, passes.joint, sheets.starts, sheets.ends, sheets.folds, deadline.left
+        loop, passes.joint, np.concatenate(starts), np.array(ends), near, deadline.left
     )
     halts: np.ndarray = last[~cleared].real
     return halts
@@ -381,33 +361,21 @@ def _known_folds(loop: Loop, passes: Passes) -> list[Fold]:
     return folds
 
 
-def _sheets(nonreal: Nonreal, passes: Passes, folds: Sequence[Fold], n: int) -> Sheets:
-    """What is to be followed from every slice to the next one, or from both sides to
-    the critical angle in between."""
-    order = np.argsort(nonreal.angles)
-    in_order = nonreal.angles[order]
-    edges = np.append(in_order, in_order[0] + TURN)
-    starts = [np.empty((0, n), dtype=complex)]
-    ends: list[float] = []
-    folds_of_starts: list[list[Fold]] = []
-    for k, (low, high) in enumerate(pairwise(edges)):
-        from_low = nonreal.at(order[k], passes.joint, low)
+def _sheets(cuts: list[Nonreal], passes: Passes) -> Iterator[tuple[np.ndarray, float]]:
+    """Configurations (k, n), and the angle to which they are to be followed: from every
+    one of the ``cuts`` to the next one, or from both sides to the critical angle in
+    between."""
+    joint = passes.joint
+    after = [*cuts[1:], cuts[0]._replace(angle=cuts[0].angle + TURN)]
+    for one, other in zip(cuts, after, strict=True):
+        low, high = one.angle, other.angle
         is_inside = (passes.critical - low) % TURN < high - low
-        if np.any(is_inside):
-            critical = passes.critical[is_inside][0]
-            end = low + (critical - low) % TURN
-            near = _folds_at(end, passes.joint, folds)
-            from_high = nonreal.at(order[(k + 1) % len(order)], passes.joint, high)
-            sides = [from_low, from_high]
-        else:
-            end = high
-            near = []
-            sides = [from_low]
-        for side in sides:
-            starts.append(side)
-            ends += [end] * len(side)
-            folds_of_starts += [near] * len(side)
-    return Sheets(np.concatenate(starts), np.array(ends), folds_of_starts)
+        if not np.any(is_inside):
+            yield one.at(joint, low), high
+            continue
+        critical = low + (passes.critical[is_inside][0] - low) % TURN
+        yield one.at(joint, low), critical
+        yield other.at(joint, high), critical
 
 
 def _folds_at(angle: float, joint: int, folds: Sequence[Fold]) -> list[Fold]:

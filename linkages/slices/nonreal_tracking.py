@@ -73,16 +73,19 @@ def follow_sheets(
     a loop of another number of joints than 4, 5 or 6.
     """
     _check(loop, joint)
-    packed = _PackedFolds.of(folds, loop.n)
+    of_sheets = [fold for of_sheet in folds for fold in of_sheet]
+    shapes = [(one.configuration, one.tangent, one.weight) for one in of_sheets]
+    limits = [(one.away, one.along, one.across) for one in of_sheets]
     cleared, last = _core.follow_sheets(
         geometry=loop.link_geometry,
         joint=joint,
         starts=np.asarray(starts, dtype=complex),
         ends=np.asarray(ends, dtype=float),
-        shapes=packed.shapes,
-        limits=packed.limits,
-        near=packed.near,
-        first=packed.first,
+        shapes=np.array(shapes).reshape(-1, 3, loop.n),
+        limits=np.array(limits).reshape(-1, 3),
+        # sheet k may join the folds from number first[k] to first[k + 1]
+        near=np.arange(len(of_sheets)),
+        first=np.cumsum([0, *map(len, folds)]),
         seconds=seconds,
     )
     return cleared, last
@@ -100,15 +103,7 @@ def find_fold(loop: Loop, joint: int, configuration: np.ndarray) -> Fold | None:
     fold = _core.find_fold(loop.link_geometry, joint, configuration)
     if fold is None:
         return None
-    tangent, weight, away, along, across = fold
-    return Fold(
-        configuration=np.array(configuration, dtype=float),
-        tangent=tangent,
-        weight=weight,
-        away=away,
-        along=along,
-        across=across,
-    )
+    return Fold(np.array(configuration, dtype=float), *fold)
 
 
 def _check(loop: Loop, joint: int) -> None:
@@ -116,41 +111,3 @@ def _check(loop: Loop, joint: int) -> None:
         raise GeometryError("number of joints of a followed loop", loop.n, "4, 5 or 6")
     if not 0 <= joint < loop.n:
         raise GeometryError("joint", joint, f"from 0 to {loop.n - 1}")
-
-
-@dataclass(frozen=True)
-class _PackedFolds:
-    """Folds as the compiled tracker reads them.
-
-    ``shapes`` (f, 3, n): configuration, tangent and weight of each fold; ``limits``
-    (f, 3): away, along and across; sheet k may join those with the numbers
-    ``near[first[k]:first[k + 1]]``.
-    """
-
-    shapes: np.ndarray
-    limits: np.ndarray
-    near: np.ndarray
-    first: np.ndarray
-
-    @staticmethod
-    def of(folds: Sequence[Sequence[Fold]], n: int) -> _PackedFolds:
-        """From the folds of every sheet of a loop of ``n`` joints."""
-        numbers: dict[int, int] = {}
-        shapes: list[list[np.ndarray]] = []
-        limits: list[list[float]] = []
-        near: list[int] = []
-        first = [0]
-        for of_sheet in folds:
-            for fold in of_sheet:
-                if id(fold) not in numbers:
-                    numbers[id(fold)] = len(shapes)
-                    shapes.append([fold.configuration, fold.tangent, fold.weight])
-                    limits.append([fold.away, fold.along, fold.across])
-                near.append(numbers[id(fold)])
-            first.append(len(near))
-        return _PackedFolds(
-            shapes=np.array(shapes, dtype=float).reshape(-1, 3, n),
-            limits=np.array(limits, dtype=float).reshape(-1, 3),
-            near=np.array(near, dtype=np.int64),
-            first=np.array(first, dtype=np.int64),
-        )

@@ -12,6 +12,7 @@ import numpy as np
 
 from linkages.loop import Loop
 
+UP = np.array([0.0, 0.0, 1.0])
 NEARLY_PARALLEL = 1e-9  # sine of the angle between axes without a common normal
 
 
@@ -63,8 +64,8 @@ class Seat(NamedTuple):
 
 @dataclass
 class Assembly:
-    """Joint axes by their names, the links between them, and the ``seats`` of the joints
-    that stand on links."""
+    """Joint ``axes`` by their names, the links between them, and the ``seats`` of the
+    joints that stand on links."""
 
     axes: dict[str, Axis] = field(default_factory=dict)
     bars: list[Bar] = field(default_factory=list)
@@ -83,19 +84,24 @@ class Assembly:
 
     def joint(self, name: str) -> np.ndarray:
         """Where a joint (3,) is drawn: in the middle of the feet on its axis."""
-        direction = self.axes[name].direction
-        feet = self.feet(name)
-        heights = (feet - feet[0]) @ direction
+        start, heights = self._heights(name)
         middle = (heights.min() + heights.max()) / 2
-        return np.asarray(feet[0] + middle * direction)
+        return np.asarray(start + middle * self.axes[name].direction)
 
     def offset(self, name: str) -> np.ndarray:
         """The piece (2, 3) of an axis between the outermost feet on it."""
-        direction = self.axes[name].direction
+        start, heights = self._heights(name)
+        ends = np.array([[heights.min()], [heights.max()]])
+        return np.asarray(start + ends * self.axes[name].direction)
+
+    def _heights(self, name: str) -> tuple[np.ndarray, np.ndarray]:
+        """A foot (3,) on the axis of a joint, and how far from it all feet are (k,)."""
         feet = self.feet(name)
-        heights = (feet - feet[0]) @ direction
-        ends = np.array([heights.min(), heights.max()])
-        return np.asarray(feet[0] + ends[:, None] * direction)
+        return feet[0], (feet - feet[0]) @ self.axes[name].direction
+
+    def points(self) -> np.ndarray:
+        """Where all joints are drawn (k, 3)."""
+        return np.array([self.joint(name) for name in self.axes])
 
     def remove(self, name: str) -> None:
         """Take a joint away, and the links to it."""
@@ -111,17 +117,22 @@ class Assembly:
 
 
 def loop_assembly(
-    loop: Loop, theta: np.ndarray, names: Sequence[str], labels: Sequence[str]
+    loop: Loop,
+    theta: np.ndarray,
+    names: Sequence[str] = (),
+    labels: Sequence[str] = (),
 ) -> Assembly:
     """The axes and links of a loop at joint angles (n,), rad; ``names`` are those of
-    its joints, ``labels`` of its links."""
+    its joints, else their numbers, ``labels`` of its links."""
+    names = names or [str(i + 1) for i in range(loop.n)]
+    labels = labels or [""] * loop.n
     frames = loop.frames(theta)
     offsets = loop.arrays.offsets
     out = Assembly()
     for i, name in enumerate(names):
-        out.axes[name] = Axis(frames[i, :3, 3], frames[i, :3, 2])
-    for i, name in enumerate(names):
-        start = frames[i, :3, 3] + offsets[i] * frames[i, :3, 2]
+        axis = Axis(frames[i, :3, 3], frames[i, :3, 2])
+        out.axes[name] = axis
+        start = axis.point + offsets[i] * axis.direction
         ends = np.stack([start, frames[i + 1, :3, 3]])
         following = names[(i + 1) % loop.n]
         out.bars.append(Bar(name, following, ends, labels[i]))
@@ -140,12 +151,15 @@ def turn(vector: np.ndarray, axis: np.ndarray, angle: float) -> np.ndarray:
     return np.asarray(along + turned)
 
 
-def joint_on(first: Axis, last: Axis, length: float, twist: float) -> Axis:
-    """The axis that stands on the link from ``first`` towards ``last``, ``length`` from
-    its foot on the first and turned by ``twist`` (rad)."""
-    along = last.point - first.point
-    along = along / np.linalg.norm(along)
-    return Axis(first.point + length * along, turn(first.direction, along, twist))
+def unit(vector: np.ndarray) -> np.ndarray:
+    """A vector (3,) over its length."""
+    return np.asarray(vector / np.linalg.norm(vector))
+
+
+def far_axis(near: Axis, along: np.ndarray, length: float, twist: float) -> Axis:
+    """The axis at the other end of a link that leaves the point of an axis in the unit
+    direction ``along`` (3,)."""
+    return Axis(near.point + length * along, turn(near.direction, along, twist))
 
 
 def joint_after(
@@ -153,10 +167,8 @@ def joint_after(
 ) -> Axis:
     """The next axis of a chain that comes from ``before`` to ``at`` and turns there by
     ``angle`` (rad), without offset."""
-    along = at.point - before.point
-    along = along / np.linalg.norm(along)
-    along = turn(along, at.direction, angle)
-    return Axis(at.point + length * along, turn(at.direction, along, twist))
+    along = turn(unit(at.point - before.point), at.direction, angle)
+    return far_axis(at, along, length, twist)
 
 
 def fourth_joint(first: Axis, middle: Axis, last: Axis) -> Axis:
@@ -167,8 +179,7 @@ def fourth_joint(first: Axis, middle: Axis, last: Axis) -> Axis:
     exchanges their axes. The fourth joint is the image of ``middle``.
     """
     centre = (first.point + last.point) / 2
-    across = last.point - first.point
-    across = across / np.linalg.norm(across)
+    across = unit(last.point - first.point)
     candidates = []
     for sign in (1.0, -1.0):
         line = first.direction + sign * last.direction

@@ -1,67 +1,73 @@
 """Figures of joint axes and links: panels with a graph that bears the names of the
-links, and the same in space."""
+links, and the same in space; one configuration from two sides; one linkage in several
+configurations."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from linkages.source_figures.assembly import Assembly, turn
+from bifurc.figures.style import Properties
+from linkages.source_figures.assembly import Assembly, loop_assembly, turn
+from linkages.source_figures.configurations import (
+    atlas_of,
+    configuration,
+    form_named,
+    loop_of_content,
+)
 from linkages.source_figures.construction import assembly_of
 from linkages.source_figures.drawing import (
     LARGE,
+    LINE_COLOR,
     SMALL,
     Look,
     best_look,
     clarity,
+    clearest_of,
     draw_assembly,
+    look_along,
+    symmetry_line,
 )
 from linkages.source_figures.graph_drawing import draw_graph
 from linkages.source_figures.table import Content, SourceFigure
 
 SLANT = np.array([1.0, 0.37])  # a direction on paper that no line is across
-
 PANEL = 2.9  # width and height of a panel, in inches
 MOST_COLUMNS = 4
 CHOICES = 20  # configurations along a form, of which the clearest is drawn
+FRONTS = 48  # looks across the line of symmetry among which the clearest is taken
+
+
+# --- panels ---------------------------------------------------------------------------
 
 
 def draw(source: SourceFigure) -> Figure:
     """The figure of panels: the graph above, the drawing in space below."""
     content = source.content
     panels = content["panels"]
-    grid = _grid(content)
+    figure, cells = _grid(content)
     assemblies = [_clearest(panel) for panel in panels]
     looks = [best_look(assembly) for assembly in assemblies]
     if content.get("same_look"):
         looks = [looks[0]] * len(panels)
-    pen = SMALL if grid.columns > 3 else LARGE
+    pen = SMALL if cells.shape[2] > 3 else LARGE
     for number, (panel, assembly) in enumerate(zip(panels, assemblies, strict=True)):
-        above, below = grid.panel(number)
-        filled = tuple(panel.get("filled", ()))
-        unnumbered = tuple(panel.get("unnumbered", ()))
-        if above is not None:
-            draw_graph(
-                above,
-                assembly,
-                _ring(panel, tuple(assembly.axes)),
-                filled=filled,
-                unnumbered=unnumbered,
-                letters=_letters(panel),
-            )
-        (above or below).set_title(panel.get("title", ""), fontsize=9)
+        band, column = divmod(number, cells.shape[2])
+        above, below = cells[band, 0, column], cells[band, -1, column]
+        above.set_title(panel.get("title", ""), fontsize=9)
+        names = {key: panel.get(key, ()) for key in ("filled", "unnumbered")}
+        if above is not below:
+            ring = _ring(panel, assembly)
+            draw_graph(above, assembly, ring, panel.get("letters", {}), **names)
         look = looks[number]
         _draw_circles(below, assembly, panel.get("circles", ()), look)
-        draw_assembly(
-            below, assembly, look, filled=filled, unnumbered=unnumbered, pen=pen
-        )
+        draw_assembly(below, assembly, look, pen=pen, **names)
         if panel.get("transversal"):
             _draw_transversal(below, assembly, look)
-    return grid.figure
+    return figure
 
 
 def _clearest(panel: Content) -> Assembly:
@@ -75,52 +81,37 @@ def _clearest(panel: Content) -> Assembly:
     return assemblies[int(np.argmax(merits))]
 
 
-@dataclass(frozen=True)
-class Grid:
-    """The ``figure`` and its ``cells``, rows of axes; ``has_graph`` says whether each
-    panel has two, one below the other."""
-
-    figure: Figure
-    cells: np.ndarray
-    has_graph: bool
-
-    @property
-    def columns(self) -> int:
-        """Panels side by side."""
-        return int(self.cells.shape[1])
-
-    def panel(self, number: int) -> tuple[Axes | None, Axes]:
-        """The axes of the graph, if there is one, and of the drawing of a panel."""
-        band, column = divmod(number, self.columns)
-        if not self.has_graph:
-            return None, self.cells[band, column]
-        return self.cells[2 * band, column], self.cells[2 * band + 1, column]
-
-
-def _grid(content: Content) -> Grid:
-    """Empty axes for all panels of a figure."""
+def _grid(content: Content) -> tuple[Figure, np.ndarray]:
+    """A figure and its empty axes (bands, 1 or 2, columns): one below the other where
+    panels have a graph."""
     count = len(content["panels"])
-    has_graph = content.get("graph", True)
+    each = 2 if content.get("graph", True) else 1
     size = content.get("size", PANEL)
     columns = content.get("columns", min(count, MOST_COLUMNS))
     bands = -(-count // columns)
-    rows = bands * (2 if has_graph else 1)
-    height = size * rows + 0.3 * bands
+    height = size * bands * each + 0.3 * bands
     figure = Figure(figsize=(max(size * columns, 3.6), height))
-    cells = figure.subplots(rows, columns, squeeze=False)
+    cells = figure.subplots(bands * each, columns, squeeze=False)
     figure.subplots_adjust(
         left=0.01, right=0.99, bottom=0.01, top=1 - 0.3 / height, hspace=0.12
     )
     for axes in cells.flat:
         axes.set_axis_off()
-    return Grid(figure, cells, has_graph)
+    return figure, cells.reshape(bands, each, columns)
+
+
+def _ring(panel: Content, assembly: Assembly) -> list[str]:
+    """The joints that stand on a circle: all numbered ones, unless the panel says
+    others."""
+    if "ring" in panel:
+        return list(panel["ring"].split())
+    return [name for name in assembly.axes if name.isdigit() and name != "0"]
 
 
 def _draw_circles(
     axes: Axes, assembly: Assembly, circles: Sequence[str], look: Look
 ) -> None:
     """The circles of joints about axes, each in words as ``3 about H``."""
-    plane = np.stack([look.right, look.up], axis=1)
     angles = np.linspace(0, 2 * np.pi, 181)
     for line in circles:
         name, _, other = line.split()
@@ -129,20 +120,19 @@ def _draw_circles(
         along = (arm @ axis.direction) * axis.direction
         centre = axis.point + along
         points = [centre + turn(arm - along, axis.direction, a) for a in angles]
-        axes.plot(*(np.array(points) @ plane).T, color="0.75", linewidth=1, zorder=1)
+        spots = np.array(points) @ look.plane
+        axes.plot(*spots.T, color="0.75", linewidth=1, zorder=1)
 
 
 def _draw_transversal(axes: Axes, assembly: Assembly, look: Look) -> None:
     """The line that meets all axes."""
-    plane = np.stack([look.right, look.up], axis=1)
-    points = transversal_points(assembly)
-    spots = points @ plane
+    spots = transversal_points(assembly) @ look.plane
     first, last = int(np.argmin(spots @ SLANT)), int(np.argmax(spots @ SLANT))
     ends = spots[[first, last]]
-    axes.plot(*ends.T, color="#009E73", linestyle="-.", linewidth=1.6, zorder=6)
-    axes.plot(*spots.T, ".", color="#009E73", markersize=6, zorder=6)
-    for name, point in zip(assembly.axes, points, strict=True):
-        reach = np.stack([assembly.joint(name), point]) @ plane
+    axes.plot(*ends.T, color=LINE_COLOR, linestyle="-.", linewidth=1.6, zorder=6)
+    axes.plot(*spots.T, ".", color=LINE_COLOR, markersize=6, zorder=6)
+    for joint, spot in zip(assembly.points() @ look.plane, spots, strict=True):
+        reach = np.stack([joint, spot])
         axes.plot(*reach.T, color="0.6", linewidth=0.7, linestyle=":", zorder=1)
 
 
@@ -168,17 +158,81 @@ def transversal_points(assembly: Assembly) -> np.ndarray:
     return np.array(points)
 
 
-def _ring(panel: Content, names: tuple[str, ...]) -> tuple[str, ...]:
-    """The joints that stand on a circle: all numbered ones, unless the panel says
-    others."""
-    if "ring" in panel:
-        return tuple(panel["ring"].split())
-    return tuple(name for name in names if name.isdigit() and name != "0")
+# --- two views ------------------------------------------------------------------------
 
 
-def _letters(panel: Content) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    """Letters of parts of the graph, with the joints that they stand between."""
-    return tuple(
-        (letter, tuple(joints.split()))
-        for letter, joints in panel.get("letters", {}).items()
-    )
+def draw_views(source: SourceFigure) -> Figure:
+    """A line-symmetric configuration from the front, the line of symmetry upright, and
+    from above, along it."""
+    loop = loop_of_content(source.content)
+    assembly = loop_assembly(loop, configuration(source.content))
+    centre, line = symmetry_line(assembly, loop.n)
+    figure = Figure(figsize=(7.4, 3.3))
+    panels = figure.subplots(1, 2)
+    figure.subplots_adjust(left=0.02, right=0.98, bottom=0.02, top=0.92)
+    front = _front(assembly, line)
+    views = (("front view", front), ("top view", look_along(line, front.near)))
+    for axes, (title, look) in zip(panels, views, strict=True):
+        draw_assembly(axes, assembly, look)
+        _draw_line(axes, assembly, centre, line, look)
+        axes.set_title(title, fontsize=9)
+    return figure
+
+
+def _front(assembly: Assembly, line: np.ndarray) -> Look:
+    """The clearest look across the line of symmetry, which stands upright."""
+    start = look_along(line).right
+    other = np.cross(line, start)
+    angles = np.linspace(0, 2 * np.pi, FRONTS, endpoint=False)
+    looks = [look_along(np.cos(a) * start + np.sin(a) * other, line) for a in angles]
+    return clearest_of([assembly], looks)
+
+
+def _draw_line(
+    axes: Axes, assembly: Assembly, centre: np.ndarray, line: np.ndarray, look: Look
+) -> None:
+    """The line of symmetry, a dot where it is seen end on."""
+    half = 1.3 * float(np.abs((assembly.points() - centre) @ line).max())
+    ends = (centre + np.array([[-half], [half]]) * line) @ look.plane
+    style: Properties = {"color": LINE_COLOR, "zorder": 6}
+    if np.linalg.norm(ends[1] - ends[0]) < 1e-6 * half:
+        axes.plot(*ends[0], "o", markersize=7, fillstyle="none", **style)
+        axes.plot(*ends[0], ".", markersize=3, **style)
+    else:
+        axes.plot(*ends.T, linestyle="-.", linewidth=1.4, **style)
+
+
+# --- configurations along a form ------------------------------------------------------
+
+
+def draw_motion(source: SourceFigure) -> Figure:
+    """One linkage at equal distances along a form, always seen from the same side."""
+    content = source.content
+    loop = loop_of_content(content)
+    branch = form_named(atlas_of(content), content.get("form", "")).branch
+    count = content["count"]
+    s = (np.arange(count) + 0.5) / count * branch.length
+    assemblies = [loop_assembly(loop, theta) for theta in branch(s)]
+    rows = -(-count // MOST_COLUMNS)
+    figure = Figure(figsize=(2.3 * MOST_COLUMNS, 2.4 * rows))
+    grid = figure.subplots(rows, MOST_COLUMNS, squeeze=False)
+    figure.subplots_adjust(left=0.01, right=0.99, bottom=0.01, top=0.94)
+    titles = [f"({number + 1})" for number in range(count)]
+    draw_row(list(grid.flat), assemblies, titles, 8)
+    return figure
+
+
+def draw_row(
+    panels: Sequence[Axes],
+    assemblies: Sequence[Assembly],
+    titles: Sequence[str],
+    size: float,
+) -> None:
+    """Assemblies in the first of the panels, all seen from the side from which they are
+    clearest, with titles in letters of a ``size``."""
+    look = best_look(*assemblies)
+    for axes in panels:
+        axes.set_axis_off()
+    for axes, assembly, title in zip(panels, assemblies, titles, strict=False):
+        draw_assembly(axes, assembly, look, pen=SMALL)
+        axes.set_title(title, fontsize=size, pad=2)

@@ -1,5 +1,5 @@
-"""Assemblies as the tables of the figures describe them: a loop in a configuration, and
-joints and links added to it step by step.
+"""Assemblies as the tables of the figures describe them: a loop in a configuration, or
+the network of four Bennett linkages, and joints and links added to it step by step.
 
 A joint is one line of words: ``X on 1-2 a`` stands on the link from 1 to 2, as far from
 1 as the basic link a is long and turned by its twist; ``R fourth X 1 6`` completes a
@@ -13,25 +13,25 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
 from linkages.catalogue import entry
 from linkages.loop import Loop
+from linkages.networks.network import Network, build_network, other_angle
+from linkages.networks.plans import FOUR_BENNETT
 from linkages.source_figures.assembly import (
     Assembly,
     Axis,
-    Bar,
     Role,
     Seat,
     bar_between,
+    far_axis,
     fourth_joint,
     joint_after,
-    joint_on,
     loop_assembly,
+    unit,
 )
-from linkages.source_figures.bennett_network import network_assembly
 from linkages.source_figures.configurations import configuration, linkage_of
 from linkages.source_figures.table import Content
 
@@ -40,25 +40,18 @@ PARAMETER = {"a": "alpha", "b": "beta", "c": "gamma", "d": "delta"}
 ROLES = frozenset(role.value for role in Role)
 SUM = re.compile(r"[a-e]([+-][a-e])*")
 TERM = re.compile(r"([+-]?)([a-e])")
-
-
-class BasicLink(NamedTuple):
-    """Length and twist (rad) of a link that linkages are constructed from."""
-
-    length: float
-    twist: float
+SPOKES = (("2", "c"), ("4", "b"), ("6", "d"), ("8", "a"))  # of the network
 
 
 def assembly_of(panel: Content) -> Assembly:
     """The assembly that a panel of a figure describes."""
-    links: dict[str, BasicLink]
+    links: dict[str, np.ndarray] = {}
     if "network" in panel:
-        assembly = network_assembly(panel)
-        links = {}
+        assembly = _network_assembly(panel)
     else:
         loop = linkage_of(panel).loop
-        names = panel.get("names", [str(i + 1) for i in range(loop.n)])
         labels = panel.get("labels", [""] * loop.n)
+        names = panel.get("names", ())
         assembly = loop_assembly(loop, configuration(panel), names, labels)
         links = basic_links(loop, labels, panel)
     for line in panel.get("joints", ()):
@@ -68,6 +61,46 @@ def assembly_of(panel: Content) -> Assembly:
     for place, bar in enumerate(assembly.bars):
         assembly.bars[place] = replace(bar, label=link_text(bar.label))
     return assembly
+
+
+# --- the network of four Bennett linkages ---------------------------------------------
+
+
+def _network_assembly(panel: Content) -> Assembly:
+    """The network that a panel describes: its ring of eight joints, and the links to
+    joint 0 in the middle.
+
+    ``twists`` are those of a, b, c, d in degrees, each link as long as the sine of its
+    own; ``odd`` the angles at the joints 1, 3 and 5; ``straight`` lists even joints
+    that are to be straight, which the angles at the odd joints beyond them follow;
+    joints of ``without`` are left out.
+    """
+    twists = [float(np.radians(panel["twists"][name])) for name in "abcd"]
+    network = build_network(FOUR_BENNETT, float(np.sin(twists[0])), *twists)
+    theta = network.ring_angles(_states(network, panel))
+    plan = network.plan
+    letters = [plan.bars[plan.ring_bar(place)] for place in range(len(plan.ring))]
+    assembly = loop_assembly(network.ring_loop, theta, plan.ring, letters)
+    around_first = [assembly.axes[name] for name in ("8", "1", "2")]
+    assembly.axes["0"] = fourth_joint(*around_first)
+    for joint, letter in SPOKES:
+        assembly.bars.append(bar_between(assembly, "0", joint, letter))
+    for joint in panel.get("without", ()):
+        assembly.remove(joint)
+    return assembly
+
+
+def _states(network: Network, panel: Content) -> np.ndarray:
+    """The angles (4,), rad, at the joints 1, 3, 5 and 7, with the even joints straight
+    that are to be."""
+    odd = [float(np.radians(angle)) for angle in panel["odd"]]
+    for part, joint in enumerate(("2", "4")):
+        if joint in panel.get("straight", ()):
+            # the even angle is pi - inner + following = 0
+            inner = other_angle(network.factors[part], np.array(odd[part]))
+            following = other_angle(network.factors[part + 1], inner - np.pi)
+            odd[part + 1] = float(following)
+    return np.array([*odd, -sum(odd)])
 
 
 # --- basic links ----------------------------------------------------------------------
@@ -90,81 +123,76 @@ def _terms(name: str) -> list[tuple[float, str]]:
     ]
 
 
-def link_value(name: str, links: Mapping[str, BasicLink]) -> BasicLink:
-    """Length and twist of a sum of basic links such as b+d; raises `ValueError` for
-    another name, and for a link that nobody knows."""
-    letters = {letter for _, letter in _terms(name)}
-    if not letters or not letters <= set(links):
-        known = ", ".join(sorted(links))
-        raise ValueError(f"no sum of the basic links {known}: {name}")
-    length = sum(sign * links[letter].length for sign, letter in _terms(name))
-    twist = sum(sign * links[letter].twist for sign, letter in _terms(name))
-    return BasicLink(length, twist)
+def link_value(name: str, links: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Length and twist (2,) of a sum of basic links such as b+d; raises `ValueError`
+    for another name, and for a link that nobody knows."""
+    terms = _terms(name)
+    if not terms or any(letter not in links for _, letter in terms):
+        allowed = ", ".join(sorted(links))
+        raise ValueError(f"no sum of the basic links {allowed}: {name}")
+    value: np.ndarray = np.sum([sign * links[letter] for sign, letter in terms], axis=0)
+    return value
 
 
 def basic_links(
     loop: Loop, labels: Sequence[str], content: Content
-) -> dict[str, BasicLink]:
-    """Every basic link of a linkage by its letter.
+) -> dict[str, np.ndarray]:
+    """Length and twist (2,), rad, of every basic link of a linkage by its letter.
 
     Those that are links of the loop come from its table, others from the parameters of
-    the linkage, and what stands in one sum with known ones from that sum.
+    the linkage, all of one ratio of sine and length, and what stands in one sum with
+    known ones from that sum.
     """
-    lengths, twists, _ = loop.arrays
-    known: dict[str, BasicLink] = {}
-    for label, length, twist in zip(labels, lengths, twists, strict=True):
+    rows = np.stack([loop.arrays.lengths, loop.arrays.twists], axis=1)
+    links: dict[str, np.ndarray] = {}
+    for label, row in zip(labels, rows, strict=True):
         if len(label) == 1 and SUM.fullmatch(label):
-            known.setdefault(label, BasicLink(float(length), float(twist)))
+            links.setdefault(label, row)
     for letter, degrees in content.get("basic", {}).items():
-        twist = float(np.radians(degrees))
-        scale = float(lengths[0] / np.sin(twists[0]))
-        known[letter] = BasicLink(scale * float(np.sin(twist)), twist)
-    _add_parameters(known, content)
-    for label, length, twist in zip(labels, lengths, twists, strict=True):
-        unknown = [term for term in _terms(label) if term[1] not in known]
-        if len(unknown) != 1:
-            continue
-        sign, letter = unknown[0]
-        rest = [term for term in _terms(label) if term[1] in known]
-        other_length = sum(s * known[name].length for s, name in rest)
-        other_twist = sum(s * known[name].twist for s, name in rest)
-        known[letter] = BasicLink(
-            sign * (float(length) - other_length), sign * (float(twist) - other_twist)
-        )
-    return known
+        twist = np.radians(degrees)
+        length, first_twist = rows[0]
+        links[letter] = np.array([length / np.sin(first_twist) * np.sin(twist), twist])
+    _add_parameters(links, content)
+    for label, row in zip(labels, rows, strict=True):
+        terms = _terms(label)
+        missing = [term for term in terms if term[1] not in links]
+        if len(missing) == 1:
+            rest = [sign * links[letter] for sign, letter in terms if letter in links]
+            sign, letter = missing[0]
+            links[letter] = sign * (row - np.sum(rest, axis=0))
+    return links
 
 
-def _add_parameters(known: dict[str, BasicLink], content: Content) -> None:
-    """The basic links whose twists are parameters of the linkage, of one ratio of sine
-    and length."""
-    family = entry(content["linkage"])
-    given = content.get("parameters", {})
-    values = family.defaults | {k: float(np.radians(v)) for k, v in given.items()}
-    if "a" in given:
-        values["a"] = float(given["a"])
+def _add_parameters(links: dict[str, np.ndarray], content: Content) -> None:
+    """The basic links whose twists are parameters of the linkage."""
+    degrees = content.get("parameters", {})
+    values = dict(entry(content["linkage"]).defaults)
+    values |= {name: float(np.radians(value)) for name, value in degrees.items()}
+    if "a" in degrees:
+        values["a"] = float(degrees["a"])
     if "a" not in values or "alpha" not in values:
         return
     ratio = np.sin(values["alpha"]) / values["a"]
     for letter, parameter in PARAMETER.items():
-        if letter not in known and parameter in values:
+        if parameter in values:
             twist = values[parameter]
-            known[letter] = BasicLink(float(np.sin(twist) / ratio), twist)
+            links.setdefault(letter, np.array([np.sin(twist) / ratio, twist]))
 
 
 # --- steps ----------------------------------------------------------------------------
 
 
-def _add_joint(assembly: Assembly, line: str, links: Mapping[str, BasicLink]) -> None:
+def _add_joint(assembly: Assembly, line: str, links: Mapping[str, np.ndarray]) -> None:
     """Add the joint that a line of words describes; raises `ValueError` for words that
     describe none."""
     name, how, *words = line.split()
     if how == "on":
         first, last = words[0].split("-")
-        link = link_value(words[1], links)
-        one = _foot(assembly, first, last)
-        other = _foot(assembly, last, first)
-        assembly.axes[name] = joint_on(one, other, link.length, link.twist)
-        fraction = link.length / float(np.linalg.norm(other.point - one.point))
+        length, twist = link_value(words[1], links)
+        start = _foot(assembly, first, last)
+        span = _foot(assembly, last, first).point - start.point
+        assembly.axes[name] = far_axis(start, unit(span), length, twist)
+        fraction = float(length / np.linalg.norm(span))
         assembly.seats[name] = Seat(first, last, fraction)
     elif how == "fourth":
         first, middle, last = words
@@ -175,14 +203,10 @@ def _add_joint(assembly: Assembly, line: str, links: Mapping[str, BasicLink]) ->
         )
     elif how == "after":
         before, at, degrees, letters = words
-        link = link_value(letters, links)
-        assembly.axes[name] = joint_after(
-            assembly.axes[before],
-            assembly.axes[at],
-            float(np.radians(float(degrees))),
-            link.length,
-            link.twist,
-        )
+        length, twist = link_value(letters, links)
+        ends = assembly.axes[before], assembly.axes[at]
+        angle = np.radians(float(degrees))
+        assembly.axes[name] = joint_after(*ends, angle, length, twist)
     else:
         raise ValueError(f"{line!r} describes no joint")
 
@@ -202,17 +226,12 @@ def _add_link(assembly: Assembly, line: str) -> None:
     """Add the link that a line of words describes, or change what becomes of one."""
     ends, *words = line.split()
     first, last = ends.split("-")
-    role = Role.KEPT
-    label = ""
-    for word in words:
-        if word in ROLES:
-            role = Role(word)
-        else:
-            label = word
+    roles = [Role(word) for word in words if word in ROLES]
+    labels = [word for word in words if word not in ROLES]
+    role = roles[-1] if roles else Role.KEPT
+    label = labels[-1] if labels else ""
     for place, bar in enumerate(assembly.bars):
         if {bar.first, bar.last} == {first, last}:
-            assembly.bars[place] = Bar(
-                bar.first, bar.last, bar.ends, label or bar.label, role
-            )
+            assembly.bars[place] = replace(bar, label=label or bar.label, role=role)
             return
     assembly.bars.append(bar_between(assembly, first, last, label, role))

@@ -12,22 +12,20 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from bifurc.figures.style import RC
 from linkages.source_figures import (
     assembly_figure,
+    curves_figure,
     notation_figure,
-    paths_figure,
-    singular_values_figure,
     tori_figure,
     transitions_figure,
     translator_figure,
-    views_figure,
 )
 from linkages.source_figures.table import Kind, SourceFigure
 
 DRAWINGS: dict[Kind, Callable[[SourceFigure], Figure]] = {
     Kind.ASSEMBLY: assembly_figure.draw,
-    Kind.VIEWS: views_figure.draw_views,
-    Kind.MOTION: views_figure.draw_motion,
-    Kind.PATHS: paths_figure.draw,
-    Kind.SINGULAR_VALUES: singular_values_figure.draw,
+    Kind.VIEWS: assembly_figure.draw_views,
+    Kind.MOTION: assembly_figure.draw_motion,
+    Kind.PATHS: curves_figure.draw_paths,
+    Kind.SINGULAR_VALUES: curves_figure.draw_singular_values,
     Kind.TRANSITIONS: transitions_figure.draw,
     Kind.NOTATION: notation_figure.draw,
     Kind.TRANSLATOR: translator_figure.draw,

@@ -11,7 +11,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 
-from linkages.source_figures.assembly import Assembly, Role
+from bifurc.figures.style import Properties
+from linkages.scene import distances_to_segments, looks_around
+from linkages.source_figures.assembly import UP, Assembly, Bar, Role
 
 DIRECTIONS = 240  # from which an assembly is looked at
 FEW = 5  # every such direction, where many assemblies are compared
@@ -20,7 +22,9 @@ LINK_COLORS = {Role.KEPT: "#0072B2", Role.COMMON: "0.55", Role.REMOVED: "0.55"}
 LINK_DASHES = {Role.KEPT: "-", Role.COMMON: "-", Role.REMOVED: (0, (3, 2))}
 OFFSET_COLOR = "#D55E00"
 AXIS_COLOR = "0.5"
+LINE_COLOR = "#009E73"  # of lines of symmetry, and of those that meet all axes
 HALO = [withStroke(linewidth=2.5, foreground="white")]  # text on lines stays legible
+CENTERED: Properties = {"ha": "center", "va": "center"}
 NUMBER_DISTANCE = 0.09  # of the extent, from a joint to its number
 FROM_NUMBERS = 0.5  # a number covers more of another one than of a line
 PLACES = 16  # about a joint, where its number may stand
@@ -33,8 +37,13 @@ class Look(NamedTuple):
     up: np.ndarray
     near: np.ndarray
 
+    @property
+    def plane(self) -> np.ndarray:
+        """The matrix (3, 2) that takes what is in space to the paper."""
+        return np.stack([self.right, self.up], axis=1)
 
-def look_along(near: np.ndarray, up: np.ndarray) -> Look:
+
+def look_along(near: np.ndarray, up: np.ndarray = UP) -> Look:
     """The look from direction ``near``, with ``up`` (3,) upwards as far as it can."""
     near = near / np.linalg.norm(near)
     up = up - (up @ near) * near
@@ -45,109 +54,72 @@ def look_along(near: np.ndarray, up: np.ndarray) -> Look:
     return Look(np.cross(up, near), up, near)
 
 
-def best_look(assembly: Assembly) -> Look:
-    """The look in which joints lie furthest apart from each other and from links, and
-    no axis is seen end on."""
-    return common_look([assembly])
-
-
 def clarity(assembly: Assembly) -> float:
     """How clear an assembly is when it is seen from where it is clearest, of a few
     directions."""
-    outline = _outline(assembly)
-    up = np.array([0.0, 0.0, 1.0])
-    looks = [look_along(near, up) for near in _spiral()[::FEW]]
-    return max(_clarity(outline, look) for look in looks)
+    looks = [look_along(near) for near in looks_around(DIRECTIONS)[::FEW]]
+    return float(_clarities(assembly, looks).max())
 
 
-def common_look(assemblies: Sequence[Assembly]) -> Look:
-    """The look in which several assemblies are clearest, on average."""
-    up = np.array([0.0, 0.0, 1.0])
-    return clearest_of(assemblies, [look_along(near, up) for near in _spiral()])
+def best_look(*assemblies: Assembly) -> Look:
+    """The look in which joints lie furthest apart from each other and from links, and
+    no axis is seen end on; of several assemblies on average."""
+    looks = [look_along(near) for near in looks_around(DIRECTIONS)]
+    return clearest_of(assemblies, looks)
 
 
 def clearest_of(assemblies: Sequence[Assembly], looks: Sequence[Look]) -> Look:
     """The look, of those given, in which assemblies are clearest, on average."""
-    merits = np.zeros(len(looks))
-    for assembly in assemblies:
-        outline = _outline(assembly)
-        merits += [_clarity(outline, look) for look in looks]
+    merits = sum(_clarities(assembly, looks) for assembly in assemblies)
     return looks[int(np.argmax(np.round(merits, 9)))]
 
 
-class _Outline(NamedTuple):
-    """What a look is judged by: joints (n, 3), directions of their axes (n, 3), links
-    (m, 2, 3), and whether joint i is on link j (n, m)."""
-
-    points: np.ndarray
-    directions: np.ndarray
-    segments: np.ndarray
-    is_own: np.ndarray
-
-
-def _outline(assembly: Assembly) -> _Outline:
-    names = list(assembly.axes)
-    is_own = []
-    for name in names:
-        seat = assembly.seats.get(name)
-        carrier = {seat.first, seat.last} if seat else set()
-        is_own.append(
-            [
-                name in (bar.first, bar.last) or {bar.first, bar.last} == carrier
-                for bar in assembly.bars
-            ]
-        )
-    return _Outline(
-        np.array([assembly.joint(name) for name in names]),
-        np.array([axis.direction for axis in assembly.axes.values()]),
-        np.array([bar.ends for bar in assembly.bars]),
-        np.array(is_own),
+def _clarities(assembly: Assembly, looks: Sequence[Look]) -> np.ndarray:
+    """How clearly an assembly is seen in each look (k,): least distances of joints on
+    paper, from each other and from links that they are not on, and how much is seen of
+    every axis."""
+    points = assembly.points()
+    directions = np.array([axis.direction for axis in assembly.axes.values()])
+    segments = np.array([bar.ends for bar in assembly.bars])
+    is_own = np.array(
+        [
+            [_is_on(assembly, joint, bar) for bar in assembly.bars]
+            for joint in assembly.axes
+        ]
     )
+    size = _extent(points)
+    first, second = np.triu_indices(len(points), 1)
+    clarities = []
+    for look in looks:
+        spots = points @ look.plane
+        gap = np.linalg.norm(spots[first] - spots[second], axis=1).min() / size
+        to_links = distances_to_segments(spots, segments @ look.plane)
+        free = min(np.where(is_own, np.inf, to_links).min() / size, 1.0)
+        seen = np.linalg.norm(directions @ look.plane, axis=1).min()
+        offsets = spots - spots.mean(axis=0)
+        spread = np.linalg.svd(offsets, compute_uv=False)[-1] / size
+        clarities.append(4 * gap + 4 * free + spread + min(seen, 0.5))
+    return np.array(clarities)
 
 
-def _spiral() -> np.ndarray:
-    """Unit vectors (k, 3) over the upper half of the sphere."""
-    k = np.arange(DIRECTIONS)
-    z = (k + 0.5) / DIRECTIONS * 0.9
-    turns = k * np.pi * (3 - np.sqrt(5))
-    ring = np.sqrt(1 - z**2)
-    return np.column_stack([ring * np.cos(turns), ring * np.sin(turns), z])
+def _is_on(assembly: Assembly, joint: str, bar: Bar) -> bool:
+    """Whether a joint is an end of a link, or has its seat on it."""
+    ends = {bar.first, bar.last}
+    seat = assembly.seats.get(joint)
+    return joint in ends or (seat is not None and ends == {seat.first, seat.last})
 
 
-def _clarity(outline: _Outline, look: Look) -> float:
-    """How clearly an assembly is seen: least distances of joints on paper, and how much
-    is seen of every axis."""
-    points, directions, segments, is_own = outline
-    plane = np.stack([look.right, look.up], axis=1)  # (3, 2)
-    spots = points @ plane
-    size = max(float(np.linalg.norm(points - points.mean(axis=0), axis=1).max()), 1e-12)
-    first, second = np.triu_indices(len(spots), 1)
-    gap = np.linalg.norm(spots[first] - spots[second], axis=1).min() / size
-    to_links = _to_segments(spots, segments @ plane)
-    free = np.where(is_own, np.inf, to_links).min() / size
-    free = min(free, 1.0)
-    seen = np.linalg.norm(directions @ plane, axis=1).min()
-    spread = np.linalg.svd(spots - spots.mean(axis=0), compute_uv=False)[-1] / size
-    return float(4 * gap + 4 * free + spread + min(seen, 0.5))
-
-
-def _to_segments(spots: np.ndarray, segments: np.ndarray) -> np.ndarray:
-    """Distances (p, q) of spots (p, 2) from segments (q, 2, 2)."""
-    starts = segments[:, 0]
-    along = segments[:, 1] - starts
-    squares = np.maximum((along**2).sum(axis=1), 1e-300)
-    towards = spots[:, None] - starts[None]
-    fractions = np.clip(np.einsum("ijk,jk->ij", towards, along) / squares, 0, 1)
-    rest = towards - fractions[..., None] * along
-    return np.asarray(np.linalg.norm(rest, axis=-1))
+def _extent(points: np.ndarray) -> float:
+    """The largest distance of one of the points (k, 3) from their middle."""
+    distances = np.linalg.norm(points - points.mean(axis=0), axis=1)
+    return max(float(distances.max()), 1e-12)
 
 
 def symmetry_line(assembly: Assembly, count: int) -> tuple[np.ndarray, np.ndarray]:
     """A point and the unit direction (3,) of the line about which a half turn takes
     each of the first ``count`` joints to the one half round the loop."""
-    names = list(assembly.axes)[:count]
     half = count // 2
-    points = np.array([assembly.joint(name) for name in names])
+    points = assembly.points()[:count]
     across = points[half:] - points[:half]
     _, _, directions = np.linalg.svd(across)
     direction = directions[-1]
@@ -179,37 +151,32 @@ def draw_assembly(
     assembly: Assembly,
     look: Look | None = None,
     *,
-    filled: tuple[str, ...] = (),
-    unnumbered: tuple[str, ...] = (),
+    filled: Sequence[str] = (),
+    unnumbered: Sequence[str] = (),
     pen: Pen = LARGE,
     reach: float = REACH,
 ) -> None:
     """Draw an assembly; ``filled`` joints are solid dots, ``unnumbered`` ones bear no
     number; axes are drawn to ``reach`` of the extent beyond their links."""
     look = look or best_look(assembly)
-    plane = np.stack([look.right, look.up], axis=1)
-    joints = {name: assembly.joint(name) for name in assembly.axes}
-    points = np.array(list(joints.values()))
+    points = assembly.points()
     centre = points.mean(axis=0)
-    extent = max(float(np.linalg.norm(points - centre, axis=1).max()), 1e-12)
-    axis_ends = _draw_axes(axes, assembly, plane, reach * extent, pen)
+    extent = _extent(points)
+    axis_ends = _draw_axes(axes, assembly, look.plane, reach * extent, pen)
     for bar in assembly.bars:
         depth = float((bar.ends.mean(axis=0) - centre) @ look.near) / extent
-        _draw_link(axes, bar.ends @ plane, bar.role, 3 + 0.4 * depth, pen)
+        _draw_link(axes, bar.ends @ look.plane, bar.role, 3 + 0.4 * depth, pen)
+    joints = dict(zip(assembly.axes, points, strict=True))
+    spots = {name: point @ look.plane for name, point in joints.items()}
     for name, point in joints.items():
         depth = float((point - centre) @ look.near) / extent
-        offset = assembly.offset(name) @ plane
-        axes.plot(
-            *offset.T,
-            color=OFFSET_COLOR,
-            linewidth=pen.link,
-            zorder=3 + 0.4 * depth,
-        )
-        _draw_joint(axes, point @ plane, name in filled, pen)
-    lines = [bar.ends @ plane for bar in assembly.bars]
+        offset = assembly.offset(name) @ look.plane
+        style: Properties = {"color": OFFSET_COLOR, "linewidth": pen.link}
+        axes.plot(*offset.T, zorder=3 + 0.4 * depth, **style)
+        _draw_joint(axes, spots[name], name in filled, pen)
+    lines = [bar.ends @ look.plane for bar in assembly.bars]
     lines += axis_ends
     numbered = [name for name in assembly.axes if name not in unnumbered]
-    spots = {name: joints[name] @ plane for name in assembly.axes}
     write_names(axes, spots, numbered, lines, extent, pen)
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.08)
@@ -222,25 +189,17 @@ def _draw_axes(
     """Draw every joint axis with an arrow at its positive end; returns their ends (2,
     2) on paper."""
     drawn = []
+    style: Properties = {
+        "color": AXIS_COLOR,
+        "linewidth": pen.axis,
+        "mutation_scale": 2.2 * pen.dot * 0.7,
+        "shrinkA": 0,
+        "shrinkB": 0,
+    }
     for name, axis in assembly.axes.items():
-        offset = assembly.offset(name)
-        ends = offset + np.array([[-reach], [reach]]) * axis.direction
+        ends = assembly.offset(name) + np.array([[-reach], [reach]]) * axis.direction
         spots = ends @ plane
-        axes.annotate(
-            "",
-            xy=tuple(spots[1]),
-            xytext=tuple(spots[0]),
-            arrowprops={
-                "arrowstyle": "-|>",
-                "color": AXIS_COLOR,
-                "linewidth": pen.axis,
-                "mutation_scale": 2.2 * pen.dot * 0.7,
-                "shrinkA": 0,
-                "shrinkB": 0,
-            },
-            zorder=2,
-            annotation_clip=False,
-        )
+        draw_arrow(axes, spots, style, zorder=2, annotation_clip=False)
         axes.plot(*spots.T, alpha=0)  # the frame holds the whole axis
         drawn.append(spots)
     return drawn
@@ -275,10 +234,28 @@ def _draw_link(
     )
 
 
+def draw_arrow(
+    axes: Axes, spots: np.ndarray, style: Properties, **options: Any
+) -> None:
+    """Draw an arrow from the first to the last of the spots (2, 2)."""
+    arrow = {"arrowstyle": "-|>", **style}
+    start, end = spots.tolist()
+    axes.annotate("", xy=end, xytext=start, arrowprops=arrow, **options)
+
+
 def write_at(axes: Axes, spot: np.ndarray, text: str, **style: Any) -> None:
     """Write a text on a spot (2,), in the middle unless the style says otherwise."""
     x, y = spot.tolist()
-    axes.text(x, y, text, **{"ha": "center", "va": "center", **style})
+    axes.text(x, y, text, **{**CENTERED, **style})
+
+
+def write_beside(
+    axes: Axes, spot: np.ndarray, text: str, shift: np.ndarray, **style: Any
+) -> None:
+    """Write a text off a spot (2,), by a ``shift`` (2,) in points, in the middle."""
+    place, offset = tuple(spot.tolist()), tuple(shift.tolist())
+    options = {"fontsize": 9, **CENTERED, **style}
+    axes.annotate(text, place, offset, textcoords="offset points", **options)
 
 
 def write_names(
@@ -300,7 +277,7 @@ def write_names(
         best = None
         for factor in (1.0, 1.5):
             places = spots[name] + factor * NUMBER_DISTANCE * extent * ring
-            to_lines = _to_segments(places, segments).min(axis=1)
+            to_lines = distances_to_segments(places, segments).min(axis=1)
             to_spots = _to_spots(places, all_spots)
             to_names = FROM_NUMBERS * _to_spots(places, taken)
             nearest = np.minimum(np.minimum(to_lines, to_spots), to_names)
@@ -311,7 +288,7 @@ def write_names(
         assert best is not None
         taken = np.vstack([taken, best[1]])
         axes.plot(*best[1], alpha=0)  # the frame holds the number
-        style = {"fontsize": pen.text, "zorder": 6, "path_effects": HALO}
+        style: Properties = {"fontsize": pen.text, "zorder": 6, "path_effects": HALO}
         write_at(axes, best[1], name, **style)
 
 

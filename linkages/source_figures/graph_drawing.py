@@ -3,6 +3,7 @@ all others in the middle of their neighbours (Tutte 1963), links with their name
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import networkx as nx
@@ -27,7 +28,7 @@ LETTER_STEP = 0.16  # how far a letter may move aside, where the ring has radius
 LETTER_PLACES = 8  # around where it belongs
 
 
-def places_of(assembly: Assembly, ring: tuple[str, ...]) -> dict[str, np.ndarray]:
+def places_of(assembly: Assembly, ring: Sequence[str]) -> dict[str, np.ndarray]:
     """Where each joint stands (2,): those of the ``ring`` on a circle, those with a seat
     on their link, every other one in the middle of its neighbours."""
     start = np.pi / 2 + np.pi / len(ring)
@@ -93,14 +94,14 @@ def _separated(places: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 def draw_graph(
     axes: Axes,
     assembly: Assembly,
-    ring: tuple[str, ...],
+    ring: Sequence[str],
+    letters: Mapping[str, str],
     *,
-    filled: tuple[str, ...] = (),
-    unnumbered: tuple[str, ...] = (),
-    letters: tuple[tuple[str, tuple[str, ...]], ...] = (),
+    filled: Sequence[str] = (),
+    unnumbered: Sequence[str] = (),
 ) -> None:
     """Draw the graph of an assembly; ``letters`` name parts of it, each in the middle
-    of its joints."""
+    of its joints, as "1 2 X"."""
     places = places_of(assembly, ring)
     taken = list(places.values())  # joints, and names that stand already
     outside: list[np.ndarray] = []
@@ -125,8 +126,8 @@ def draw_graph(
     for joint, place in places.items():
         text = "" if joint in unnumbered else joint
         _draw_joint(axes, place, text, joint in filled)
-    for letter, joints in letters:
-        middle = np.mean([places[name] for name in joints], axis=0)
+    for letter, joints in letters.items():
+        middle = np.mean([places[name] for name in joints.split()], axis=0)
         place = _place_of_letter(middle, np.array([*taken, *outside]))
         write_at(axes, place, letter, fontsize=11, zorder=4)
     axes.set_aspect("equal")

@@ -4,38 +4,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from scipy.spatial.transform import Rotation
 
-from linkages.source_figures.drawing import LARGE, look_along, write_names
-from linkages.source_figures.table import Content, SourceFigure
+from bifurc.figures.style import Properties
+from linkages.source_figures.assembly import UP, turn
+from linkages.source_figures.drawing import (
+    LARGE,
+    draw_arrow,
+    look_along,
+    write_names,
+)
+from linkages.source_figures.table import SourceFigure
 
-LOOK = look_along(np.array([1.0, -0.8, 0.75]), np.array([0.0, 0.0, 1.0]))
+LOOK = look_along(np.array([1.0, -0.8, 0.75]))
 TURN = np.linspace(0.0, 2 * np.pi, 181)
 CIRCLES = 36  # of which the surface is drawn
 POINT_ANGLE = 0.9  # of S on its circle, rad
 FIRST_COLOR = "#0072B2"
 SECOND_COLOR = "#D55E00"
-
-
-def _rx(angle: float) -> np.ndarray:
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
-
-
-def _ry(angle: float) -> np.ndarray:
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
-
-
-def _rz(angle: float) -> np.ndarray:
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
 
 
 @dataclass(frozen=True)
@@ -50,20 +43,26 @@ class Torus:
 
     def centre(self, sigma: float) -> np.ndarray:
         """R (3,) at the angle ``sigma`` about the axis of the torus, rad."""
-        return np.asarray(_rz(sigma) @ np.array([self.r, 0.0, 0.0]))
+        return turn(np.array([self.r, 0.0, 0.0]), UP, sigma)
 
     def axis(self, sigma: float) -> np.ndarray:
         """The axis (3,) of the circle there, a unit vector."""
-        return np.asarray(_rz(sigma) @ self._tilt()[:, 2])
+        return turn(self._tilt.apply(UP), UP, sigma)
 
     def points(self, sigma: float, phi: np.ndarray) -> np.ndarray:
         """Points (k, 3) of the circle at angles (k,), rad."""
-        flat = np.stack([np.cos(phi), np.sin(phi), np.zeros_like(phi)])
-        placed = self._tilt() @ (self.s * flat) + np.array([[self.r], [0.0], [0.0]])
-        return np.asarray((_rz(sigma) @ placed).T)
+        flat = np.column_stack([np.cos(phi), np.sin(phi), np.zeros_like(phi)])
+        placed = self._tilt.apply(self.s * flat) + np.array([self.r, 0.0, 0.0])
+        return np.asarray(Rotation.from_euler("z", sigma).apply(placed))
 
-    def _tilt(self) -> np.ndarray:
-        return np.asarray(_rx(self.chi) @ _ry(self.theta))
+    def point(self, sigma: float, phi: float) -> np.ndarray:
+        """The point (3,) of the circle at an angle, rad."""
+        (point,) = self.points(sigma, np.array([phi]))
+        return np.asarray(point)
+
+    @property
+    def _tilt(self) -> Rotation:
+        return Rotation.from_euler("XY", [self.chi, self.theta])
 
 
 def companion_torus(torus: Torus) -> Torus:
@@ -117,7 +116,7 @@ def draw(source: SourceFigure) -> Figure:
     """The drawing that the figure names."""
     content = source.content
     torus = Torus(*(float(content[key]) for key in ("r1", "s1", "chi1", "theta1")))
-    return CHARTS[content["chart"]](torus, content)
+    return CHARTS[content["chart"]](torus)
 
 
 class TorusDrawing:
@@ -127,11 +126,10 @@ class TorusDrawing:
     def __init__(self, axes: Axes, torus: Torus):
         self.axes = axes
         self.extent = torus.r + torus.s
-        self.plane = np.stack([LOOK.right, LOOK.up], axis=1)
         self.spots: dict[str, np.ndarray] = {}
         self.lines: list[np.ndarray] = []
         for sigma in np.linspace(0, 2 * np.pi, CIRCLES, endpoint=False):
-            spots = torus.points(sigma, TURN) @ self.plane
+            spots = torus.points(sigma, TURN) @ LOOK.plane
             axes.plot(*spots.T, color="0.88", linewidth=0.6, zorder=1)
 
     def draw_arm(
@@ -139,37 +137,17 @@ class TorusDrawing:
     ) -> None:
         """The circle at one place, with the lines Q R and R S, and its axis."""
         centre = torus.centre(sigma)
-        point = torus.points(sigma, np.array([phi]))[0]
         self._draw_line(torus.points(sigma, TURN), color=color, linewidth=1.4)
-        chain = np.stack([np.zeros(3), centre, point])
+        chain = np.stack([np.zeros(3), centre, torus.point(sigma, phi)])
         self._draw_line(chain, color=color, linewidth=2.4, zorder=4)
-        self.draw_vector(centre, torus.axis(sigma), f"Z{number}1")
-        self.draw_point(centre, f"R{number}")
+        self._draw_vector(centre, torus.axis(sigma), f"Z{number}1")
+        self._draw_point(centre, f"R{number}")
 
-    def draw_vector(self, point: np.ndarray, direction: np.ndarray, name: str) -> None:
-        """An arrow through a point (3,), named at its head."""
-        ends = np.stack([point - 0.25 * direction, point + 0.65 * direction])
-        spots = ends @ self.plane
-        self.axes.annotate(
-            "",
-            xy=tuple(spots[1]),
-            xytext=tuple(spots[0]),
-            arrowprops={"arrowstyle": "-|>", "color": "0.35", "linewidth": 1.0},
-            zorder=5,
-        )
-        self.lines.append(spots)
-        self.spots[name] = spots[1]
-
-    def draw_point(self, point: np.ndarray, name: str) -> None:
-        """A point (3,) with its name."""
-        spot = point @ self.plane
-        self.axes.plot(
-            *spot, "o", markerfacecolor="white", markeredgecolor="black", zorder=6
-        )
-        self.spots[name] = spot
-
-    def finish(self, title: str) -> None:
-        """Write the names and the title."""
+    def finish(self, point: np.ndarray, title: str) -> None:
+        """Draw the axis, Q on it and the ``point`` S, and write names and title."""
+        self._draw_vector(np.zeros(3), UP, "Z")
+        self._draw_point(np.zeros(3), "Q")
+        self._draw_point(point, "S")
         names = list(self.spots)
         write_names(self.axes, self.spots, names, self.lines, self.extent, LARGE)
         self.axes.set_title(title, fontsize=9)
@@ -177,57 +155,64 @@ class TorusDrawing:
         self.axes.margins(0.04)
         self.axes.set_axis_off()
 
+    def _draw_vector(self, point: np.ndarray, direction: np.ndarray, name: str) -> None:
+        """An arrow through a point (3,), named at its head."""
+        ends = np.stack([point - 0.25 * direction, point + 0.65 * direction])
+        spots = ends @ LOOK.plane
+        draw_arrow(self.axes, spots, {"color": "0.35", "linewidth": 1.0}, zorder=5)
+        self.lines.append(spots)
+        self.spots[name] = spots[1]
+
+    def _draw_point(self, point: np.ndarray, name: str) -> None:
+        """A point (3,) with its name."""
+        spot = point @ LOOK.plane
+        style: Properties = {"markerfacecolor": "white", "markeredgecolor": "black"}
+        self.axes.plot(*spot, "o", zorder=6, **style)
+        self.spots[name] = spot
+
     def _draw_line(self, points: np.ndarray, **style: Any) -> None:
-        spots = points @ self.plane
+        spots = points @ LOOK.plane
         self.axes.plot(*spots.T, **style)
         self.lines += [np.stack(pair) for pair in pairwise(spots)]
 
 
-def _point(torus: Torus, content: Content) -> Figure:
+def _point(torus: Torus) -> Figure:
     """One point S by each of the two circles through it."""
     figure = Figure(figsize=(9.0, 4.4), layout="constrained")
-    other = companion_torus(torus)
-    titles = ("(a) r larger than s", "(b) r smaller than s")
-    pairs = ((torus, FIRST_COLOR), (other, SECOND_COLOR))
-    for number, (axes, (one, color)) in enumerate(
-        zip(figure.subplots(1, 2), pairs, strict=True), start=1
-    ):
+    arms = (
+        (torus, FIRST_COLOR, "(a) r larger than s"),
+        (companion_torus(torus), SECOND_COLOR, "(b) r smaller than s"),
+    )
+    panels = zip(figure.subplots(1, 2), arms, strict=True)
+    for number, (axes, (one, color, title)) in enumerate(panels, start=1):
         drawing = TorusDrawing(axes, one)
         drawing.draw_arm(one, 0.5, POINT_ANGLE, number, color)
-        drawing.draw_vector(np.zeros(3), np.array([0, 0, 1.0]), "Z")
-        drawing.draw_point(np.zeros(3), "Q")
-        drawing.draw_point(one.points(0.5, np.array([POINT_ANGLE]))[0], "S")
-        drawing.finish(titles[number - 1])
+        drawing.finish(one.point(0.5, POINT_ANGLE), title)
     return figure
 
 
-def _variants(torus: Torus, content: Content) -> Figure:
+def _variants(torus: Torus) -> Figure:
     """The 4R linkage Q, R1, S, R2 with either circle of each of the two radii: one and
     its mirror image in the plane of Q, phi reversed with it."""
     figure = Figure(figsize=(9.0, 8.6), layout="constrained")
     other = companion_torus(torus)
-    panels = figure.subplots(2, 2).flat
     names = {1: "", -1: "-"}
     combinations = [(1, 1), (1, -1), (-1, 1), (-1, -1)]
-    for axes, (first, second) in zip(panels, combinations, strict=True):
-        one = Torus(torus.r, torus.s, first * torus.chi, torus.theta)
-        two = Torus(other.r, other.s, second * other.chi, other.theta)
-        phi_one = first * POINT_ANGLE
-        phi_two = second * POINT_ANGLE
-        ours = one.points(0.0, np.array([phi_one]))[0]
-        theirs = two.points(0.0, np.array([phi_two]))[0]
-        turn = np.arctan2(ours[1], ours[0]) - np.arctan2(theirs[1], theirs[0])
+    panels = zip(figure.subplots(2, 2).flat, combinations, strict=True)
+    for axes, (first, second) in panels:
+        one = replace(torus, chi=first * torus.chi)
+        two = replace(other, chi=second * other.chi)
+        ours = one.point(0.0, first * POINT_ANGLE)
+        theirs = two.point(0.0, second * POINT_ANGLE)
+        angle = np.arctan2(ours[1], ours[0]) - np.arctan2(theirs[1], theirs[0])
         drawing = TorusDrawing(axes, one)
-        drawing.draw_arm(one, 0.0, phi_one, 1, FIRST_COLOR)
-        drawing.draw_arm(two, turn, phi_two, 2, SECOND_COLOR)
-        drawing.draw_vector(np.zeros(3), np.array([0, 0, 1.0]), "Z")
-        drawing.draw_point(np.zeros(3), "Q")
-        drawing.draw_point(ours, "S")
-        drawing.finish(f"{names[first]}χ₁, {names[second]}χ₂")
+        drawing.draw_arm(one, 0.0, first * POINT_ANGLE, 1, FIRST_COLOR)
+        drawing.draw_arm(two, angle, second * POINT_ANGLE, 2, SECOND_COLOR)
+        drawing.finish(ours, f"{names[first]}χ₁, {names[second]}χ₂")
     return figure
 
 
-CHARTS: dict[str, Callable[[Torus, Content], Figure]] = {
+CHARTS: dict[str, Callable[[Torus], Figure]] = {
     "point": _point,
     "variants": _variants,
 }

@@ -16,18 +16,24 @@ from bifurc.figures.drawing import draw_forms, draw_marks
 from bifurc.figures.planes import Plane, plane_of
 from bifurc.figures.plotting import plot_transition_map
 from bifurc.figures.style import form_style
-from linkages.loop import Loop
 from linkages.source_figures.assembly import loop_assembly
+from linkages.source_figures.assembly_figure import draw_row
 from linkages.source_figures.configurations import (
     atlas_of,
     form_named,
     loop_of_content,
 )
-from linkages.source_figures.drawing import SMALL, common_look, draw_assembly
+from linkages.source_figures.drawing import write_beside
 from linkages.source_figures.table import Content, SourceFigure
 
 ALONG = (0.25, 0.5, 0.75)  # of an arc: where a form is shown
 COLUMNS = 4
+LETTER_BOX = {
+    "boxstyle": "circle,pad=0.1",
+    "facecolor": "white",
+    "alpha": 0.8,
+    "linewidth": 0,
+}
 SNAPSHOT = 1.45  # width and height, in inches
 
 
@@ -42,7 +48,8 @@ class Stop(NamedTuple):
 
 def draw(source: SourceFigure) -> Figure:
     """The map at the left and, where the figure has a tour, its configurations at the
-    right."""
+    right, all seen from the same side of the link between the last joint and the
+    first."""
     content = source.content
     atlas = atlas_of(content)
     horizontal, vertical = content["axes"]
@@ -63,15 +70,18 @@ def draw(source: SourceFigure) -> Figure:
         squeeze=False,
         gridspec_kw={"left": left, "right": 0.995, "bottom": 0.01, "top": 0.96},
     )
-    _draw_stops(list(grid.flat), loop_of_content(content), stops)
+    loop = loop_of_content(content)
+    assemblies = [loop_assembly(loop, stop.theta) for stop in stops]
+    letters = zip(ascii_lowercase, stops, strict=False)
+    titles = [f"({letter}) {stop.place}" for letter, stop in letters]
+    draw_row(list(grid.flat), assemblies, titles, 7.5)
     return figure
 
 
 def _draw_form_names(axes: Axes, atlas: Atlas) -> None:
     """The names of the forms below the map, by the lines that it has for them."""
     for index, form in enumerate(atlas.forms):
-        style = form_style(index)
-        axes.plot([], [], color=style.color, linestyle=style.dashes, label=form.name)
+        axes.plot([], [], label=form.name, **form_style(index).line)
     axes.legend(
         loc="upper left", bbox_to_anchor=(-0.05, -0.14), frameon=False, handlelength=3.2
     )
@@ -85,39 +95,7 @@ def _draw_map(axes: Axes, atlas: Atlas, plane: Plane, stops: Sequence[Stop]) -> 
         if not stop.is_bifurcation:
             axes.plot(*spot, "o", color="black", markersize=3, zorder=5)
         inwards = -np.sign(np.where(np.abs(spot) > 150, spot, -1.0))
-        axes.annotate(
-            letter,
-            tuple(spot),
-            tuple(8 * inwards),
-            textcoords="offset points",
-            ha="center",
-            va="center",
-            fontsize=9,
-            zorder=6,
-            bbox={
-                "boxstyle": "circle,pad=0.1",
-                "facecolor": "white",
-                "alpha": 0.8,
-                "linewidth": 0,
-            },
-        )
-
-
-def _draw_stops(panels: list[Axes], loop: Loop, stops: Sequence[Stop]) -> None:
-    """A drawing a configuration, all seen from the same side of the link between the
-    last joint and the first."""
-    names = [str(i + 1) for i in range(loop.n)]
-    assemblies = [
-        loop_assembly(loop, stop.theta, names, [""] * loop.n) for stop in stops
-    ]
-    look = common_look(assemblies)
-    for axes in panels:
-        axes.set_axis_off()
-    for axes, letter, stop, assembly in zip(
-        panels, ascii_lowercase, stops, assemblies, strict=False
-    ):
-        draw_assembly(axes, assembly, look, pen=SMALL)
-        axes.set_title(f"({letter}) {stop.place}", fontsize=7.5, pad=2)
+        write_beside(axes, spot, letter, 8 * inwards, zorder=6, bbox=LETTER_BOX)
 
 
 # --- the tour -------------------------------------------------------------------------

@@ -4,6 +4,8 @@ sections 3 and 4)."""
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
 from bifurc.figures.planes import Scale, cut_to_frame
-from bifurc.figures.style import form_style
+from bifurc.figures.style import Properties, form_style
 from linkages.closed_forms.translator import (
     Stroke,
     joint_axes,
@@ -22,7 +24,14 @@ from linkages.closed_forms.translator import (
     stroke_angles,
     upright,
 )
-from linkages.source_figures.drawing import HALO, look_along
+from linkages.source_figures.drawing import (
+    HALO,
+    LINE_COLOR,
+    Look,
+    draw_arrow,
+    look_along,
+    write_beside,
+)
 from linkages.source_figures.table import Content, SourceFigure
 
 DEGREES = 180.0 / np.pi
@@ -34,6 +43,9 @@ DASHES = {Stroke.SHORT: "-", Stroke.LONG: (0, (6, 2))}
 ROUND = Scale(DEGREES, 180.0, "")
 PLAIN = Scale(1.0, np.inf, "")
 RING = [0, 1, 2, 3, 4, 5, 0]
+OBLIQUE = look_along(np.array([1.0, -0.55, 0.42]))
+ABOVE = look_along(np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0]))
+Ordinate: TypeAlias = Callable[[np.ndarray, np.ndarray, float], np.ndarray]
 
 
 def draw(source: SourceFigure) -> Figure:
@@ -46,50 +58,55 @@ def _one_panel(width: float = 6.2, height: float = 4.2) -> tuple[Figure, Axes]:
     return figure, figure.subplots()
 
 
+def _draw_legend(axes: Axes) -> None:
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False)
+
+
 # --- charts ---------------------------------------------------------------------------
-
-
-def _closed_curves(alpha: float) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Angles theta and phi (k,), rad, along both strokes and their mirror images, which
-    together are all of the motion."""
-    out = []
-    for stroke in Stroke:
-        theta, phi = stroke_angles(alpha, stroke, COUNT)
-        out.append((theta, phi))
-        out.append((-theta, -phi))
-    return out
 
 
 def _angles(content: Content) -> Figure:
     """phi against theta."""
     figure, axes = _one_panel(5.4, 4.2)
-    for index, degrees in enumerate(content["twists"]):
-        style = form_style(index)
-        for number, curve in enumerate(_closed_curves(np.radians(degrees))):
-            rows = cut_to_frame(np.stack(curve, axis=1), (ROUND, ROUND))
-            label = f"α = {degrees}°" if number == 0 else "_"
-            axes.plot(*rows.T, color=style.color, linestyle=style.dashes, label=label)
-    _mark_degrees(axes, both=True)
-    axes.set(xlabel="θ (deg)", ylabel="φ (deg)", box_aspect=1)
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False)
+    _draw_motions(axes, content, lambda theta, phi, alpha: phi, ROUND)
+    axes.set_ylim(-180, 180)
+    axes.yaxis.set_major_locator(MultipleLocator(60))
+    axes.set(ylabel="φ (deg)", box_aspect=1)
     return figure
 
 
 def _height(content: Content) -> Figure:
     """The coordinate z of O3 against theta."""
     figure, axes = _one_panel()
+
+    def height(theta: np.ndarray, phi: np.ndarray, alpha: float) -> np.ndarray:
+        return joint_centres(theta, phi, alpha)[:, 2, 2]
+
+    _draw_motions(axes, content, height, PLAIN)
+    axes.set(ylabel="z of O₃ / a")
+    return figure
+
+
+def _draw_motions(
+    axes: Axes, content: Content, ordinate: Ordinate, scale: Scale
+) -> None:
+    """An ordinate against theta along both strokes and their mirror images, which
+    together are all of the motion, for several twists."""
     for index, degrees in enumerate(content["twists"]):
         style = form_style(index)
         alpha = np.radians(degrees)
-        for number, (theta, phi) in enumerate(_closed_curves(alpha)):
-            height = joint_centres(theta, phi, alpha)[:, 2, 2]
-            rows = cut_to_frame(np.stack([theta, height], axis=1), (ROUND, PLAIN))
-            label = f"α = {degrees}°" if number == 0 else "_"
-            axes.plot(*rows.T, color=style.color, linestyle=style.dashes, label=label)
-    _mark_degrees(axes)
-    axes.set(xlabel="θ (deg)", ylabel="z of O₃ / a")
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False)
-    return figure
+        label = f"α = {degrees}°"
+        for stroke in Stroke:
+            angles = np.stack(stroke_angles(alpha, stroke, COUNT))
+            for theta, phi in (angles, -angles):
+                points = np.stack([theta, ordinate(theta, phi, alpha)], axis=1)
+                rows = cut_to_frame(points, (ROUND, scale))
+                axes.plot(*rows.T, label=label, **style.line)
+                label = "_"
+    axes.set(xlim=(-180, 180), xlabel="θ (deg)")
+    axes.xaxis.set_major_locator(MultipleLocator(60))
+    axes.grid(True)
+    _draw_legend(axes)
 
 
 def _distances(content: Content) -> Figure:
@@ -98,13 +115,11 @@ def _distances(content: Content) -> Figure:
     figure = Figure(figsize=(9.4, 3.9), layout="constrained")
     left, right = figure.subplots(1, 2)
     for index, length in enumerate(content["lengths"]):
-        _draw_distance(left, right, degrees, length, index, f"a = {length}")
+        _draw_distance(right, left, degrees, length, index, f"a = {length}")
     left.set(xlabel="θ (deg)", ylabel="H", xlim=(0, 240), ylim=(0, None))
     left.xaxis.set_major_locator(MultipleLocator(30))
-    right.set(xlabel="b", ylabel="H", xlim=(0, None), ylim=(0, None))
-    for axes in (left, right):
-        axes.grid(True)
-    right.legend(loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False)
+    left.grid(True)
+    _finish_slides(right)
     return figure
 
 
@@ -113,16 +128,21 @@ def _distances_by_twist(content: Content) -> Figure:
     (length,) = content["lengths"]
     figure, axes = _one_panel()
     for index, degrees in enumerate(content["twists"]):
-        _draw_distance(None, axes, degrees, length, index, f"α = {degrees}°")
-    axes.set(xlabel="b", ylabel="H", xlim=(0, None), ylim=(0, None))
-    axes.grid(True)
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), frameon=False)
+        _draw_distance(axes, None, degrees, length, index, f"α = {degrees}°")
+    _finish_slides(axes)
     return figure
 
 
+def _finish_slides(axes: Axes) -> None:
+    """Names, limits and the legend of a chart of H against b."""
+    axes.set(xlabel="b", ylabel="H", xlim=(0, None), ylim=(0, None))
+    axes.grid(True)
+    _draw_legend(axes)
+
+
 def _draw_distance(
-    by_angle: Axes | None,
     by_slide: Axes,
+    by_angle: Axes | None,
     degrees: float,
     length: float,
     index: int,
@@ -137,28 +157,17 @@ def _draw_distance(
         charts = [(by_slide, slide(theta, length))]
         if by_angle is not None:
             charts.append((by_angle, DEGREES * theta))
+        style: Properties = {
+            "color": color,
+            "linestyle": DASHES[stroke],
+            "linewidth": 1.6,
+        }
         touches = np.flatnonzero(phi >= np.pi)
         for axes, x in charts:
-            axes.plot(
-                x,
-                height,
-                color=color,
-                linestyle=DASHES[stroke],
-                linewidth=1.6,
-                label=f"{label}, {stroke} stroke",
-            )
+            axes.plot(x, height, label=f"{label}, {stroke} stroke", **style)
             if len(touches) and phi[-1] > np.pi:
                 first = touches[0]
                 axes.plot(x[first], height[first], "x", color=color, markersize=7)
-
-
-def _mark_degrees(axes: Axes, both: bool = False) -> None:
-    axes.set_xlim(-180, 180)
-    axes.xaxis.set_major_locator(MultipleLocator(60))
-    if both:
-        axes.set_ylim(-180, 180)
-        axes.yaxis.set_major_locator(MultipleLocator(60))
-    axes.grid(True)
 
 
 # --- drawings -------------------------------------------------------------------------
@@ -189,13 +198,9 @@ def _bodies(
     return placed, directions, upright(meetings, centres)
 
 
-OBLIQUE = look_along(np.array([1.0, -0.55, 0.42]), np.array([0.0, 0.0, 1.0]))
-ABOVE = look_along(np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0]))
-
-
-def _draw_mechanism(axes: Axes, centres: np.ndarray, plane: np.ndarray) -> None:
+def _draw_mechanism(axes: Axes, centres: np.ndarray, look: Look = OBLIQUE) -> None:
     """The six links and the joints with their names."""
-    spots = centres @ plane
+    spots = centres @ look.plane
     axes.plot(*spots[RING].T, color="black", linewidth=2.2, zorder=3)
     middle = spots.mean(axis=0)
     for number, spot in enumerate(spots, start=1):
@@ -203,40 +208,25 @@ def _draw_mechanism(axes: Axes, centres: np.ndarray, plane: np.ndarray) -> None:
         axes.plot(*spot, "o", markerfacecolor="white", markeredgecolor=color, zorder=4)
         away = spot - middle
         away = away / max(float(np.linalg.norm(away)), 1e-9)
-        axes.annotate(
-            f"O{chr(0x2080 + number)}",
-            tuple(spot),
-            tuple(13 * away),
-            textcoords="offset points",
-            ha="center",
-            va="center",
-            fontsize=9,
-            color=color,
-            zorder=5,
-            path_effects=HALO,
-        )
+        style: Properties = {"color": color, "zorder": 5, "path_effects": HALO}
+        write_beside(axes, spot, f"O{chr(0x2080 + number)}", 13 * away, **style)
     axes.set_aspect("equal")
     axes.margins(0.12)
     axes.set_axis_off()
 
 
-def _draw_plane(axes: Axes, centres: np.ndarray, plane: np.ndarray, color: str) -> None:
+def _draw_plane(axes: Axes, centres: np.ndarray, color: str) -> None:
     """The triangle of three joints (3, 3), shaded."""
-    axes.fill(*(centres @ plane).T, color=color, alpha=0.18, zorder=1)
-
-
-def _paper(look: tuple[np.ndarray, ...]) -> np.ndarray:
-    return np.stack([look[0], look[1]], axis=1)
+    axes.fill(*(centres @ OBLIQUE.plane).T, color=color, alpha=0.18, zorder=1)
 
 
 def _planes(content: Content) -> Figure:
     """The mechanism with both triangles."""
     figure, axes = _one_panel(5.4, 4.2)
     centres, _, _ = _bodies(content, content["theta"])
-    plane = _paper(OBLIQUE)
-    _draw_plane(axes, centres[0::2], plane, ODD_COLOR)
-    _draw_plane(axes, centres[1::2], plane, EVEN_COLOR)
-    _draw_mechanism(axes, centres, plane)
+    _draw_plane(axes, centres[0::2], ODD_COLOR)
+    _draw_plane(axes, centres[1::2], EVEN_COLOR)
+    _draw_mechanism(axes, centres)
     return figure
 
 
@@ -244,20 +234,19 @@ def _axes(content: Content) -> Figure:
     """The mechanism with its axes and the line on which they meet."""
     figure, axes = _one_panel(5.4, 5.2)
     centres, _, meetings = _bodies(content, content["theta"])
-    plane = _paper(OBLIQUE)
-    for parity, color in ((1, EVEN_COLOR), (0, ODD_COLOR)):
-        meeting = meetings[0 if parity else 1]
+    sides = ((1, meetings[0], EVEN_COLOR), (0, meetings[1], ODD_COLOR))
+    for parity, meeting, color in sides:
         for centre in centres[parity::2]:
             beyond = centre - 0.15 * (meeting - centre)
-            ends = np.stack([beyond, meeting]) @ plane
+            ends = np.stack([beyond, meeting]) @ OBLIQUE.plane
             axes.plot(*ends.T, color=color, linestyle="-.", linewidth=0.9, zorder=2)
-        _draw_plane(axes, centres[parity::2], plane, color)
-    line = meetings @ plane
-    axes.plot(*line.T, color="#009E73", linewidth=1.8, zorder=2)
+        _draw_plane(axes, centres[parity::2], color)
+    line = meetings @ OBLIQUE.plane
+    axes.plot(*line.T, color=LINE_COLOR, linewidth=1.8, zorder=2)
     for name, spot in zip(("O'", "O''"), line, strict=True):
-        axes.plot(*spot, "s", color="#009E73", markersize=4, zorder=4)
-        axes.annotate(name, tuple(spot), (9, 4), textcoords="offset points", fontsize=9)
-    _draw_mechanism(axes, centres, plane)
+        axes.plot(*spot, "s", color=LINE_COLOR, markersize=4, zorder=4)
+        _name(axes, spot, name, (9, 4))
+    _draw_mechanism(axes, centres)
     return figure
 
 
@@ -265,23 +254,29 @@ def _disposition(content: Content) -> Figure:
     """The mechanism over the three lines on which O1, O3, O5 slide, with H and b."""
     figure, axes = _one_panel(6.0, 4.4)
     centres, _, _ = _bodies(content, content["theta"])
-    plane = _paper(OBLIQUE)
-    _draw_slides(axes, plane)
-    _draw_plane(axes, centres[1::2], plane, EVEN_COLOR)
-    _draw_mechanism(axes, centres, plane)
+    _draw_slides(axes, OBLIQUE.plane)
+    _draw_plane(axes, centres[1::2], EVEN_COLOR)
+    _draw_mechanism(axes, centres)
     top = centres[1::2].mean(axis=0)
-    ends = np.stack([0 * top, top]) @ plane
-    axes.annotate(
-        "",
-        xy=tuple(ends[1]),
-        xytext=tuple(ends[0]),
-        arrowprops={"arrowstyle": "<->", "shrinkA": 0, "shrinkB": 0},
-    )
-    axes.annotate(
-        "H", tuple(ends.mean(axis=0)), (7, 0), textcoords="offset points", fontsize=9
-    )
-    _draw_slide_of_first(axes, centres[0], plane)
+    below = np.array([0.0, 0.0, -0.08])
+    first_place = np.array([2 / np.sqrt(3), 0.0, 0.0])
+    _draw_measure(axes, np.zeros(3), top, "H", (7, 0))
+    _draw_measure(axes, first_place + below, centres[0] + below, "b", (0, -9))
     return figure
+
+
+def _draw_measure(
+    axes: Axes, start: np.ndarray, end: np.ndarray, name: str, shift: tuple[int, int]
+) -> None:
+    """A distance of two points (3,), with its name."""
+    ends = np.stack([start, end]) @ OBLIQUE.plane
+    draw_arrow(axes, ends, {"arrowstyle": "<->", "shrinkA": 0, "shrinkB": 0})
+    _name(axes, ends.mean(axis=0), name, shift)
+
+
+def _name(axes: Axes, spot: np.ndarray, name: str, shift: tuple[int, int]) -> None:
+    """A name that begins off a spot (2,), by a ``shift`` in points."""
+    write_beside(axes, spot, name, np.array(shift), ha="left", va="baseline")
 
 
 def _draw_slides(axes: Axes, plane: np.ndarray) -> None:
@@ -295,41 +290,15 @@ def _draw_slides(axes: Axes, plane: np.ndarray) -> None:
         axes.plot(*ends[1], "|", color=AXIS_COLOR, zorder=1)
 
 
-def _draw_slide_of_first(axes: Axes, first: np.ndarray, plane: np.ndarray) -> None:
-    """How far O1 has slid."""
-    start = np.array([2 / np.sqrt(3), 0.0, 0.0])
-    below = np.array([0.0, 0.0, -0.08])
-    ends = np.stack([start + below, first + below]) @ plane
-    axes.annotate(
-        "",
-        xy=tuple(ends[1]),
-        xytext=tuple(ends[0]),
-        arrowprops={"arrowstyle": "<->", "shrinkA": 0, "shrinkB": 0},
-    )
-    axes.annotate(
-        "b", tuple(ends.mean(axis=0)), (0, -9), textcoords="offset points", fontsize=9
-    )
-
-
-def _above(content: Content) -> Figure:
-    """Several configurations from above."""
-    return _row(content, ABOVE)
-
-
-def _positions(content: Content) -> Figure:
-    """Several configurations, seen obliquely."""
-    return _row(content, OBLIQUE)
-
-
-def _row(content: Content, look: tuple[np.ndarray, ...]) -> Figure:
+def _row(content: Content, look: Look) -> Figure:
+    """Several configurations."""
     angles = content["thetas"]
-    plane = _paper(look)
     figure = Figure(figsize=(2.75 * len(angles), 2.9), layout="constrained")
     panels = figure.subplots(1, len(angles))
     for axes, degrees in zip(panels, angles, strict=True):
         centres, _, _ = _bodies(content, degrees)
-        _draw_slides(axes, plane)
-        _draw_mechanism(axes, centres, plane)
+        _draw_slides(axes, look.plane)
+        _draw_mechanism(axes, centres, look)
         axes.set_title(f"θ = {degrees}°", fontsize=9)
         axes.set(xlim=(-1.55, 1.55), ylim=(-1.4, 1.4))
     return figure
@@ -341,8 +310,8 @@ CHARTS: dict[str, Callable[[Content], Figure]] = {
     "planes": _planes,
     "axes": _axes,
     "disposition": _disposition,
-    "above": _above,
-    "positions": _positions,
+    "above": partial(_row, look=ABOVE),
+    "positions": partial(_row, look=OBLIQUE),
     "distances": _distances,
     "distances_by_twist": _distances_by_twist,
 }

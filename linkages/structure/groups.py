@@ -4,15 +4,20 @@ spherical joints hold them."""
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
 from networkx.utils import UnionFind
 
 from linkages.decisions import meets_in_one_point
+from linkages.mechanisms.displacements import displacement_of
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.structure.cycles import Ends
+
+SPHERICAL = 3  # freedoms of a spherical pair
 
 
 @dataclass(frozen=True)
@@ -42,75 +47,117 @@ class JointPoint:
         return min(set(self.bodies) & set(group.bodies))
 
 
-def find_groups(
-    mechanism: Mechanism, ends: dict[int, Ends], points: tuple[JointPoint, ...]
-) -> tuple[Group, ...]:
-    """The groups of a mechanism whose pairs have these ``ends``."""
-    parts = UnionFind(range(len(mechanism.bodies)))
-    plain = {k: one for k, one in ends.items() if mechanism.pairs[k].center is None}
-    for base, moved, unknowns in plain.values():
-        if unknowns == 0:
-            parts.union(base, moved)
-    members: dict[int, list[int]] = defaultdict(list)
-    for body in range(len(mechanism.bodies)):
-        members[parts[body]].append(body)
-    groups = []
-    for bodies in members.values():
-        inside = set(bodies)
-        touching = {k: set(one[:2]) & inside for k, one in plain.items()}
-        groups.append(
-            Group(
-                bodies=tuple(bodies),
-                inner=tuple(k for k, both in touching.items() if len(both) == 2),
-                outer=tuple(k for k, both in touching.items() if len(both) == 1),
-                points=tuple(k for k, p in enumerate(points) if inside & {*p.bodies}),
-            )
+class Groups:
+    """The bodies of a ``mechanism`` as groups; lengths count in a ``unit``."""
+
+    def __init__(self, mechanism: Mechanism, unit: float):
+        self.mechanism = mechanism
+        self.unit = unit
+
+    @cached_property
+    def ends(self) -> dict[int, Ends]:
+        """The bodies and the number of unknowns of every pair."""
+        mechanism = self.mechanism
+        numbers = {body: number for number, body in enumerate(mechanism.bodies)}
+        ends = {}
+        for number, pair in enumerate(mechanism.pairs):
+            free = [k for k in pair.variables if mechanism.variables[k].locked is None]
+            count = len(free) if pair.center is None else SPHERICAL
+            ends[number] = Ends(numbers[pair.base], numbers[pair.moved], count)
+        return ends
+
+    @cached_property
+    def all(self) -> tuple[Group, ...]:
+        """The groups."""
+        parts = UnionFind(range(len(self.mechanism.bodies)))
+        for base, moved, unknowns in self.plain.values():
+            if unknowns == 0:
+                parts.union(base, moved)
+        return tuple(self._group(set(bodies)) for bodies in _sets(parts))
+
+    def _group(self, inside: set[int]) -> Group:
+        """The group of these bodies."""
+        touching = {k: set(one[:2]) & inside for k, one in self.plain.items()}
+        points = enumerate(self.points)
+        return Group(
+            bodies=tuple(sorted(inside)),
+            inner=tuple(k for k, both in touching.items() if len(both) == 2),
+            outer=tuple(k for k, both in touching.items() if len(both) == 1),
+            points=tuple(k for k, point in points if inside & {*point.bodies}),
         )
-    return tuple(groups)
+
+    @property
+    def of_body(self) -> dict[int, Group]:
+        """The group of every body, by number."""
+        return {body: group for group in self.all for body in group.bodies}
+
+    @cached_property
+    def plain(self) -> dict[int, Ends]:
+        """The ends of the pairs that are not spherical."""
+        pairs = self.mechanism.pairs
+        return {k: one for k, one in self.ends.items() if pairs[k].center is None}
+
+    @cached_property
+    def points(self) -> tuple[JointPoint, ...]:
+        """The points of spherical joints; joints of one body in one place have one
+        point. Bodies that joints hold as they are given are one."""
+        spherical = [k for k in self.ends if k not in self.plain]
+        same = UnionFind(spherical)
+        body_of = self._held_together()
+        for first, second in combinations(spherical, 2):
+            bodies = {body_of[body] for body in self.ends[first][:2]}
+            if bodies & {body_of[body] for body in self.ends[second][:2]}:
+                gap = self._center(first) - self._center(second)
+                if meets_in_one_point(float(np.linalg.norm(gap)), self.unit):
+                    same.union(first, second)
+        return tuple(self._point(sorted(pairs)) for pairs in _sets(same))
+
+    def _held_together(self) -> UnionFind:
+        """The bodies, by number, as parts that rigid joints and locks at 0 make one."""
+        mechanism = self.mechanism
+        parts = UnionFind(range(len(mechanism.bodies)))
+        for number, (base, moved, unknowns) in self.ends.items():
+            variables = mechanism.pairs[number].variables
+            is_turned = any(mechanism.variables[k].locked for k in variables)
+            if unknowns == 0 and not is_turned:
+                parts.union(base, moved)
+        return parts
+
+    def _point(self, pairs: list[int]) -> JointPoint:
+        joints = dict.fromkeys(self.mechanism.pairs[k].joint for k in pairs)
+        bodies = {body for k in pairs for body in self.ends[k][:2]}
+        center = self._center(pairs[0])
+        return JointPoint(center, tuple(pairs), tuple(joints), tuple(sorted(bodies)))
+
+    def _center(self, pair: int) -> np.ndarray:
+        center = self.mechanism.pairs[pair].center
+        assert center is not None
+        return center
+
+    def poses_inside(
+        self, start: int, pairs: Iterable[int], slide: int = -1
+    ) -> dict[int, np.ndarray]:
+        """The displacements (4, 4) of the bodies that ``pairs`` join, by number, with
+        respect to the body ``start``; the variable ``slide`` is at 0."""
+        poses = {start: np.eye(4)}
+        pending = list(pairs)
+        while pending:
+            number = pending.pop(0)
+            base, moved, _ = self.ends[number]
+            is_slide = slide in self.mechanism.pairs[number].variables
+            step = np.eye(4) if is_slide else displacement_of(self.mechanism, number)
+            if base in poses:
+                poses.setdefault(moved, poses[base] @ step)
+            elif moved in poses:
+                poses[base] = poses[moved] @ np.linalg.inv(step)
+            else:
+                pending.append(number)
+        return poses
 
 
-def find_points(
-    mechanism: Mechanism, ends: dict[int, Ends], unit: float
-) -> tuple[JointPoint, ...]:
-    """The points of the spherical joints of a mechanism whose pairs have these
-    ``ends``; joints of one body in one place, for lengths in this ``unit``, have one
-    point. Bodies that joints hold as they are given are one."""
-    spherical = [k for k in ends if mechanism.pairs[k].center is not None]
-    same = UnionFind(spherical)
-    body_of = _held_together(mechanism, ends)
-    for first, second in combinations(spherical, 2):
-        bodies = {body_of[body] for body in ends[first][:2]}
-        if bodies & {body_of[body] for body in ends[second][:2]}:
-            gap = _center(mechanism, first) - _center(mechanism, second)
-            if meets_in_one_point(float(np.linalg.norm(gap)), unit):
-                same.union(first, second)
+def _sets(parts: UnionFind) -> list[list[int]]:
+    """The members of every part, in the order of the first ones."""
     members: dict[int, list[int]] = defaultdict(list)
-    for number in spherical:
-        members[same[number]].append(number)
-    return tuple(_point(mechanism, ends, pairs) for pairs in members.values())
-
-
-def _held_together(mechanism: Mechanism, ends: dict[int, Ends]) -> UnionFind:
-    """The bodies, by number, as parts that rigid joints and locks at 0 make one."""
-    parts = UnionFind(range(len(mechanism.bodies)))
-    for number, (base, moved, unknowns) in ends.items():
-        locks = [
-            mechanism.variables[v].locked for v in mechanism.pairs[number].variables
-        ]
-        if unknowns == 0 and not any(locks):
-            parts.union(base, moved)
-    return parts
-
-
-def _point(mechanism: Mechanism, ends: dict[int, Ends], pairs: list[int]) -> JointPoint:
-    joints = dict.fromkeys(mechanism.pairs[k].joint for k in pairs)
-    bodies = {body for k in pairs for body in ends[k][:2]}
-    return JointPoint(
-        _center(mechanism, pairs[0]), tuple(pairs), tuple(joints), tuple(sorted(bodies))
-    )
-
-
-def _center(mechanism: Mechanism, pair: int) -> np.ndarray:
-    center = mechanism.pairs[pair].center
-    assert center is not None
-    return center
+    for one in parts:
+        members[parts[one]].append(one)
+    return list(members.values())

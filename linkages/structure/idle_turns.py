@@ -7,38 +7,31 @@ import numpy as np
 
 from linkages.decisions import meets_in_one_point
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.structure.cycles import Ends
-from linkages.structure.groups import Group, JointPoint
+from linkages.structure.groups import Group, Groups
 
 
-def find_idle_turn(
-    mechanism: Mechanism,
-    ends: dict[int, Ends],
-    groups: tuple[Group, ...],
-    points: tuple[JointPoint, ...],
-    unit: float,
-) -> str | None:
+def find_idle_turn(groups: Groups) -> str | None:
     """The label of a variable that moves nothing but a body or a chain of bodies about
-    its own line; None where there is none. Lengths count in the ``unit``.
+    its own line; None where there is none.
 
     A body that hangs on its neighbour by a turn and a spherical joint on the axis of it
     is a door, and no idle one.
     """
-    group_of = {body: group for group in groups for body in group.bodies}
-    for group in groups:
+    mechanism, ends = groups.mechanism, groups.ends
+    for group in groups.all:
         if len(group.outer) != 1 or len(group.points) != 1:
             continue
         (pair,) = group.outer
         is_moved = ends[pair].moved in group.bodies
-        neighbour = group_of[ends[pair].base if is_moved else ends[pair].moved]
+        neighbour = groups.of_body[ends[pair].base if is_moved else ends[pair].moved]
         is_door = group.points[0] in neighbour.points
         if is_door or _holds_locks(mechanism, group):
             continue
-        center = points[group.points[0]].center
+        center = groups.points[group.points[0]].center
         for number in _turns_beside(mechanism, pair, is_moved):
             motion = mechanism.variables[number].motion
             arm = np.cross(center - motion.point, motion.direction)
-            if meets_in_one_point(float(np.linalg.norm(arm)), unit):
+            if meets_in_one_point(float(np.linalg.norm(arm)), groups.unit):
                 return mechanism.variables[number].label
     return None
 

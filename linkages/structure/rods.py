@@ -14,10 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linkages.decisions import is_parallel_axis
-from linkages.mechanisms.displacements import displacement_of
-from linkages.mechanisms.mechanism import Mechanism
-from linkages.structure.cycles import Ends
-from linkages.structure.groups import Group, JointPoint
+from linkages.structure.groups import Group, Groups
 from linkages.values import GeometryError
 
 
@@ -84,47 +81,36 @@ class _Chain(NamedTuple):
         return tuple(sorted({*self.first.bodies, *self.second.bodies}))
 
 
-def find_rods(
-    mechanism: Mechanism,
-    ends: dict[int, Ends],
-    groups: tuple[Group, ...],
-    points: tuple[JointPoint, ...],
-) -> RodNet:
-    """The rods of a mechanism whose pairs have these ``ends``.
+def find_rods(groups: Groups) -> RodNet:
+    """The rods of a mechanism.
 
     Raises `GeometryError` for a body that spherical joints hold at one point only.
     """
-    group_of = {body: group for group in groups for body in group.bodies}
-    chains = []
-    for group in groups:
-        _check_held(mechanism, group, points)
-        chain = _chain_of(mechanism, ends, group, group_of, points)
-        if chain is not None:
-            chains.append(chain)
-    chains, remains = _with_a_body(mechanism, ends, groups, chains)
+    for group in groups.all:
+        _check_held(groups, group)
+    begun = [_chain_of(groups, group) for group in groups.all]
+    chains, remains = _with_a_body(groups, [one for one in begun if one is not None])
     in_rods = {body for chain in chains for body in chain.bodies}
     free: dict[int, int] = {}
     held: dict[int, int] = {}
-    for number, point in enumerate(points):
+    for number, point in enumerate(groups.points):
         bodies = [body for body in point.bodies if body not in in_rods]
         if bodies:
             held[number] = bodies[0]
         else:
-            free[number] = len(mechanism.bodies) + len(free)
+            free[number] = len(groups.mechanism.bodies) + len(free)
     body_at = held | free
-    rods = [_rod(mechanism, ends, chain, points, body_at) for chain in chains]
+    rods = [_rod(groups, chain, body_at) for chain in chains]
     return RodNet(tuple(rods), free, remains)
 
 
-def _check_held(
-    mechanism: Mechanism, group: Group, points: tuple[JointPoint, ...]
-) -> None:
+def _check_held(groups: Groups, group: Group) -> None:
     """Raises `GeometryError` for a group that hangs in one point by several joints."""
     if group.outer or len(group.points) != 1:
         return
-    joints = points[group.points[0]].joints
+    joints = groups.points[group.points[0]].joints
     if len(joints) > 1:
-        body = mechanism.bodies[group.bodies[0]]
+        body = groups.mechanism.bodies[group.bodies[0]]
         raise GeometryError(
             f"joints {' and '.join(joints)} of body {body}",
             "at one point",
@@ -133,40 +119,28 @@ def _check_held(
 
 
 def _with_a_body(
-    mechanism: Mechanism,
-    ends: dict[int, Ends],
-    groups: tuple[Group, ...],
-    chains: list[_Chain],
+    groups: Groups, chains: list[_Chain]
 ) -> tuple[list[_Chain], tuple[int, ...]]:
     """The chains that are rods, so that a body remains and something can move; and the
     bodies of the chain that remains a body."""
     in_chains = {group for chain in chains for group in chain.groups}
-    if len(in_chains) < len(groups):
+    if len(in_chains) < len(groups.all):
         return chains, ()
+    mechanism = groups.mechanism
     frame = mechanism.bodies.index(mechanism.frame)
     rigid = [chain for chain in chains if chain.slide is None] or chains
     remaining = next((c for c in rigid if frame in c.bodies), rigid[0])
     others = [chain for chain in chains if chain is not remaining]
-    is_free = any(one.unknowns for k, one in ends.items() if _is_plain(mechanism, k))
+    is_free = any(groups.ends[k].unknowns for k in groups.plain)
     if len({point for chain in chains for point in chain.points}) == 2 and not is_free:
         # nothing but bodies between the same two points: they turn about their line
         return [], ()
     return others, remaining.bodies
 
 
-def _is_plain(mechanism: Mechanism, pair: int) -> bool:
-    return mechanism.pairs[pair].center is None
-
-
-def _chain_of(
-    mechanism: Mechanism,
-    ends: dict[int, Ends],
-    group: Group,
-    group_of: dict[int, Group],
-    points: tuple[JointPoint, ...],
-) -> _Chain | None:
+def _chain_of(groups: Groups, group: Group) -> _Chain | None:
     """The rod that begins with a group; None where none does."""
-    if _has_free_joint(ends, group):
+    if _has_free_joint(groups, group):
         return None
     if not group.outer and len(group.points) == 2:
         first, second = group.points
@@ -174,35 +148,31 @@ def _chain_of(
     if len(group.outer) != 1 or len(group.points) != 1:
         return None
     (slide,) = group.outer
-    base, moved, unknowns = ends[slide]
-    other = group_of[moved if base in group.bodies else base]
+    base, moved, unknowns = groups.ends[slide]
+    other = groups.of_body[moved if base in group.bodies else base]
     if unknowns != 1 or len(other.outer) != 1 or len(other.points) != 1:
         return None
     # the same leg is met once more from its other end
     if other.bodies < group.bodies or other.points == group.points:
         return None
-    if _has_free_joint(ends, other):
+    if _has_free_joint(groups, other):
         return None
     chain = _Chain(group, other, (group.points[0], other.points[0]), slide)
-    leg = _leg(mechanism, ends, chain, points)
+    leg = _leg(groups, chain)
     return None if leg is None else chain._replace(leg=leg)
 
 
-def _has_free_joint(ends: dict[int, Ends], group: Group) -> bool:
+def _has_free_joint(groups: Groups, group: Group) -> bool:
     """Whether a joint inside a group is held by rigid ones beside it alone: it closes a
     loop, which a rod would leave out."""
-    return any(ends[k].unknowns for k in group.inner)
+    return any(groups.ends[k].unknowns for k in group.inner)
 
 
-def _leg(
-    mechanism: Mechanism,
-    ends: dict[int, Ends],
-    chain: _Chain,
-    points: tuple[JointPoint, ...],
-) -> Leg | None:
+def _leg(groups: Groups, chain: _Chain) -> Leg | None:
     """The slide of a leg; None where it is no slide along the leg, or where anything
     inside is locked elsewhere than at 0."""
     assert chain.slide is not None
+    mechanism, points = groups.mechanism, groups.points
     variables = mechanism.variables
     numbers = mechanism.pairs[chain.slide].variables
     inside = [v for k in _inner(chain) for v in mechanism.pairs[k].variables]
@@ -220,7 +190,7 @@ def _leg(
     if not is_parallel_axis(sine, size):
         return None
     sign = 1 if along @ motion.direction > 0 else -1
-    if ends[chain.slide].moved in chain.first.bodies:
+    if groups.ends[chain.slide].moved in chain.first.bodies:
         sign = -sign
     return Leg(free[0], sign)
 
@@ -233,17 +203,14 @@ def _inner(chain: _Chain) -> tuple[int, ...]:
     return tuple(sorted(inner))
 
 
-def _rod(
-    mechanism: Mechanism,
-    ends: dict[int, Ends],
-    chain: _Chain,
-    points: tuple[JointPoint, ...],
-    body_at: dict[int, int],
-) -> Rod:
-    first, second = (points[number] for number in chain.points)
+def _rod(groups: Groups, chain: _Chain, body_at: dict[int, int]) -> Rod:
+    first, second = (groups.points[number] for number in chain.points)
     far = second.center
     if chain.slide is None:
-        far = _second_center(mechanism, ends, chain.first, first, second)
+        # with the pairs inside locked where they are
+        start, goal = first.body_of(chain.first), second.body_of(chain.first)
+        pose = groups.poses_inside(start, chain.first.inner)[goal]
+        far = (pose @ np.append(second.center, 1.0))[:3]
     return Rod(
         parts=(chain.first.bodies, chain.second.bodies),
         points=chain.points,
@@ -254,26 +221,3 @@ def _rod(
         length=float(np.linalg.norm(far - first.center)),
         leg=chain.leg,
     )
-
-
-def _second_center(
-    mechanism: Mechanism,
-    ends: dict[int, Ends],
-    group: Group,
-    first: JointPoint,
-    second: JointPoint,
-) -> np.ndarray:
-    """Where the second point (3,) of a rod is with respect to the body at the first
-    one, with the pairs inside locked where they are."""
-    start, goal = first.body_of(group), second.body_of(group)
-    poses = {start: np.eye(4)}
-    while goal not in poses:
-        for k in group.inner:
-            base, moved, _ = ends[k]
-            step = displacement_of(mechanism, k)
-            if base in poses and moved not in poses:
-                poses[moved] = poses[base] @ step
-            elif moved in poses and base not in poses:
-                poses[base] = poses[moved] @ np.linalg.inv(step)
-    place: np.ndarray = (poses[goal] @ np.append(second.center, 1.0))[:3]
-    return place

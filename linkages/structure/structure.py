@@ -33,7 +33,7 @@ from linkages.structure.cycles import (
     cycle_basis,
 )
 from linkages.structure.free_points import FreePoint, free_points
-from linkages.structure.groups import Group, JointPoint, find_groups, find_points
+from linkages.structure.groups import SPHERICAL, Groups, JointPoint
 from linkages.structure.idle_turns import find_idle_turn
 from linkages.structure.placement import Placement
 from linkages.structure.rods import Rod, RodNet, find_rods
@@ -42,7 +42,7 @@ from linkages.values import GeometryError
 SLIDE_REACH = 2.0  # limits of a slide, over the lengths of the bodies around its cycle
 # limits, rad, of a turn that its coupling to others brings never back to where it was
 TURNS_REACH = 10 * 2 * np.pi
-SPHERICAL, FREE = 3, 6  # freedoms of a spherical pair and of a free one
+FREE = 6  # freedoms of a free pair
 # numbers of an embedded rotation, two orthonormal vectors, and of a translation
 ROTATION = ("ax", "ay", "az", "bx", "by", "bz")
 TRANSLATION = ("x", "y", "z")
@@ -147,29 +147,21 @@ class Structure:
     def _hold_idle_turns(self) -> None:
         """Lock the turns that move nothing else at 0, one after the other."""
         while True:
-            ends = _ends_of(self.mechanism)
-            points = find_points(self.mechanism, ends, self.unit)
-            groups = find_groups(self.mechanism, ends, points)
-            args = self.mechanism, ends, groups, points, self.unit
-            label = find_idle_turn(*args)
+            self.groups = Groups(self.mechanism, self.unit)
+            label = find_idle_turn(self.groups)
             if label is None:
                 break
             self.idle_turns += (label,)
             self.mechanism = self.mechanism.with_locks({label: 0.0})
 
-    @cached_property
+    @property
     def points(self) -> tuple[JointPoint, ...]:
         """The points at which spherical joints hold bodies."""
-        return find_points(self.mechanism, _ends_of(self.mechanism), self.unit)
-
-    @cached_property
-    def _groups(self) -> tuple[Group, ...]:
-        return find_groups(self.mechanism, _ends_of(self.mechanism), self.points)
+        return self.groups.points
 
     @cached_property
     def _net(self) -> RodNet:
-        ends = _ends_of(self.mechanism)
-        return find_rods(self.mechanism, ends, self._groups, self.points)
+        return find_rods(self.groups)
 
     @property
     def rods(self) -> tuple[Rod, ...]:
@@ -195,7 +187,7 @@ class Structure:
         inner = {pair for rod in self.rods for pair in rod.inner}
         ends = {
             number: one
-            for number, one in _ends_of(self.mechanism).items()
+            for number, one in self.groups.ends.items()
             if number not in inner and not in_rods & set(one[:2])
         }
         joined = {
@@ -209,7 +201,7 @@ class Structure:
         """Spherical pairs, numbered after those of the mechanism, between bodies that
         meet at a point where joints name rods between them."""
         in_rods = {body for rod in self.rods for body in rod.bodies}
-        ends = _ends_of(self.mechanism)
+        ends = self.groups.ends
         joined: dict[int, JoinedPair] = {}
         for point in self.points:
             bodies = [body for body in point.bodies if body not in in_rods]
@@ -590,17 +582,6 @@ class Structure:
                 sums.append(sum(lengths[body] for body in sorted(bodies)))
         total = min(sums, default=sum(lengths.values()))
         return SLIDE_REACH * (total or sum(lengths.values()))
-
-
-def _ends_of(mechanism: Mechanism) -> dict[int, Ends]:
-    """The bodies and the number of unknowns of every pair of a mechanism."""
-    numbers = {body: number for number, body in enumerate(mechanism.bodies)}
-    ends = {}
-    for number, pair in enumerate(mechanism.pairs):
-        free = [k for k in pair.variables if mechanism.variables[k].locked is None]
-        count = len(free) if pair.center is None else SPHERICAL
-        ends[number] = Ends(numbers[pair.base], numbers[pair.moved], count)
-    return ends
 
 
 def _range_of_leader(

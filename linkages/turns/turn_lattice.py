@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -323,6 +324,7 @@ def _nearest_first(distances: list[np.ndarray], places: np.ndarray) -> np.ndarra
     return order
 
 
+@lru_cache(maxsize=16)
 def turn_lattice(structure: Structure) -> TurnLattice:
     """The lattice of a mechanism; of no rows where no turn has limits, or whatever
     advances does not cancel."""

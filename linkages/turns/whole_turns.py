@@ -23,7 +23,7 @@ from bifurc.seeds import Audit
 from bifurc.torus import common_period
 from linkages.statements import LinkageClaim, estimated, random_assemblies
 from linkages.structure.structure import Structure
-from linkages.turns.turn_lattice import TurnLattice
+from linkages.turns.turn_lattice import TurnLattice, turn_lattice
 
 MOST_FORMS = 120  # beyond, forms beside them are not looked for
 AT_A_TURN, MOST_STARTS = 50, 2000  # random starts, and those of all turns of a joint
@@ -63,14 +63,31 @@ def starts_at_every_turn(
     return np.concatenate(starts)
 
 
+def for_subject(
+    problem: Problem, structure: Structure, rng: np.random.Generator, count: int
+) -> WholeTurns | None:
+    """Whole turns beside the motions of a mechanism; None where none advances
+    anything."""
+    turns = turns_that_advance(structure)
+    if not turns:
+        return None
+    lattice = turn_lattice(structure)
+    starts = np.empty((0, problem.n))
+    if not lattice:
+        starts = starts_at_every_turn(problem, turns, rng)
+    return WholeTurns(problem, turns, lattice, starts)
+
+
 @dataclass(frozen=True, eq=False)
 class WholeTurns:
     """The forms of a ``problem`` with ``turns`` that advance, as `turns_that_advance`
-    has them; those that shifts of the ``lattice`` lead to are one."""
+    has them; those that shifts of the ``lattice`` lead to are one. ``starts`` (k, n)
+    are at every turn."""
 
     problem: Problem
     turns: dict[int, float]
     lattice: TurnLattice
+    starts: np.ndarray
 
     def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
         """Configurations a whole turn of a joint beside ``branches``, as starts; or, of

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Sequence
-from typing import NotRequired, TypedDict
+from math import degrees
+from typing import NamedTuple, NotRequired, TypedDict
 
 import numpy as np
 
-from bifurc.atlas import Atlas, Form, MeetingPoint, NearMotion, Surface
+from bifurc.atlas import Atlas, Form, MeetingPoint, Surface
 from bifurc.checks import check_type
 from bifurc.decisions import closes_to_rounding
 from bifurc.figures.graph_layout import lay_out_graph
@@ -26,18 +27,19 @@ from linkages.links.mechanism_drawing import (
     breadths_of_mechanism,
 )
 from linkages.loop import Loop
+from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.subject import mechanism_of
 from linkages.readout.loop_atlas import to_loop_angles
 from linkages.readout.readout import Readout
 from linkages.scene import View, best_view, make_scene
 from linkages.structure.structure import Structure
 from linkages.viewing.mechanism_document import MechanismDocument, describe_motion
-from linkages.viewing.title import title_of
 
 SAMPLES = 72  # places on each form by which the principal plane is found
 BESIDE_A_POINT = 2  # of the spacing of these: a form is first shown farther from points
 ALIKE = 1e-3  # of a breadth: configurations that differ by less show as much
 MOST_SAMPLES = 600  # configurations shown of a surface
+MOST_LOCKS = 6  # that a title lists
 DIGITS = 6  # after the point, of places in the graph (inches)
 
 
@@ -69,13 +71,17 @@ class LoopDocument(TypedDict):
     joints: NotRequired[list[JointDocument]]
 
 
-class FormDocument(TypedDict):
-    """A form: its branch as in `bifurc.branch.Branch`, and how it is drawn.
+class FormDetails(TypedDict, total=False):
+    """Where the viewer has no equations there is ``smallest``, the smallest regular
+    singular value at places of the form, as [s, value]. A mechanism is first shown at
+    ``start``, where joints are seen apart."""
 
-    Where the viewer has no equations there is ``smallest`` besides, the smallest
-    regular singular value at places of the form, as [s, value]. A mechanism is first
-    shown at ``start``, where joints are seen apart.
-    """
+    smallest: list[list[float]]
+    start: float
+
+
+class FormDocument(FormDetails):
+    """A form: its branch as in `bifurc.branch.Branch`, and how it is drawn."""
 
     name: str
     length: float
@@ -90,8 +96,6 @@ class FormDocument(TypedDict):
     color: str
     dark_color: str
     dashes: list[float]
-    smallest: NotRequired[list[list[float]]]
-    start: NotRequired[float]
 
 
 class PointDocument(TypedDict):
@@ -191,53 +195,23 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> ViewDocument:
 
     Raises `linkages.NoLinkageError` where the atlas is not of a linkage.
     """
-    readout = _readout_of(atlas)
-    if readout is None:
-        loop = loop_of(atlas)
-        view = best_view(make_scene(loop, _first(atlas)))
-        return _document(atlas, verdict, {"loop": _loop(loop)}, view)
-    if readout.single_loop is not None:
-        loop = readout.single_loop.loop
-        angles = to_loop_angles(readout).points(_first(atlas))
-        view = best_view(make_scene(loop, angles))
-        of_joints = _loop(loop)
-        of_joints["joints"] = _joints(readout)
-        return _document(atlas, verdict, {"loop": of_joints}, view)
-    structure = readout.structure
-    points = np.concatenate(_configurations(atlas))
-    starts = [_start(atlas, structure, number) for number in range(len(atlas.forms))]
-    first = atlas.forms[0].branch(starts[0]) if starts else _first(atlas)
-    view = best_view_of_mechanism(structure, first)
-    motion = describe_motion(structure, points)
-    document = _document(atlas, verdict, {"mechanism": motion}, view)
-    for start, shown in zip(starts, document["forms"], strict=True):
-        shown["start"] = start
-    if motion["tape"] is None:
-        for form, shown in zip(atlas.forms, document["forms"], strict=True):
-            shown["smallest"] = _smallest(form)
-    return document
-
-
-def _readout_of(atlas: Atlas) -> Readout | None:
-    """What reads the joint variables from an atlas; None where it is not of a
-    mechanism."""
     check_type("atlas", atlas, Atlas)
-    mechanism = mechanism_of(atlas)
-    return None if mechanism is None else Readout(mechanism)
-
-
-def _document(
-    atlas: Atlas, verdict: str, subject: SubjectDocument, view: View
-) -> ViewDocument:
+    moving = _moving(atlas)
+    view = moving.view
     completeness = atlas.completeness
+    forms: list[FormDocument] = []
+    for index, (form, details) in enumerate(
+        zip(atlas.forms, moving.forms, strict=True)
+    ):
+        forms.append({**_form(form, index), **details})
     return {
         "title": title_of(atlas),
         "verdict": verdict,
         "completeness": f"Completeness ({completeness.level}): "
         f"{completeness.statement}.",
         "note": _note(atlas),
-        **subject,
-        "forms": [_form(form, index) for index, form in enumerate(atlas.forms)],
+        **moving.subject,
+        "forms": forms,
         "points": [_point(point) for point in atlas.points],
         "near_misses": [
             {"form": miss.form, "s": miss.s, "value": miss.value}
@@ -245,12 +219,60 @@ def _document(
         ],
         "assemblies": atlas.rigid.tolist(),
         "surfaces": [_surface(surface, atlas.periods) for surface in atlas.surfaces],
-        "near_motions": [_near_motion(motion) for motion in atlas.near_motions],
+        "near_motions": [
+            {"sample": motion.sample.tolist(), "misclosure": motion.misclosure}
+            for motion in atlas.near_motions
+        ],
         "graph": _graph(atlas),
         "plane": choose_plane(atlas),
         "principal": _principal(atlas),
         "view": {"elevation": view.elevation, "azimuth": view.azimuth},
     }
+
+
+class _Moving(NamedTuple):
+    """What moves, where it is seen best from, and what the viewer has to know besides of
+    its ``forms``, one after the other."""
+
+    subject: SubjectDocument
+    view: View
+    forms: Sequence[FormDetails]
+
+
+def _moving(atlas: Atlas) -> _Moving:
+    """What the unknowns of an atlas move: a loop, one that was given as a mechanism, or
+    another mechanism."""
+    mechanism = mechanism_of(atlas)
+    point = _first(atlas)
+    if mechanism is None:
+        loop = loop_of(atlas)
+        document = _loop(loop)
+    else:
+        readout = Readout(mechanism)
+        if readout.single_loop is None:
+            return _moving_bodies(atlas, readout.structure)
+        loop = readout.single_loop.loop
+        point = to_loop_angles(readout).points(point)
+        document = {**_loop(loop), "joints": _joints(readout)}
+    view = best_view(make_scene(loop, point))
+    return _Moving({"loop": document}, view, [{} for _ in atlas.forms])
+
+
+def _moving_bodies(atlas: Atlas, structure: Structure) -> _Moving:
+    """The bodies of a mechanism, which is first shown where joints are seen apart."""
+    motion = describe_motion(structure, np.concatenate(_configurations(atlas)))
+    point = _first(atlas)
+    forms: list[FormDetails] = []
+    for number, form in enumerate(atlas.forms):
+        start = _start(atlas, structure, number)
+        details: FormDetails = {"start": start}
+        if motion["tape"] is None:
+            details["smallest"] = _smallest(form)
+        if not forms:
+            point = form.branch(start)
+        forms.append(details)
+    view = best_view_of_mechanism(structure, point)
+    return _Moving({"mechanism": motion}, view, forms)
 
 
 def _note(atlas: Atlas) -> str:
@@ -321,10 +343,6 @@ def _point(point: MeetingPoint) -> PointDocument:
         "passes": [(form, float(s)) for form, s in point.passes],
         "surfaces": list(point.surfaces),
     }
-
-
-def _near_motion(motion: NearMotion) -> NearMotionDocument:
-    return {"sample": motion.sample.tolist(), "misclosure": motion.misclosure}
 
 
 def _packed(array: np.ndarray) -> PackedArray:
@@ -442,3 +460,51 @@ def _smallest(form: Form) -> list[list[float]]:
     ordered = rows[np.argsort(rows[:, 0], kind="stable")]
     values: list[list[float]] = ordered.tolist()
     return values
+
+
+# --- the title ------------------------------------------------------------------------
+
+
+def title_of(atlas: Atlas) -> str:
+    """The name of the linkage of an atlas, and its locks: those of a network are the
+    D-H angles of its outer joints. Raises `NoLinkageError` where it is of none."""
+    mechanism = mechanism_of(atlas)
+    if mechanism is None:
+        return loop_of(atlas).name or "linkage"
+    name = mechanism.name or "mechanism"
+    locks = _locks_of_network(atlas) or _locks(mechanism)
+    if not locks:
+        return name
+    if len(locks) > MOST_LOCKS:
+        return f"{name}, {len(locks)} variables locked"
+    return f"{name}, locked: {', '.join(locks)}"
+
+
+def _locks_of_network(atlas: Atlas) -> list[str]:
+    """The locks of a network; none for anything else."""
+    if "network" not in atlas.subject:
+        return []
+    # takes as long to import as all that a page of another mechanism needs
+    from linkages.networks.mechanism import network_of
+
+    network = network_of(atlas)
+    assert network is not None
+    return [_angle(joint, kink) for joint, kink in network.kinks.items()]
+
+
+def _locks(mechanism: Mechanism) -> list[str]:
+    """The variables that are locked by themselves, with their values."""
+    motions = {one.label: one.motion for one in mechanism.variables}
+    locks = []
+    for joint in mechanism.joints:
+        for label, value in zip(joint.labels, joint.locked, strict=True):
+            if value is None:
+                continue
+            is_turn = motions[label].is_turn
+            locks.append(_angle(label, value) if is_turn else f"{label}={value:.6g}")
+    return locks
+
+
+def _angle(label: str, value: float) -> str:
+    # rounded first: 40 degrees in radians and back has other last digits
+    return f"{label}={round(degrees(value), 6) + 0.0:.6g}°"

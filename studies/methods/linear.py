@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import lapack
 from scipy.sparse import csc_array, issparse
 
-from bifurc.numerics.bordered import sparse_bordered
+from bifurc.numerics.bordered import SparseBordered
 from bifurc.problem import Problem
 
 Jacobian: TypeAlias = np.ndarray | csc_array
@@ -27,7 +27,7 @@ def solve_bordered(
     in the least-squares sense."""
     m, n = jacobian.shape
     if issparse(jacobian):
-        return sparse_bordered(jacobian, tangent)(right)
+        return SparseBordered(jacobian, tangent[None]).solve(right)
     matrix = np.empty((m + 1, n))
     matrix[:m] = jacobian
     matrix[m] = tangent

@@ -6,10 +6,6 @@ import numpy as np
 
 from bifurc.function_problem import NumericalProblem
 from bifurc.problem import Problem
-from linkages.axes import loop_from_axes
-from linkages.closure.loop_closure import LoopClosure
-from linkages.families.double_goldberg import double_subtractive_goldberg
-from linkages.loop import Loop
 
 
 class Level(NumericalProblem):
@@ -98,41 +94,3 @@ def two_spheres(distance: float) -> Level:
 def seeds(problem: Problem, count: int = 20) -> np.ndarray:
     """Solutions of the problem, from as many random starts."""
     return problem.seeds(np.random.default_rng(1), count).points
-
-
-# --- linkages -------------------------------------------------------------------------
-
-
-def planar(*lengths: float) -> LoopClosure:
-    zeros = (0,) * len(lengths)
-    return LoopClosure(Loop(lengths, zeros, zeros))
-
-
-def spherical(*twists: float) -> LoopClosure:
-    zeros = (0,) * len(twists)
-    return LoopClosure(Loop(zeros, twists, zeros))
-
-
-def general(n: int) -> LoopClosure:
-    """A loop of n joints without any special proportions."""
-    rng = np.random.default_rng(n)
-    lengths = rng.uniform(0.5, 1.5, n)
-    twists = rng.uniform(0.4, 2.6, n)
-    offsets = rng.uniform(-0.5, 0.5, n)
-    return LoopClosure(Loop(tuple(lengths), tuple(twists), tuple(offsets)))
-
-
-def equal_double_goldberg() -> LoopClosure:
-    """The double-subtractive-Goldberg loop whose links 23, 34, 56, 61 are alike (b =
-    d): two forms, and a torus that they never meet."""
-    alpha, beta, gamma = np.radians([66, 50, 28])
-    return LoopClosure(
-        double_subtractive_goldberg(1.7 * np.sin(alpha), alpha, beta, gamma, beta)
-    )
-
-
-def sarrus() -> LoopClosure:
-    """Two legs of three parallel joints each, with links that are alike in each leg."""
-    points = [(0, 1, 0), (0, 1.5, 1), (0, 1, 2), (1, 0, 2), (1.7, 0, 1), (1, 0, 0)]
-    directions = [(1, 0, 0)] * 3 + [(0, 1, 0)] * 3
-    return LoopClosure(loop_from_axes(points, directions)[0])

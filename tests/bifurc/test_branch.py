@@ -9,20 +9,13 @@ from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
-from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
-
-
-def line_symmetric():
-    problem = LoopClosure(entry("bricard-line-symmetric").build())
-    return problem, trace_branch(
-        problem, problem.seeds(np.random.default_rng(0), 1).points[0]
-    )
+from tests.bifurc.known_curves import WindingCurve
 
 
 @pytest.fixture(scope="module")
 def traced():
-    return line_symmetric()
+    problem = WindingCurve(1, 1, 0, -1, 1, 2)
+    return problem, problem.trace()
 
 
 @pytest.fixture(scope="module")
@@ -89,8 +82,7 @@ def test_evaluation_agrees_with_solving_again(traced):
 def test_pieces_hand_over_without_a_step(traced):
     _, branch = traced
     inner = branch.breaks[1:-1]
-    # two pieces of tolerance 1e-13, over the smallest singular value of this form, 0.02
-    # to 0.1
+    # two pieces of tolerance 1e-13, over the smallest singular value of this curve, 1
     assert branch(inner - 1e-12) == pytest.approx(branch(inner + 1e-12), abs=1e-11)
 
 
@@ -106,9 +98,9 @@ def test_a_closed_curve_goes_on_after_its_length_and_winds(traced):
     )
 
 
-def test_a_joint_that_turns_twice_before_the_curve_closes_has_winding_two():
-    problem = LoopClosure(entry("mixed-double-goldberg-type-iii").build())
-    branch = trace_branch(problem, problem.seeds(np.random.default_rng(0), 1).points[0])
+def test_an_angle_that_turns_twice_before_the_curve_closes_has_winding_two():
+    problem = WindingCurve(1, 1, 0, 1, 1, 2)
+    branch = problem.trace()
     assert branch.closed
     assert np.array_equal(np.abs(branch.winding), [1, 1, 0, 1, 1, 2])
     # counted independently: wrapped samples, solved again, unwrapped from neighbour to
@@ -118,7 +110,7 @@ def test_a_joint_that_turns_twice_before_the_curve_closes_has_winding_two():
         np.unwrap(np.vstack([wrapped, wrapped[:1]]), axis=0)[[0, -1]], axis=0
     )[0] / (2 * np.pi)
     assert turns == pytest.approx(branch.winding, abs=1e-9)
-    # half way, where the last joint has turned once, the others are not where they
+    # half way, where the last angle has turned once, the others are not where they
     # began
     assert (
         np.linalg.norm(problem.difference(branch(0.5 * branch.length), branch(0.0)))

@@ -9,7 +9,7 @@ import pytest
 
 from bifurc.completeness import Claim, Completeness, Level, Scope, completeness_document
 from bifurc.files.dataset import from_dataset, to_dataset
-from bifurc.search.statements import SearchClaim, SearchDoubt
+from bifurc.search.answer.completeness import SearchClaim, SearchDoubt
 from tests.bifurc.drawn_atlas import draw, ring
 
 ROOT = Path(__file__).parents[2]

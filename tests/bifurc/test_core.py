@@ -1,67 +1,27 @@
 """The compiled core against slower ways to the same numbers."""
 
-import ast
 import gc
-import inspect
 import sys
 import weakref
 from dataclasses import replace
-from pathlib import Path
 
 import mpmath
 import numpy as np
 import pytest
 
-import bifurc
-import linkages
 from bifurc import _core
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.chebyshev import CHEBYSHEV, NODE_COUNT, RHOS
-from linkages import _core as linkages_core
-from linkages.closure.loop_closure import LoopClosure
-from linkages.linkage import load
+from bifurc.problem import Anchor, MarchSettings
+from tests.bifurc.known_curves import WindingCurve
 
 
 @pytest.fixture(scope="module")
 def branch():
-    """A closed curve that winds: a form of a 6R linkage."""
-    problem = LoopClosure(load("bricard-line-symmetric").loop)
-    points, gaps = problem.project(
-        np.random.default_rng(1).uniform(-np.pi, np.pi, (40, 6))
-    )
-    return trace_branch(problem, points[np.argmin(gaps)])
-
-
-def names_in(stub):
-    """The names that a stub states, those of a class after a dot."""
-    found = set()
-    for node in ast.parse(stub.read_text()).body:
-        if isinstance(node, ast.FunctionDef | ast.ClassDef):
-            found.add(node.name)
-        if isinstance(node, ast.ClassDef):
-            found |= {
-                f"{node.name}.{inner.name}"
-                for inner in node.body
-                if isinstance(inner, ast.FunctionDef) and inner.name != "__init__"
-            }
-    return found
-
-
-def names_of(module):
-    found = {name for name in dir(module) if not name.startswith("_")}
-    for name, value in inspect.getmembers(module, inspect.isclass):
-        found |= {f"{name}.{inner}" for inner in dir(value) if inner[0] != "_"}
-    return found
-
-
-@pytest.mark.parametrize(
-    ("package", "module"), [(bifurc, _core), (linkages, linkages_core)]
-)
-def test_the_stub_states_what_the_module_has(package, module):
-    stub = Path(package.__file__).with_name("_core.pyi")
-    assert names_in(stub) == names_of(module)
+    """A closed curve that winds."""
+    return WindingCurve(1, -1, 0, 1, -2, 2).trace()
 
 
 # --- small matrices -------------------------------------------------------------------
@@ -426,12 +386,8 @@ def test_curves_of_any_length_close_at_their_start():
 
 
 def test_a_march_ends_where_its_curve_closes():
-    from bifurc.problem import Anchor, MarchSettings
-
-    problem = LoopClosure(load("bennett").loop)
-    start, gaps = problem.project(np.random.default_rng(0).uniform(-2, 2, (9, 4)))
-    point = start[np.argmin(gaps)]
-    branch = trace_branch(problem, point)
+    problem = WindingCurve(1, -1, 0, 2)
+    branch = problem.trace()
     settings = MarchSettings(
         order=16, tolerance=1e-13, shortest=1e-9, longest=2.0, count=500
     )

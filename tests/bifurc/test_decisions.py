@@ -1,14 +1,10 @@
 """The table of decisions: what it compares, and what it notes."""
 
-from types import ModuleType
-
 import numpy as np
-import pytest
 
 import bifurc.decisions
-import linkages.decisions
 from bifurc.curves.certificate import HANDOVER
-from bifurc.decisions import Decision, Role, record_margins, unit_over_rounding
+from bifurc.decisions import Decision, record_margins, unit_over_rounding
 
 
 def test_a_decision_compares_with_its_threshold_in_the_unit_given() -> None:
@@ -41,37 +37,11 @@ def test_blocks_may_be_nested() -> None:
     assert outer["test"][0].tolist() == [2.0]
 
 
-MODULES = [bifurc.decisions, linkages.decisions]
-
-
-@pytest.mark.parametrize("module", MODULES)
-def test_no_two_decisions_share_a_name(module: ModuleType) -> None:
-    decisions = [one for one in vars(module).values() if isinstance(one, Decision)]
-    assert len(decisions) == len(module.TABLE)
-    assert not bifurc.decisions.TABLE.keys() & linkages.decisions.TABLE.keys()
-
-
-@pytest.mark.parametrize("decision", [one for m in MODULES for one in m.TABLE.values()])
-def test_a_decision_says_what_it_compares_and_why(decision: Decision) -> None:
-    assert decision.threshold > 0
-    for text in (decision.claim, decision.quantity, decision.reason):
-        assert text
-        assert text[0].islower() or text[0] in "WNV"
-        assert not text.endswith(".")
-
-
 def test_what_rounding_may_have_made_is_below_a_threshold() -> None:
     decision = Decision("test", "it is small", "size", 1e-3, "a round number")
     assert unit_over_rounding(decision, 1e-6) == 1.0
     assert unit_over_rounding(decision, 1e-2) == 10.0
     assert decision(5e-3, unit_over_rounding(decision, 1e-2))
-
-
-@pytest.mark.parametrize("decision", [one for m in MODULES for one in m.TABLE.values()])
-def test_a_third_answer_is_that_of_a_verdict(decision: Decision) -> None:
-    if decision.third_answer:
-        assert decision.role is Role.VERDICT
-        assert not decision.third_answer.endswith(".")
 
 
 def test_a_point_is_passed_within_half_of_where_arcs_are_handed_over() -> None:

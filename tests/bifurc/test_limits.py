@@ -2,8 +2,6 @@
 
 import os
 import signal
-import subprocess
-import sys
 import threading
 import time
 
@@ -91,41 +89,3 @@ def test_a_handler_of_the_user_and_a_thread_are_left_alone():
     thread.start()
     thread.join()
     assert seen[-1] is handler
-
-
-SEARCH = """
-import os, signal, threading
-signal.signal(signal.SIGINT, signal.default_int_handler)
-from bifurc.search.explore import explore
-from bifurc.settings import SearchSettings
-from linkages.closure.loop_closure import LoopClosure
-from linkages.linkage import load
-
-linkage = load("bricard-line-symmetric")
-
-class Pressed(LoopClosure):
-    pressed = False  # the second Ctrl-C would act at once
-
-    def project(self, starts):
-        if not self.pressed:
-            threading.Timer(delay, os.kill, (os.getpid(), signal.SIGINT)).start()
-        self.pressed = True
-        return super().project(starts)
-
-for delay in (0.001, 0.01, 0.03, 0.1):
-    atlas = explore(Pressed(linkage.loop), settings=SearchSettings(starts=60000))
-    assert atlas.provenance.interrupted, delay
-    print(len(atlas.forms), "forms")
-"""
-
-
-def test_a_search_interrupted_inside_a_compiled_kernel_ends_in_order():
-    result = subprocess.run(
-        [sys.executable, "-c", SEARCH],
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
-    assert result.returncode == 0, result.stderr
-    assert result.stdout.count("forms") == 4

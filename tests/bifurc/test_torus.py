@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from bifurc.torus import difference, into_box, tree_box, whole_turns, wrap
+from bifurc.torus import (
+    common_period,
+    difference,
+    into_box,
+    tree_box,
+    whole_turns,
+    wrap,
+)
 
 ANGLES = np.full(2, 2 * np.pi)
 ONE_ANGLE = np.array([2 * np.pi, np.inf])
@@ -49,3 +56,17 @@ def test_whole_turns_count_periods_and_nothing_of_unknowns_without_one():
 
 def test_a_tree_takes_no_period_as_zero():
     assert tree_box(ONE_ANGLE).tolist() == [2 * np.pi, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("ratios", "turns"),
+    [
+        ((1.0, 0.0), 1.0),
+        ((1.0, 0.5), 2.0),
+        ((2.0, -4.0), 0.5),
+        ((1 / 3, 0.5), 6.0),
+        ((np.sqrt(2.0), 1.0), np.inf),
+    ],
+)
+def test_an_angle_comes_round_when_all_that_it_turns_do(ratios, turns):
+    assert common_period(ratios) == turns * 2 * np.pi

@@ -7,6 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bifurc.atlas import Atlas
+from bifurc.search.explore import explore
+from tests.linkages.loops_with_surfaces import sarrus
+
 CASES = json.loads(
     (Path(__file__).parents[2] / "data" / "reference_configurations.json").read_text()
 )
@@ -106,3 +110,10 @@ def trace_form():
         return cache[key]
 
     return traced
+
+
+@pytest.fixture(scope="session")
+def folded_sarrus() -> Atlas:
+    """What there is of the Sarrus loop with folded legs: two forms that meet a torus in
+    four points."""
+    return explore(sarrus())

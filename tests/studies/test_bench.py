@@ -3,13 +3,12 @@ asserted."""
 
 import json
 
-import numpy as np
 import pytest
 
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from studies.bench import machine, median_time
-from studies.branch_cost import Cost, cost_of, exponent, line, random_loop
+from studies.branch_cost import Cost, cost_of, exponent, line
 
 
 def test_the_machine_is_described_in_plain_json():
@@ -33,14 +32,6 @@ def test_the_branch_of_a_bennett_linkage_is_costed_once():
     assert (cost.joints, cost.series) == (4, "loops")
     assert cost.pieces > 4
     assert cost.gap > 1e-3
-
-
-@pytest.mark.parametrize(("joints", "unknowns"), [(7, 7), (8, 7), (12, 7)])
-def test_a_general_loop_is_geared_until_seven_unknowns_are_left(joints, unknowns):
-    problem = random_loop(joints, np.random.default_rng(0))
-    assert problem.loop.n == joints
-    assert problem.n == unknowns
-    assert np.array_equal(problem.periods, np.full(unknowns, 2 * np.pi))
 
 
 def test_the_lines_through_the_costs_are_those_they_were_made_of():

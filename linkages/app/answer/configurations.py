@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas
 from bifurc.torus import wrap
-from linkages.app.answer.subject import subject_at
+from linkages.app.subject import subject_at
 from linkages.app.texts.numbers import in_degrees, in_lengths
 
 SHOWN_SHARE = 0.5e-4 / 360  # of a turn, that four digits of a degree do not show

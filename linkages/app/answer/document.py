@@ -6,185 +6,31 @@ for a mechanism that is a single loop."""
 from __future__ import annotations
 
 from importlib.metadata import version
-from typing import TYPE_CHECKING, NotRequired, TypedDict, cast
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, NearMotion
-from bifurc.completeness import CompletenessDocument, completeness_document
+from bifurc.completeness import completeness_document
 from bifurc.decisions import is_tied
 from bifurc.singular.point import Kind
 from linkages.app.answer.configurations import numbers_at
-from linkages.app.answer.mobility import mobility_of
-from linkages.app.answer.subject import subject_at
 from linkages.app.answer.verdict import is_without_gaps
+from linkages.app.subject import subject_at
 from linkages.labels import FormLabels
 
-if TYPE_CHECKING:
-    # they import networkx, which loops do not need
-    from linkages.app.answer.mechanism_document import MechanismDocument, RangeDocument
-    from linkages.readout.readout import JointVariables
+# values that JSON can hold; docs/results.md says what each key does
+Document: TypeAlias = dict[str, Any]
 
 
-class LinkageDocument(TypedDict):
-    """The name, and of a single loop of revolute joints the Denavit-Hartenberg table,
-    twists in rad."""
-
-    name: str
-    lengths: NotRequired[list[float]]
-    twists: NotRequired[list[float]]
-    offsets: NotRequired[list[float]]
-
-
-class CertificateDocument(TypedDict):
-    """What is certified of a form, and the intervals of its arclength where that is
-    refused or where F' is singular to within rounding."""
-
-    status: str
-    refused: list[list[float]]
-    blurred: list[list[float]]
-
-
-class PlaceDocument(TypedDict):
-    """A configuration of a mechanism: its ``variables`` by the names of its joints; of
-    a network also the D-H angles of its outer joints, rad."""
-
-    variables: NotRequired[JointVariables]
-    ring_angles: NotRequired[dict[str, float]]
-
-
-class AssemblyDocument(PlaceDocument):
-    """A rigid assembly of a mechanism."""
-
-    theta: list[float]
-
-
-class FormDocument(PlaceDocument):
-    """A form; or a surface, with None for what makes sense for a curve only and a
-    ``note``. Of a mechanism also what its joints and bodies do."""
-
-    name: str
-    dimension: int
-    closed: bool | None
-    length: float | None
-    winding: list[int] | None
-    inactive_joints: list[int]
-    symmetry: str
-    sample: list[float]
-    max_residual: float | None
-    misclosure: float | None
-    min_singular_value: float | None
-    component: int
-    certificate: CertificateDocument | None
-    note: NotRequired[str]
-    ranges: NotRequired[dict[str, RangeDocument]]
-    still_joints: NotRequired[list[str]]
-    bodies_as_one: NotRequired[list[list[str]]]
-
-
-class BifurcationDocument(PlaceDocument):
-    """A bifurcation: ``forms`` and ``tangents`` once for every pass of a form."""
-
-    theta: list[float]
-    rank: int
-    forms: list[str]
-    tangents: list[list[float]]
-    error: float
-
-
-class RankDropDocument(PlaceDocument):
-    """A point of lower rank that one form passes."""
-
-    theta: list[float]
-    rank: int
-    form: str
-
-
-class SingularPointDocument(PlaceDocument):
-    """A singular point of another kind: ``forms`` once for every pass of a form."""
-
-    theta: list[float]
-    kind: str
-    rank: int
-    error: float
-    forms: list[str]
-
-
-class NearMissDocument(PlaceDocument):
-    """A minimum of the smallest regular singular value."""
-
-    theta: list[float]
-    singular_value: float
-    error: float
-    form: str
-
-
-class NearMotionDocument(PlaceDocument):
-    """A path along which the loop misses closure by no more than ``misclosure``."""
-
-    misclosure: float
-    length: float
-    closed: bool
-    mobility: int
-    sample: list[float]
-
-
-class DeadPointDocument(PlaceDocument):
-    """Where a joint (from 1) stands still for a moment."""
-
-    theta: list[float]
-    joint: int
-    form: str
-    variable: NotRequired[str]
-
-
-class LinkageCompleteness(CompletenessDocument):
-    """How sure it is that nothing is missing: ``certainty`` is the level, ``level``
-    whether slices were complete."""
-
-    certainty: str
-
-
-class NetworkDocument(TypedDict):
-    """A network of Bennett loops: its parameters, twists in rad, and the D-H angles
-    (rad) at which outer joints are locked."""
-
-    name: str
-    parameters: dict[str, float]
-    kinks: dict[str, float]
-
-
-class MapDocument(TypedDict):
-    """The whole document; docs/results.md says what each key holds."""
-
-    linkage: LinkageDocument
-    mobility: int
-    gruebler: int
-    mechanism: NotRequired[MechanismDocument]
-    network: NotRequired[NetworkDocument]
-    forms: list[FormDocument]
-    bifurcations: list[BifurcationDocument]
-    rank_drops: list[RankDropDocument]
-    other_singular_points: list[SingularPointDocument]
-    near_misses: list[NearMissDocument]
-    dead_points: list[DeadPointDocument]
-    rigid_assemblies: list[list[float] | AssemblyDocument]
-    near_motions: list[NearMotionDocument]
-    completeness: LinkageCompleteness
-    seconds: float
-    version: str
-    seed: int
-    tolerance: float
-
-
-def make_document(atlas: Atlas) -> MapDocument:
+def make_document(atlas: Atlas) -> Document:
     """The document that `bifurc map --json` prints."""
     forms = [_form(atlas, i) for i in range(len(atlas.forms))]
     surfaces = [_surface(atlas, k) for k in range(len(atlas.surfaces))]
-    document: MapDocument = {
+    return {
         "linkage": _linkage(atlas),
-        "mobility": mobility_of(atlas),
+        "mobility": atlas.mobility,
         "gruebler": subject_at(atlas).gruebler,
         "forms": forms + surfaces,
         "bifurcations": [_bifurcation(atlas, point) for point in atlas.bifurcations],
@@ -203,26 +49,22 @@ def make_document(atlas: Atlas) -> MapDocument:
         "version": version("bifurc"),
         "seed": atlas.provenance.seed,
         "tolerance": atlas.provenance.settings.tracing.tolerance,
+        **subject_at(atlas).document(atlas),
     }
-    return cast(MapDocument, {**document, **subject_at(atlas).document()})
 
 
-def _add_variables(
-    atlas: Atlas, document: PlaceDocument, theta: NDArray[np.float64]
-) -> None:
-    """Add the variables of a mechanism at a configuration (n,); nothing for a loop."""
-    document.update(cast(PlaceDocument, subject_at(atlas).place(theta)))
+def _place(atlas: Atlas, theta: NDArray[np.float64], key: str = "theta") -> Document:
+    """A configuration (n,) behind its ``key``; of a mechanism also its variables."""
+    return {key: numbers_at(atlas, theta), **subject_at(atlas).place(theta)}
 
 
-def _assembly(
-    atlas: Atlas, theta: NDArray[np.float64]
-) -> list[float] | AssemblyDocument:
-    numbers = numbers_at(atlas, theta)
-    place = subject_at(atlas).place(theta)
-    return cast(AssemblyDocument, {"theta": numbers, **place}) if place else numbers
+def _assembly(atlas: Atlas, theta: NDArray[np.float64]) -> list[float] | Document:
+    """A rigid assembly: of a loop the joint angles alone."""
+    place = _place(atlas, theta)
+    return place if len(place) > 1 else numbers_at(atlas, theta)
 
 
-def _linkage(atlas: Atlas) -> LinkageDocument:
+def _linkage(atlas: Atlas) -> Document:
     subject = subject_at(atlas)
     if subject.table is None:
         return {"name": subject.name}
@@ -235,14 +77,14 @@ def _linkage(atlas: Atlas) -> LinkageDocument:
     }
 
 
-def _form(atlas: Atlas, index: int) -> FormDocument:
+def _form(atlas: Atlas, index: int) -> Document:
     form = atlas.forms[index]
     labels = FormLabels.of(form)
     to_angles = subject_at(atlas).to_angles
     winding = to_angles.directions(form.branch.winding).astype(int)
     inactive = [to_angles.index(joint - 1) + 1 for joint in labels.inactive_joints]
     sample = form.branch(_clear_arclength(atlas, index))
-    document: FormDocument = {
+    return {
         "name": form.name,
         "dimension": 1,
         "closed": form.branch.closed,
@@ -250,18 +92,17 @@ def _form(atlas: Atlas, index: int) -> FormDocument:
         "winding": winding.tolist(),
         "inactive_joints": sorted(inactive),
         "symmetry": labels.symmetry.value,
-        "sample": numbers_at(atlas, sample),
+        **_place(atlas, sample, "sample"),
         "max_residual": labels.max_residual,
         "misclosure": form.misclosure,
         "min_singular_value": form.min_singular_value,
         "component": form.component,
         "certificate": _certificate(form),
+        **subject_at(atlas).motion(atlas, index),
     }
-    _add_variables(atlas, document, sample)
-    return cast(FormDocument, {**document, **subject_at(atlas).motion(index)})
 
 
-def _certificate(form: Form) -> CertificateDocument | None:
+def _certificate(form: Form) -> Document | None:
     certificate = form.certificate
     if certificate is None:
         return None
@@ -272,10 +113,10 @@ def _certificate(form: Form) -> CertificateDocument | None:
     }
 
 
-def _surface(atlas: Atlas, index: int) -> FormDocument:
+def _surface(atlas: Atlas, index: int) -> Document:
     """A component of dimension 2 or more, shown by one configuration."""
     surface = atlas.surfaces[index]
-    document: FormDocument = {
+    return {
         "name": f"surface {index + 1}",
         "dimension": surface.dimension,
         "closed": None,
@@ -283,7 +124,7 @@ def _surface(atlas: Atlas, index: int) -> FormDocument:
         "winding": None,
         "inactive_joints": [],
         "symmetry": "",
-        "sample": numbers_at(atlas, surface.samples[0]),
+        **_place(atlas, surface.samples[0], "sample"),
         "max_residual": None,
         "misclosure": None,
         "min_singular_value": None,
@@ -291,43 +132,35 @@ def _surface(atlas: Atlas, index: int) -> FormDocument:
         "certificate": None,
         "note": surface.note,
     }
-    _add_variables(atlas, document, surface.samples[0])
-    return document
 
 
-def _bifurcation(atlas: Atlas, point: MeetingPoint) -> BifurcationDocument:
-    document: BifurcationDocument = {
-        "theta": numbers_at(atlas, point.point.u),
+def _bifurcation(atlas: Atlas, point: MeetingPoint) -> Document:
+    return {
+        **_place(atlas, point.point.u),
         "rank": point.point.rank,
         "forms": [atlas.forms[index].name for index, _ in point.passes],
         "tangents": subject_at(atlas).to_angles.directions(point.tangents).tolist(),
         "error": point.point.error,
     }
-    _add_variables(atlas, document, point.point.u)
-    return document
 
 
-def _rank_drop(atlas: Atlas, point: MeetingPoint) -> RankDropDocument:
+def _rank_drop(atlas: Atlas, point: MeetingPoint) -> Document:
     index, _ = point.passes[0]
-    document: RankDropDocument = {
-        "theta": numbers_at(atlas, point.point.u),
+    return {
+        **_place(atlas, point.point.u),
         "rank": point.point.rank,
         "form": atlas.forms[index].name,
     }
-    _add_variables(atlas, document, point.point.u)
-    return document
 
 
-def _singular_point(atlas: Atlas, point: MeetingPoint) -> SingularPointDocument:
-    document: SingularPointDocument = {
-        "theta": numbers_at(atlas, point.point.u),
+def _singular_point(atlas: Atlas, point: MeetingPoint) -> Document:
+    return {
+        **_place(atlas, point.point.u),
         "kind": point.kind.value,
         "rank": point.point.rank,
         "error": point.point.error,
         "forms": [atlas.forms[index].name for index, _ in point.passes],
     }
-    _add_variables(atlas, document, point.point.u)
-    return document
 
 
 def _isolated(atlas: Atlas) -> list[NDArray[np.float64]]:
@@ -337,42 +170,35 @@ def _isolated(atlas: Atlas) -> list[NDArray[np.float64]]:
     return [*atlas.rigid, *shaky]
 
 
-def _near_miss(atlas: Atlas, event: Event) -> NearMissDocument:
-    document: NearMissDocument = {
-        "theta": numbers_at(atlas, event.u),
+def _near_miss(atlas: Atlas, event: Event) -> Document:
+    return {
+        **_place(atlas, event.u),
         "singular_value": event.value,
         "error": event.error,
         "form": atlas.forms[event.form].name,
     }
-    _add_variables(atlas, document, event.u)
-    return document
 
 
-def _near_motion(atlas: Atlas, near: NearMotion) -> NearMotionDocument:
-    document: NearMotionDocument = {
+def _near_motion(atlas: Atlas, near: NearMotion) -> Document:
+    return {
         "misclosure": near.misclosure,
         "length": near.length,
         "closed": near.is_closed,
         "mobility": near.mobility,
-        "sample": numbers_at(atlas, near.sample),
+        **_place(atlas, near.sample, "sample"),
     }
-    _add_variables(atlas, document, near.sample)
-    return document
 
 
-def _dead_point(atlas: Atlas, event: Event) -> DeadPointDocument:
-    document: DeadPointDocument = {
-        "theta": numbers_at(atlas, event.u),
+def _dead_point(atlas: Atlas, event: Event) -> Document:
+    return {
+        **_place(atlas, event.u),
         "joint": subject_at(atlas).to_angles.index(event.index) + 1,
         "form": atlas.forms[event.form].name,
+        **subject_at(atlas).variable(event.index),
     }
-    _add_variables(atlas, document, event.u)
-    return cast(
-        DeadPointDocument, {**document, **subject_at(atlas).variable(event.index)}
-    )
 
 
-def _completeness(atlas: Atlas) -> LinkageCompleteness:
+def _completeness(atlas: Atlas) -> Document:
     values = completeness_document(atlas.completeness)
     slices = is_without_gaps(atlas.completeness)
     level = "complete slices" if slices else "estimated"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, TypedDict
+from typing import Any
 
 import numpy as np
 
@@ -14,89 +14,14 @@ from linkages.structure.loose_chains import loose_chains
 from linkages.turns.translates import translates_of
 
 
-class RangeDocument(TypedDict):
-    """The range of a variable along a form, rad or the user's unit, and its turns."""
-
-    low: float
-    high: float
-    turns: int
-
-
-class FormMotionDocument(TypedDict):
-    """What the joints and bodies of a mechanism do along a form."""
-
-    ranges: dict[str, RangeDocument]
-    still_joints: list[str]
-    bodies_as_one: list[list[str]]
-
-
-class LoopDocument(TypedDict):
-    """A loop of the cycle basis, and which of its constraints are redundant."""
-
-    joints: list[str]
-    constraints: int
-    rank: int
-    redundant: int
-    dependent_joints: list[str]
-
-
-class VariableDocument(TypedDict):
-    """A joint variable: its unit, "rad" or "length", the limits within which it is
-    followed (None for angles without limits) and the value at which it is locked."""
-
-    name: str
-    joint: str
-    unit: str
-    limits: list[float] | None
-    locked: float | None
-
-
-class LooseChainDocument(TypedDict):
-    """The ``bodies`` of a chain ``between`` one body or two that has ``freedoms`` of
-    its own, whatever the rest does."""
-
-    bodies: list[str]
-    between: list[str]
-    freedoms: int
-
-
-class TranslatesDocument(TypedDict):
-    """How many ``forms`` and ``assemblies`` what is listed up to whole turns of
-    ``joints`` stands for, at least or, where these ``are_all``, exactly. Of the forms
-    that are listed ``distinct_forms`` differ by more than such turns."""
-
-    joints: list[str]
-    forms: int
-    assemblies: int
-    distinct_forms: int
-    are_all: bool
-
-
-class MechanismDocument(TypedDict):
-    """The mechanism of a map: ``idle_bodies`` turn about the line between their two
-    spherical joints, ``idle_turns`` are variables that turn but a body by itself; the
-    map leaves both out, and counts the freedoms of ``loose_chains``. Points are counted
-    from the ``origin``, in the coordinates of the file, and off by
-    ``coordinate_rounding`` at most. ``translates`` is None where nothing is left out
-    that differs by whole turns."""
-
-    bodies: list[str]
-    frame: str
-    joints: list[dict[str, Any]]
-    variables: list[VariableDocument]
-    loops: list[LoopDocument]
-    idle_bodies: list[str]
-    idle_turns: list[str]
-    loose_chains: list[LooseChainDocument]
-    characteristic_length: float
-    origin: list[float]
-    coordinate_rounding: float
-    translates: TranslatesDocument | None
-
-
-def describe_mechanism(atlas: Atlas, readout: Readout) -> MechanismDocument:
+def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
     """The mechanism of an atlas; what is redundant holds where the first form or
-    surface is regular, or else at the first assembly."""
+    surface is regular, or else at the first assembly.
+
+    The map leaves ``idle_bodies`` and ``idle_turns`` out, and counts the freedoms of
+    ``loose_chains``. Points are counted from the ``origin``, in the coordinates of the
+    file. ``translates`` is None where nothing is left out that differs by whole turns.
+    """
     mechanism = readout.mechanism
     place = _regular_place(atlas)
     loops = [] if place is None else loop_facts(readout, place)
@@ -132,7 +57,7 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> MechanismDocument:
     }
 
 
-def _translates(atlas: Atlas) -> TranslatesDocument | None:
+def _translates(atlas: Atlas) -> dict[str, Any] | None:
     translates = translates_of(atlas)
     if translates is None:
         return None
@@ -145,9 +70,9 @@ def _translates(atlas: Atlas) -> TranslatesDocument | None:
     }
 
 
-def _variables(readout: Readout) -> list[VariableDocument]:
+def _variables(readout: Readout) -> list[dict[str, Any]]:
     limits = readout.limits()
-    variables: list[VariableDocument] = []
+    variables: list[dict[str, Any]] = []
     for variable in readout.mechanism.variables:
         pair = limits.get(variable.label)
         variables.append(
@@ -174,15 +99,14 @@ def _regular_place(atlas: Atlas) -> np.ndarray | None:
     return np.array(atlas.rigid[0]) if len(atlas.rigid) else None
 
 
-def describe_motion(atlas: Atlas, index: int, readout: Readout) -> FormMotionDocument:
+def describe_motion(atlas: Atlas, index: int, readout: Readout) -> dict[str, Any]:
     """What the joints and bodies do along the form of this ``index``."""
     facts = form_facts(atlas, index, readout)
-    ranges: dict[str, RangeDocument] = {
-        one.label: {"low": one.low, "high": one.high, "turns": one.turns}
-        for one in facts.ranges
-    }
     return {
-        "ranges": ranges,
+        "ranges": {
+            one.label: {"low": one.low, "high": one.high, "turns": one.turns}
+            for one in facts.ranges
+        },
         "still_joints": list(facts.still),
         "bodies_as_one": [list(group) for group in facts.groups],
     }

@@ -7,16 +7,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from linkages.app.exit_codes import CommandError, exit_code_table
+from linkages.app.exit_codes import exit_code_table
 from linkages.app.options import FILE, HoldOptions, hold_options
 from linkages.app.output import require_ending, require_writable, say, writing_to
-from linkages.linkage import Linkage
+from linkages.formats.table import WRITTEN, mechanism_text
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
 TARGET = "OUT"
-ENDINGS = (".toml", ".xml", ".mjcf", ".sdf")
 
 
 @click.command("convert", epilog=exit_code_table())
@@ -33,10 +32,9 @@ def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
     The configuration written is the reference configuration, where all joint variables
     are 0; that of a network is one with its locks.
     """
-    require_ending(TARGET, out, *ENDINGS)
+    require_ending(TARGET, out, *WRITTEN)
     from bifurc.files.atomic import replace_file
     from bifurc.text_tables import count_of
-    from linkages.app.reports.mechanism_file import mechanism_text
 
     mechanism = _mechanism(source, hold)
     text = mechanism_text(mechanism, out)
@@ -59,11 +57,11 @@ def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
 def _mechanism(source: str, hold: HoldOptions) -> Mechanism:
     """The mechanism of a file; raises `CommandError` for a single loop that is given as
     a table or as axes."""
+    from linkages.app.choice import require_kind
     from linkages.app.inputs import choose_held
+    from linkages.mechanisms.mechanism import Mechanism
 
-    chosen = choose_held(source, (), hold)
-    if isinstance(chosen, Linkage):
-        raise CommandError(
-            f"{source}: it is a single loop, a table or axes; convert takes mechanisms"
-        )
-    return chosen
+    refusal = (
+        f"{source}: it is a single loop, a table or axes; convert takes mechanisms"
+    )
+    return require_kind(choose_held(source, (), hold), Mechanism, refusal)

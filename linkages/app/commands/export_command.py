@@ -216,8 +216,8 @@ def export_mechanism(atlas: Atlas, texts: tuple[str, ...], out: Path) -> None:
     """Write the linkage where the first of the forms begins."""
     from bifurc.files.atomic import replace_file
     from linkages.app.output import writing_to
-    from linkages.app.reports.mechanism_file import mechanism_text
     from linkages.app.texts.form_names import choose_forms
+    from linkages.formats.table import mechanism_text
     from linkages.labels import loop_of
     from linkages.mechanisms.of_loop import mechanism_of_loop
 
@@ -279,7 +279,7 @@ def make_route_motion(atlas: Atlas, start: str, goal: str, count: int) -> Motion
     """
     from bifurc.errors import RouteError
     from bifurc.routes.route import find_route
-    from linkages.app.answer.subject import subject_at
+    from linkages.app.subject import subject_at
     from linkages.export.motion import motion_of_route
 
     option = f"--route {start!r} {goal!r}"
@@ -319,8 +319,8 @@ def make_content(atlas: Atlas, motions: list[Motion], out: Path) -> bytes:
 def make_table(atlas: Atlas, motion: Motion) -> str:
     """The joint variables along a motion: angles of a loop, or all variables of a
     mechanism and the unit quaternions of its spherical joints."""
-    from linkages.app.answer.subject import subject_at
-    from linkages.export.angle_table import make_angle_table
+    from linkages.app.subject import subject_at
+    from linkages.export.motion import make_angle_table
 
     joints = subject_at(atlas).joint_values(motion.configurations)
     return make_angle_table(motion.arclength, joints.values, joints.names)
@@ -328,7 +328,7 @@ def make_table(atlas: Atlas, motion: Motion) -> str:
 
 def make_model(atlas: Atlas, motions: list[Motion]) -> LinkageModel:
     """The linkage of an atlas with its motions, to be animated."""
-    from linkages.app.answer.subject import MechanismSubject, subject_at
+    from linkages.app.subject import MechanismSubject, subject_at
     from linkages.export.model import model_of_loop, model_of_mechanism
 
     subject = subject_at(atlas)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
+from linkages.app.exit_codes import ExitCode, exit_code_table
 from linkages.app.options import (
     HoldOptions,
     NumberRange,
@@ -16,9 +16,7 @@ from linkages.app.options import (
 )
 
 if TYPE_CHECKING:
-    from linkages.linkage import Linkage
-    from linkages.loop import Loop
-    from linkages.mechanisms.mechanism import Mechanism
+    pass
 
 LARGEST_TOLERANCE = 1  # as large as the linkage itself
 
@@ -59,9 +57,10 @@ def identify_command(
         describe_identification,
         make_identification_document,
     )
+    from linkages.app.subject import as_subject
     from linkages.identification.identify import identify
 
-    loop = _loop_of(choose_held(linkage, parameters, hold))
+    loop = as_subject(choose_held(linkage, parameters, hold)).as_loop()
     identification = identify(loop, tolerance)
     if as_json:
         say_json(make_identification_document(identification))
@@ -69,21 +68,3 @@ def identify_command(
         say(describe_identification(identification))
     if not (identification.matches or identification.locked):
         click.get_current_context().exit(ExitCode.NOT_IN_CATALOGUE)
-
-
-def _loop_of(linkage: Linkage | Mechanism) -> Loop:
-    """The loop of a linkage, or that which a mechanism is; raises `GeometryError`,
-    and `CommandError` for a network."""
-    from linkages.linkage import Linkage
-
-    if isinstance(linkage, Linkage):
-        return linkage.loop
-    from linkages.networks.mechanism import NetworkMechanism
-    from linkages.structure.loop_geometry import loop_geometry
-
-    if isinstance(linkage, NetworkMechanism):
-        raise CommandError(
-            f"{linkage.name}: it is a network, with several loops; --without-centre "
-            "takes the single loop that its outer bars leave under --lock"
-        )
-    return loop_geometry(linkage)

@@ -149,14 +149,14 @@ def write_numbers(atlas: Atlas, out: Path | None) -> list[Path]:
     one."""
     if out is None:
         return []
-    from linkages.app.answer.subject import subject_at
     from linkages.app.files import write_data
     from linkages.app.output import writing_to
+    from linkages.app.subject import subject_at
     from linkages.app.texts.summary import make_summary
 
     with writing_to(out):
         subject = subject_at(atlas)
-        more, others = subject.dataset_variables(), subject.files()
+        more, others = subject.dataset_variables(atlas), subject.files()
         return write_data(atlas, out, make_summary(atlas), more, others)
 
 

@@ -50,15 +50,16 @@ def network_command(
       bifurc network four-bennett-network --locks
       bifurc network serial-bennett-network --locks --kinks 40 -75 --out out
     """
-    from linkages.app.choice import choose_linkage
+    from linkages.app.choice import choose_linkage, require_kind
     from linkages.app.output import require_folder, say
     from linkages.app.texts.lock_tables import make_page
     from linkages.app.texts.network_text import describe_network
     from linkages.networks.entries import NETWORKS
     from linkages.networks.mechanism import NetworkMechanism
 
+    refusal = f"{name}: it is no network; those are {', '.join(NETWORKS)}"
     if name not in NETWORKS:
-        raise CommandError(f"{name}: it is no network; those are {', '.join(NETWORKS)}")
+        raise CommandError(refusal)
     if not is_locked:
         if out is not None or kinks is not None or parameters:
             raise CommandError("--out, --kinks, --param: they go with --locks")
@@ -67,8 +68,7 @@ def network_command(
     angles = () if kinks is None else _radians(kinks)
     if out is not None:
         require_folder(out)
-    chosen = choose_linkage(name, parameters)
-    assert isinstance(chosen, NetworkMechanism)
+    chosen = require_kind(choose_linkage(name, parameters), NetworkMechanism, refusal)
     tables = _lock_all(chosen.placed.network, angles)
     page = make_page(name, tables)
     say(page)

@@ -107,7 +107,7 @@ def _route_over_locks(
     """Show the route of a network over its locks; raises `CommandError` where there is
     none, or the source is no network."""
     from bifurc.errors import RouteError
-    from linkages.app.choice import choose_linkage
+    from linkages.app.choice import choose_linkage, require_kind
     from linkages.app.exploration import explore_linkage, require_uninterrupted
     from linkages.app.output import say
     from linkages.app.texts.lock_route_text import describe_lock_route, read_place
@@ -115,13 +115,12 @@ def _route_over_locks(
     from linkages.networks.lock_routes import find_lock_route
     from linkages.networks.mechanism import NetworkMechanism, lock_network
 
+    refusal = f"--from, --to: they take a network: {', '.join(NETWORKS)}"
     if source not in NETWORKS:
-        names = ", ".join(NETWORKS)
-        raise CommandError(f"--from, --to: they take a network: {names}")
+        raise CommandError(refusal)
     if start is None or goal is None:
         raise CommandError("--from, --to: both must be given")
-    chosen = choose_linkage(source, parameters)
-    assert isinstance(chosen, NetworkMechanism)
+    chosen = require_kind(choose_linkage(source, parameters), NetworkMechanism, refusal)
     network = chosen.placed.network
     places = [
         read_place(text, option, chosen)
@@ -147,7 +146,7 @@ def _route_between(atlas: Atlas, start: str, goal: str) -> Route:
     there is none."""
     from bifurc.errors import RouteError
     from bifurc.routes.route import find_route
-    from linkages.app.answer.subject import subject_at
+    from linkages.app.subject import subject_at
 
     try:
         return find_route(atlas, start, goal, problem=subject_at(atlas).equations())

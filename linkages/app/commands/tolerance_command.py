@@ -22,9 +22,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from bifurc.atlas import Atlas
-    from linkages.linkage import Linkage
-    from linkages.loop import Loop
-    from linkages.mechanisms.mechanism import Mechanism
 
 LARGEST_ERROR = 1  # rad, and characteristic lengths
 MOST_COPIES = 10_000
@@ -80,6 +77,7 @@ def tolerance_command(
     from linkages.app.inputs import choose_held
     from linkages.app.output import require_folder, say
     from linkages.app.reports.tolerance import climb, measure
+    from linkages.app.subject import as_subject
     from linkages.app.texts.tolerance_text import describe_tolerance
 
     if out is not None:
@@ -87,7 +85,9 @@ def tolerance_command(
     chosen = choose_held(linkage, parameters, hold)
     atlas = explore_linkage(chosen, SearchOptions())
     _require_forms(atlas)
-    nominal, atlas = as_made(chosen, atlas)
+    subject = as_subject(chosen)
+    # in the unknowns of the equations of what is made with errors
+    nominal, atlas = subject.geometry, subject.in_loop_angles(atlas)
     seeds = range(seed, seed + samples)
     copies = [measure(atlas, nominal, error, number) for number in seeds]
     ladder = climb(atlas, nominal, seeds)
@@ -99,21 +99,6 @@ def tolerance_command(
             from linkages.app.reports.tolerance_figure import draw_tolerance
 
             _write(text, draw_tolerance(atlas, copies[0], ladder), out)
-
-
-def as_made(
-    linkage: Linkage | Mechanism, atlas: Atlas
-) -> tuple[Loop | Mechanism, Atlas]:
-    """What is made with errors, the loop of a linkage or of a mechanism that is a single
-    one of revolute joints, and its atlas in the unknowns of its equations."""
-    from linkages.app.answer.subject import subject_at
-    from linkages.linkage import Linkage
-
-    subject = subject_at(atlas)
-    if subject.table is not None:
-        return subject.table, subject.in_loop_angles()
-    assert not isinstance(linkage, Linkage)
-    return linkage, atlas
 
 
 def _require_forms(atlas: Atlas) -> None:

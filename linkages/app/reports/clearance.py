@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypedDict
+from typing import Any
 
 from bifurc.atlas import Atlas, Form
 from linkages.app.answer.configurations import numbers_at
-from linkages.app.answer.subject import subject_at
+from linkages.app.subject import subject_at
 from linkages.links.clearance import Approach
 
 
@@ -31,25 +31,6 @@ class FormClearance:
         return [self.names[link] for link in approach.links]
 
 
-class ApproachDocument(TypedDict):
-    """Two links and where they are nearest, angles in rad, lengths in the user's
-    unit."""
-
-    links: list[str]
-    clearance: float
-    error: float
-    arclength: float
-    theta: list[float]
-
-
-class FormClearanceDocument(TypedDict):
-    """The clearance along a form."""
-
-    form: str
-    diameter: float
-    approaches: list[ApproachDocument]
-
-
 def clearance_of(atlas: Atlas, form: Form, diameter: float) -> FormClearance:
     """The clearance of links of a diameter along a form."""
     subject = subject_at(atlas)
@@ -59,13 +40,14 @@ def clearance_of(atlas: Atlas, form: Form, diameter: float) -> FormClearance:
 
 def clearance_document(
     atlas: Atlas, clearances: list[FormClearance]
-) -> list[FormClearanceDocument]:
-    """What `bifurc clearance --json` prints."""
-    documents: list[FormClearanceDocument] = []
-    for clearance in clearances:
-        approaches: list[ApproachDocument] = []
-        for approach in clearance.approaches:
-            approaches.append(
+) -> list[dict[str, Any]]:
+    """What `bifurc clearance --json` prints: angles in rad, lengths in the user's
+    unit."""
+    return [
+        {
+            "form": clearance.form.name,
+            "diameter": clearance.diameter,
+            "approaches": [
                 {
                     "links": clearance.links(approach),
                     "clearance": clearance.gap(approach),
@@ -73,12 +55,8 @@ def clearance_document(
                     "arclength": approach.s,
                     "theta": numbers_at(atlas, approach.theta),
                 }
-            )
-        documents.append(
-            {
-                "form": clearance.form.name,
-                "diameter": clearance.diameter,
-                "approaches": approaches,
-            }
-        )
-    return documents
+                for approach in clearance.approaches
+            ],
+        }
+        for clearance in clearances
+    ]

@@ -15,8 +15,8 @@ from bifurc.singular.confirm import (
     confirm_singular_point,
 )
 from bifurc.text_tables import table
-from linkages.app.answer.subject import LoopSubject, subject_at
 from linkages.app.choice import choose_precisely
+from linkages.app.subject import LoopSubject, subject_at
 from linkages.closure.precise import precise_residual
 from linkages.linkage import is_linkage_file
 
@@ -36,7 +36,7 @@ def confirm_points(
     else:
         # the equations in which the points were located: others, as they are rounded,
         # have their singular points elsewhere
-        atlas = subject_at(atlas).in_loop_angles()
+        atlas = subject_at(atlas).in_loop_angles(atlas)
         residual = subject_at(atlas).equations().precise_residual()
     assert residual is not None
     for meeting in atlas.points:

@@ -4,7 +4,7 @@ of, and with which parameters."""
 from __future__ import annotations
 
 import math
-from typing import TypedDict
+from typing import Any
 
 import numpy as np
 
@@ -124,50 +124,11 @@ def _locked(locked: LockedJoint) -> str:
 # --- JSON -----------------------------------------------------------------------------
 
 
-class ConditionDocument(TypedDict):
-    """A condition, and by how much the table is off it; None where it is no
-    equation."""
-
-    text: str
-    residual: float | None
-
-
-class MatchDocument(TypedDict):
-    """A linkage of the catalogue; ``member`` and ``residuals`` have rows a, alpha,
-    R."""
-
-    name: str
-    parameters: dict[str, float]
-    distance: float
-    freedom: int
-    conditions: list[ConditionDocument]
-    member: list[list[float]]
-    residuals: list[list[float]]
-
-
-class LockedDocument(TypedDict):
-    """What is left where a joint (from 1) is locked at an angle (rad)."""
-
-    joint: int
-    angle: float
-    matches: list[MatchDocument]
-
-
-class IdentificationDocument(TypedDict):
-    """The whole document."""
-
-    linkage: str
-    tolerance: float
-    matches: list[MatchDocument]
-    nearest: list[MatchDocument]
-    locked: list[LockedDocument]
-
-
 def make_identification_document(
     identification: Identification,
-) -> IdentificationDocument:
-    """The same as a JSON document, angles in radians; ``residuals`` are given less
-    member."""
+) -> dict[str, Any]:
+    """The same as a JSON document, angles in radians. ``member`` and ``residuals``, which
+    are given less member, have rows a, alpha, R."""
     return {
         "linkage": identification.loop.name,
         "tolerance": identification.tolerance,
@@ -177,7 +138,7 @@ def make_identification_document(
     }
 
 
-def _locked_document(locked: LockedJoint) -> LockedDocument:
+def _locked_document(locked: LockedJoint) -> dict[str, Any]:
     return {
         "joint": locked.joint,
         "angle": locked.angle,
@@ -185,16 +146,15 @@ def _locked_document(locked: LockedJoint) -> LockedDocument:
     }
 
 
-def _match_document(match: Match) -> MatchDocument:
-    conditions: list[ConditionDocument] = [
-        {"text": text, "residual": residual} for text, residual in match.conditions
-    ]
+def _match_document(match: Match) -> dict[str, Any]:
     return {
         "name": match.entry.name,
         "parameters": match.parameters,
         "distance": match.distance,
         "freedom": match.freedom,
-        "conditions": conditions,
+        "conditions": [
+            {"text": text, "residual": residual} for text, residual in match.conditions
+        ],
         "member": match.member.tolist(),
         "residuals": match.residuals.tolist(),
     }

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import wraps
 
 import click
 
-from linkages.app.options import NumberRange
-
-Command = Callable[..., None]
+from linkages.app.options import Command, NumberRange, with_record
 
 POSITIVE = NumberRange(min=0, min_open=True)
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}  # mm
@@ -34,14 +30,14 @@ class PrintOptions:
         return None if self.unit is None else UNITS[self.unit]
 
 
-OPTIONS = (
-    click.option(
+OPTIONS = {
+    "diameter": click.option(
         "--diameter",
         type=POSITIVE,
         metavar="MM",
         help="For .stl and .step: diameter of the rods.  [default: 6]",
     ),
-    click.option(
+    "play": click.option(
         "--play",
         type=POSITIVE,
         metavar="MM",
@@ -50,13 +46,13 @@ OPTIONS = (
             "the least one between parts on the way.  [default: 0.3]"
         ),
     ),
-    click.option(
+    "wall": click.option(
         "--wall",
         type=POSITIVE,
         metavar="MM",
         help="For .stl and .step: least thickness of a wall.  [default: 1.2]",
     ),
-    click.option(
+    "size": click.option(
         "--size",
         type=POSITIVE,
         metavar="MM",
@@ -64,12 +60,12 @@ OPTIONS = (
             "For .stl and .step: the linkage's mean length of a link.  [default: 100]"
         ),
     ),
-    click.option(
+    "unit": click.option(
         "--unit",
         type=click.Choice(list(UNITS)),
         help="For .stl and .step: the unit of the linkage's lengths, instead of --size.",
     ),
-    click.option(
+    "offsets": click.option(
         "--offsets",
         metavar="MM,MM,...",
         help=(
@@ -77,27 +73,11 @@ OPTIONS = (
             "of the common normal before it.  [default: so that no parts meet]"
         ),
     ),
-)
+}
 
 
 def print_options(command: Command) -> Command:
     """``command`` with the options of printed parts, which it takes as one
     `PrintOptions` called ``printing``."""
 
-    @wraps(command)
-    def with_printing(
-        diameter: float | None,
-        play: float | None,
-        wall: float | None,
-        size: float | None,
-        unit: str | None,
-        offsets: str | None,
-        **others: object,
-    ) -> None:
-        printing = PrintOptions(diameter, play, wall, size, unit, offsets)
-        command(printing=printing, **others)
-
-    decorated: Command = with_printing
-    for option in reversed(OPTIONS):
-        decorated = option(decorated)
-    return decorated
+    return with_record(command, "printing", PrintOptions, OPTIONS)

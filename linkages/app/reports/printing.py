@@ -17,8 +17,7 @@ from linkages.app.reports.print_options import PrintOptions
 from linkages.app.texts.numbers import link_name
 from linkages.labels import loop_of
 from linkages.loop import Loop
-from linkages.printing.assembly import Kind, Part
-from linkages.printing.dimensions import Dimensions
+from linkages.printing.assembly import Dimensions, Kind, Part
 from linkages.printing.interference import PartApproach, find_meetings
 from linkages.printing.seating import REACHES, Seating, choose_seats
 from linkages.values import GeometryError, told_apart
@@ -108,8 +107,7 @@ def write_parts(atlas: Atlas, form: Form, seating: Seating, out: Path) -> None:
     """Write the file of that ending: the parts as they stand where ``form`` begins, or
     laid out; raises `OSError`."""
     from bifurc.files.atomic import replace_file
-    from linkages.printing.files import write_step, write_stl
-    from linkages.printing.solids import make_parts
+    from linkages.printing.solids import make_parts, write_step, write_stl
 
     assembly = seating.assembly
     try:

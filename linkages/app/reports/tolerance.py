@@ -18,13 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas, MeetingPoint
-from bifurc.branch import Branch
-from bifurc.curves.valley import (
-    Unfolding,
-    ValleyEnd,
-    correct_to_valley,
-    unfold_crossing,
-)
+from bifurc.branch import Branch, Outcome
+from bifurc.curves.valley import Unfolding, correct_to_valley, unfold_crossing
 from linkages.loop import Loop
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.tolerance import closure_with_errors
@@ -129,7 +124,12 @@ def climb(
 
 def is_whole(unfolding: Unfolding) -> bool:
     """Whether every valley of an unfolding was followed to its end."""
-    return all(valley.end is ValleyEnd.DONE for valley in unfolding.valleys)
+    return all(is_joined(valley) for valley in unfolding.valleys)
+
+
+def is_joined(valley: Branch) -> bool:
+    """Whether a valley leads from one half-branch to another."""
+    return valley.outcome is Outcome.LEFT_REGION
 
 
 def _widths(copy: Tolerance) -> list[float]:

@@ -23,6 +23,7 @@ COLOURS = (
     "#997700",
     "#555555",
 )
+FRACTIONS = np.linspace(0.0, 1.0, 20)  # of a piece of a valley
 ALONG = np.linspace(-0.3, 0.3, 200)  # arclengths from a bifurcation
 
 
@@ -139,5 +140,8 @@ def _draw_valleys(
 ) -> None:
     """The valleys that a linkage as made follows instead."""
     for k, valley in enumerate(unfolding.valleys):
-        x, y = ((valley.dense() - centre) @ plane).T
+        if not len(valley.pieces):
+            continue
+        points = valley(valley.places(FRACTIONS).ravel())
+        x, y = ((points - centre) @ plane).T
         axes.plot(x, y, color="k", lw=1.6, label="as made" if k == 0 else None)

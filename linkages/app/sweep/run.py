@@ -18,9 +18,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeAlias
 
-from linkages.app.sweep.entries import WrittenBlock, read_entries
-from linkages.app.sweep.journal import Journal
-from linkages.app.sweep.member import Record, atlas_name, map_member
+from linkages.app.sweep.fields import Record
+from linkages.app.sweep.journal import Journal, WrittenBlock, read_entries
+from linkages.app.sweep.member import atlas_name, map_member
 from linkages.app.sweep.plan import Block, Plan
 from linkages.app.sweep.store import SweepStore, require_room
 from linkages.app.sweep.workers import Pool, WorkerError, open_pool

@@ -12,9 +12,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
 from urllib.parse import quote
 
-from linkages.app.choice import choose_linkage
+from linkages.app.choice import choose_linkage, require_kind
 from linkages.app.exit_codes import CommandError
-from linkages.app.inputs import check_limits, no_network
+from linkages.app.inputs import NO_NETWORK, check_limits
 from linkages.catalogue import entry
 from linkages.entry import Parameter, ParameterKind
 from linkages.linkage import Linkage, is_linkage_file
@@ -235,16 +235,17 @@ def choose_subject(
     if not is_linkage_file(text):
         entry(text)
         if is_without_centre:
-            raise no_network(text)
+            raise CommandError(NO_NETWORK.format(text))
         return Family(text)
     chosen = choose_linkage(text, parameters)
     if is_without_centre:
-        raise no_network(text)
-    if isinstance(chosen, Linkage):
-        raise CommandError(
-            f"{text}: it is a single loop, a table or axes, without parameters and "
-            "without joints to lock; a sweep takes a family or a network of the "
-            "catalogue with --param, and a network or the file of a mechanism with "
-            "--lock"
-        )
-    return FileMechanism(chosen)
+        raise CommandError(NO_NETWORK.format(text))
+    from linkages.mechanisms.mechanism import Mechanism
+
+    refusal = (
+        f"{text}: it is a single loop, a table or axes, without parameters and "
+        "without joints to lock; a sweep takes a family or a network of the "
+        "catalogue with --param, and a network or the file of a mechanism with "
+        "--lock"
+    )
+    return FileMechanism(require_kind(chosen, Mechanism, refusal))

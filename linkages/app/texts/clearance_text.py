@@ -5,8 +5,8 @@ from __future__ import annotations
 from bifurc.atlas import Atlas
 from bifurc.text_tables import table
 from linkages.app.answer.configurations import arclength_unit, show_configuration
-from linkages.app.answer.subject import subject_at
 from linkages.app.reports.clearance import FormClearance
+from linkages.app.subject import subject_at
 
 SHOWN = 1e-9  # in characteristic lengths: what is less comes out as 0
 HEADS = ("clearance", "at most less by")
@@ -45,7 +45,7 @@ def _of_form(atlas: Atlas, clearance: FormClearance) -> str:
     links, least, *_ = rows[0]
     word = subject.parts
     title = f"{clearance.form.name}: the least clearance is {least} ({word} {links})"
-    heads = (word, *HEADS, f"arclength ({unit.name})", subject.heading)
+    heads = (word, *HEADS, f"arclength ({unit.name})", subject.heading(atlas))
     return f"{title}\n{table(heads, rows)}"
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import zip_longest
+from typing import Any
 
 import numpy as np
 
@@ -11,11 +12,7 @@ from bifurc.atlas import Atlas
 from bifurc.text_tables import section
 from bifurc.torus import wrap
 from linkages.app.answer.configurations import SHOWN_SHARE
-from linkages.app.answer.mechanism_document import (
-    LooseChainDocument,
-    describe_mechanism,
-)
-from linkages.app.answer.mobility import mobility_of
+from linkages.app.answer.mechanism_document import describe_mechanism
 from linkages.app.texts.form_names import listed_numbers
 from linkages.app.texts.numbers import in_degrees, in_lengths, known_to
 from linkages.mechanisms.joint import Joint
@@ -140,7 +137,9 @@ def describe_loops(atlas: Atlas, readout: Readout) -> str:
             )
         )
     heads = ("joints", "constraints", "redundant", "motion that others can make")
-    count = f"Mobility {mobility_of(atlas)}; Grübler's count is {readout.mechanism.gruebler}"
+    count = (
+        f"Mobility {atlas.mobility}; Grübler's count is {readout.mechanism.gruebler}"
+    )
     count += f"{_special_count(readout.mechanism)}."
     for chain in document["loose_chains"]:
         count += f"\n{_of_loose_chain(chain)}"
@@ -148,7 +147,7 @@ def describe_loops(atlas: Atlas, readout: Readout) -> str:
     return f"{loops}\n\n{count}" if loops else count
 
 
-def _of_loose_chain(chain: LooseChainDocument) -> str:
+def _of_loose_chain(chain: dict[str, Any]) -> str:
     """A sentence on a chain that moves by itself, and what to do about it."""
     ends = chain["between"]
     place = f"between {' and '.join(ends)}" if len(ends) > 1 else f"on {ends[0]}"

@@ -12,7 +12,7 @@ from linkages.app.answer.configurations import (
     show_configuration,
     show_travel,
 )
-from linkages.app.answer.subject import subject_at
+from linkages.app.subject import subject_at
 
 
 def describe_route(atlas: Atlas, route: Route, start: str, goal: str) -> str:

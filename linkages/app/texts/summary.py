@@ -17,23 +17,13 @@ from linkages.app.answer.configurations import (
     show_configuration,
     unit_of_arclengths,
 )
-from linkages.app.answer.subject import MechanismSubject, subject_at
 from linkages.app.answer.verdict import judge
+from linkages.app.subject import MechanismSubject, NetworkSubject, subject_at
 from linkages.app.texts.entry_text import describe_geometry
 from linkages.app.texts.form_names import listed_forms
 from linkages.labels import FormLabels, loop_of
 
 SHOWN = 12  # near misses and rigid assemblies beyond this number are only counted
-# titles of the tables of singular points, and the kinds that stand in each
-POINT_TABLES = (
-    ("Bifurcations", (Kind.BIFURCATION,)),
-    ("Rank drops (a single branch passes)", (Kind.RANK_DROP,)),
-    ("Changes of dimension (a surface is met)", (Kind.DIMENSION_CHANGE,)),
-    (
-        "Other singular points",
-        (Kind.CUSP, Kind.ISOLATED, Kind.SURFACE, Kind.UNDECIDED),
-    ),
-)
 
 
 def make_summary(atlas: Atlas) -> str:
@@ -47,7 +37,7 @@ def make_summary(atlas: Atlas) -> str:
         *tables.geometry,
         _forms(atlas),
         _surfaces(atlas),
-        *(_points(atlas, title, kinds) for title, kinds in POINT_TABLES),
+        *(_points(atlas, title) for title in dict.fromkeys(one.title for one in Kind)),
         _near_misses(atlas),
         _rigid_assemblies(atlas),
         _near_motions(atlas),
@@ -72,7 +62,8 @@ def _tables(atlas: Atlas) -> _Tables:
         return _Tables([describe_geometry(loop_of(atlas))], [])
     from linkages.app.texts import mechanism_text, network_text
 
-    readout, network = subject.readout, subject.network
+    readout = subject.readout
+    network = subject.network if isinstance(subject, NetworkSubject) else None
     geometry = [mechanism_text.describe_joints(readout)]
     if network is not None:
         geometry.append(network_text.describe_kinks(network))
@@ -163,10 +154,11 @@ def _surface_row(surface: Surface) -> tuple[str, ...]:
     return (name, dimension, count, area, charts.outcome.value, surface.note)
 
 
-def _points(atlas: Atlas, title: str, kinds: Sequence[Kind]) -> str:
+def _points(atlas: Atlas, title: str) -> str:
+    """The singular points of the kinds whose table has a ``title``."""
     rows = []
     for point in atlas.points:
-        if point.kind not in kinds:
+        if point.kind.title != title:
             continue
         remark = f": {point.note}" if point.note else ""
         rows.append(
@@ -179,7 +171,7 @@ def _points(atlas: Atlas, title: str, kinds: Sequence[Kind]) -> str:
                 point.kind.value + remark,
             )
         )
-    heads = ("name", subject_at(atlas).heading, "rank", "error", "forms", "kind")
+    heads = ("name", subject_at(atlas).heading(atlas), "rank", "error", "forms", "kind")
     return section(title, heads, rows)
 
 
@@ -200,13 +192,13 @@ def _near_misses(atlas: Atlas) -> str:
         angles = show_configuration(atlas, miss.u)
         value, error = f"{miss.value:.6g}", f"{miss.error:.0e}"
         rows.append((angles, value, error, atlas.forms[miss.form].name))
-    heads = (subject_at(atlas).heading, "singular value", "error", "form")
+    heads = (subject_at(atlas).heading(atlas), "singular value", "error", "form")
     return _beginning("Near misses (no bifurcation)", heads, rows)
 
 
 def _rigid_assemblies(atlas: Atlas) -> str:
     rows = [(show_configuration(atlas, theta),) for theta in atlas.rigid]
-    return _beginning("Rigid assemblies", (subject_at(atlas).heading,), rows)
+    return _beginning("Rigid assemblies", (subject_at(atlas).heading(atlas),), rows)
 
 
 def _near_motions(atlas: Atlas) -> str:
@@ -221,7 +213,13 @@ def _near_motions(atlas: Atlas) -> str:
         mobility = str(near.mobility)
         rows.append((angles, mobility, closed, length, f"{near.misclosure:.3g}"))
     length = f"length ({unit.name})"
-    heads = (subject_at(atlas).heading, "mobility", "closed", length, "misclosure")
+    heads = (
+        subject_at(atlas).heading(atlas),
+        "mobility",
+        "closed",
+        length,
+        "misclosure",
+    )
     return _beginning("Near motions (the loop nearly closes)", heads, rows)
 
 

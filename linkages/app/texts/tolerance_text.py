@@ -7,17 +7,18 @@ from collections.abc import Sequence
 import numpy as np
 
 from bifurc.atlas import Atlas
-from bifurc.curves.valley import Unfolding, ValleyEnd
+from bifurc.curves.valley import Unfolding
 from bifurc.text_tables import count_of, section
 from linkages.app.answer.configurations import unit_of_arclengths
-from linkages.app.answer.subject import subject_at
 from linkages.app.reports.tolerance import (
     Ladder,
     Tolerance,
     half_branches,
+    is_joined,
     is_whole,
     slope,
 )
+from linkages.app.subject import subject_at
 
 
 def describe_tolerance(
@@ -78,7 +79,7 @@ def _joined_half_branches(unfolding: Unfolding, names: Sequence[str]) -> str:
     """Which half-branches a valley joins now, and which of them end."""
     parts = []
     for (i, j), valley in zip(unfolding.pairs, unfolding.valleys, strict=True):
-        if valley.end is ValleyEnd.DONE:
+        if is_joined(valley):
             parts.append(f"{names[i]} - {names[j]}")
         else:
             parts.append(f"{names[i]} ends")

@@ -16,12 +16,6 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.chebyshev import NODE_COUNT
-from bifurc.search.certify_atlas import certify_atlas
-from bifurc.search.explore import explore
-from bifurc.settings import SearchSettings
-from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import Loop
 
 
 class Hyperbola(FunctionProblem):
@@ -52,57 +46,6 @@ def straight_branch(problem: FunctionProblem) -> Branch:
         problem.periods,
         Outcome.LEFT_REGION,
     )
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        "special-double-subtractive-goldberg",
-        "bricard-octahedral-line-symmetric",
-        "goldberg-5r",
-        "bennett",
-    ],
-)
-def test_the_curvature_bound_exceeds_every_second_derivative_near_closed_configurations(
-    name,
-):
-    problem = LoopClosure(entry(name).build())
-    bound, rng, worst = problem.curvature_bound(), np.random.default_rng(1), 0.0
-    for form in explore(problem, settings=SearchSettings(starts=20)).forms:
-        for theta in form.branch.sample(40) + rng.normal(
-            scale=1e-2, size=(40, problem.n)
-        ):
-            direction = rng.normal(size=problem.n)
-            direction /= np.linalg.norm(direction)
-            worst = max(worst, np.linalg.norm(problem.hessian(theta) @ direction, 2))
-    assert 0.1 * bound < worst <= bound
-
-
-def test_a_form_without_singular_points_is_certified_all_along():
-    problem = LoopClosure(entry("bennett").build())
-    (form,) = certify_atlas(problem, explore(problem)).forms
-    certificate = form.certificate
-    assert certificate.status is CertificateStatus.CERTIFIED
-    assert not len(certificate.gaps) and not len(certificate.blurred)
-
-
-def test_forms_that_cross_are_certified_up_to_the_crossings():
-    problem = LoopClosure(entry("special-double-subtractive-goldberg").build())
-    for form in certify_atlas(problem, explore(problem)).forms:
-        assert form.certificate.status is CertificateStatus.UP_TO_SINGULAR_POINTS
-
-
-def test_a_crossing_that_is_not_handed_over_is_named_as_singular():
-    problem = LoopClosure(Loop([2, 1, 2, 1], [0] * 4, [0] * 4))
-    atlas = explore(problem)
-    branch = atlas.forms[0].branch
-    certificate = certify_branch(problem, branch, profile_branch(problem, branch))
-    assert certificate.status is CertificateStatus.UP_TO_ROUNDING
-    crossings = sorted(
-        s for point in atlas.bifurcations for i, s in point.passes if i == 0
-    )
-    assert certificate.blurred.mean(axis=1) == pytest.approx(crossings, abs=1e-6)
-    assert np.diff(certificate.blurred).max() < 1e-5
 
 
 @pytest.mark.parametrize("gap", [1e-1, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10])

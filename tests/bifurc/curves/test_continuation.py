@@ -9,8 +9,6 @@ from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
 from bifurc.limits import Deadline
 from bifurc.settings import TraceSettings
-from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
 from tests.bifurc.near_surfaces import CirclesBesideSphere
 
 
@@ -165,22 +163,6 @@ def test_an_arc_close_to_another_is_not_left(gap):
 
 
 @pytest.mark.parametrize(
-    "name",
-    ["serial-goldberg-6r", "double-goldberg-type-iv", "syncopated-l-shape-goldberg-6r"],
-)
-def test_a_configuration_of_lower_rank_on_a_smooth_branch_is_passed(name):
-    problem = LoopClosure(entry(name).build())
-    seeds = problem.seeds(np.random.default_rng(1), 1).points
-    values = np.linalg.svd(problem.jacobians(seeds), compute_uv=False)[:, 4]
-    lengths = []
-    for start in seeds[np.argsort(-values)[:5]]:
-        branch = trace_branch(problem, start)
-        assert branch.outcome is Outcome.CLOSED
-        lengths.append(branch.length)
-    assert lengths == pytest.approx([lengths[0]] * 5, abs=1e-8)
-
-
-@pytest.mark.parametrize(
     ("field", "value"),
     [
         ("order", 1),
@@ -209,17 +191,6 @@ def test_a_start_that_cannot_be_one_is_refused(start):
 def test_a_direction_of_the_wrong_shape_is_refused():
     with pytest.raises(ProblemError, match="direction"):
         trace_branch(plane(lambda x, y: x * y), [1.0, 0.0], [1.0])
-
-
-@pytest.mark.parametrize("order", [4, 8, 16, 24])
-def test_every_order_meets_the_tolerance(order):
-    problem = LoopClosure(entry("bricard-line-symmetric").build())
-    start = problem.seeds(np.random.default_rng(0), 1).points[0]
-    branch = trace_branch(
-        problem, start, None, TraceSettings(order=order, tolerance=1e-10)
-    )
-    assert branch.outcome is Outcome.CLOSED
-    assert np.linalg.norm(problem.residuals(branch.sample(3000)), axis=1).max() < 1e-9
 
 
 @pytest.mark.parametrize("e", [1e-3, 1e-5, 1e-7])

@@ -11,8 +11,6 @@ from bifurc.curves.jumps import changes_of_course, kinks, repeats_itself
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
 
 BOX = [(-2.0, 2.0), (-2.0, 2.0)]
 
@@ -90,16 +88,6 @@ def test_a_curve_that_turns_off_at_a_crossing_changes_its_course(corners, expect
     profile = profile_branch(cross, branch)
     changes = changes_of_course(branch, profile, np.array([1.0]))
     assert changes.tolist() == expected
-
-
-def test_forms_through_bifurcations_keep_their_course():
-    problem = LoopClosure(entry("special-double-subtractive-goldberg").build())
-    atlas = explore(problem)
-    for index, form in enumerate(atlas.forms):
-        cuts = [s for p in atlas.bifurcations for i, s in p.passes if i == index]
-        assert len(cuts) == 2
-        changes = changes_of_course(form.branch, form.profile, np.sort(cuts))
-        assert not len(changes) and not len(kinks(form.branch))
 
 
 def test_kinks_near_the_ends_may_be_left_out():

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from bifurc.curves.continuation import trace_branch
-from bifurc.curves.deflation import Deflated
-from bifurc.curves.lower_rank import LowerRank, lower_rank_along
+from bifurc.curves.deflation import Deflated, LowerRank, lower_rank_along
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 

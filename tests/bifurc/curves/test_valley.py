@@ -3,12 +3,8 @@
 import numpy as np
 import pytest
 
-from bifurc.curves.valley import (
-    ValleyEnd,
-    correct_to_valley,
-    follow_valley,
-    unfold_crossing,
-)
+from bifurc.branch import Outcome
+from bifurc.curves.valley import correct_to_valley, unfold_crossing
 from bifurc.function_problem import FunctionProblem
 
 BOX = [[-2.0, 2.0], [-2.0, 2.0]]
@@ -47,18 +43,6 @@ def test_a_consistent_system_has_the_curve_itself_as_its_valley():
     )
 
 
-def test_a_valley_is_followed_until_the_condition_holds():
-    problem = contradicting_circles(1e-3)
-    valley = follow_valley(
-        problem, np.array([1.0, 0.0]), np.array([0.0, 1.0]), lambda u: u[0] < -0.5
-    )
-    assert valley.end is ValleyEnd.DONE
-    assert np.linalg.norm(valley.dense(), axis=1) == pytest.approx(
-        np.sqrt(1.0005), abs=1e-4
-    )
-    assert np.all(np.diff(np.arctan2(valley.points[:, 1], valley.points[:, 0])) > 0)
-
-
 @pytest.mark.parametrize("error", [1e-3, 1e-6, 1e-9])
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_crossing_opens_into_two_hyperbolas(error, sign):
@@ -76,12 +60,7 @@ def test_the_smallest_singular_value_is_that_of_the_vertex():
     assert found.weakest * problem.magnitude == pytest.approx(np.sqrt(2e-4), rel=0.05)
 
 
-def test_the_step_limit_is_said():
-    valley = follow_valley(
-        contradicting_circles(0.0),
-        np.array([1.0, 0.0]),
-        np.array([0.0, 1.0]),
-        lambda u: False,
-        steps=5,
-    )
-    assert valley.end is ValleyEnd.STEP_LIMIT and len(valley.points) == 6
+def test_a_valley_that_is_not_near_the_start_is_none():
+    far_away = FunctionProblem(lambda u: np.array([u[0] - 1.9]), BOX)
+    found = unfold_crossing(far_away, np.zeros(2), ARMS)
+    assert all(valley.outcome is Outcome.OPEN for valley in found.valleys)

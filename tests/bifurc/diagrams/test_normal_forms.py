@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 import bifurc
-from bifurc.diagrams.diagram import BranchingKind, Stability
+from bifurc.diagrams.diagram import Stability
 from bifurc.errors import ProblemError
+from bifurc.singular.point import Kind
 
 Function = Callable[[np.ndarray], Sequence[float]]
 
@@ -31,13 +32,13 @@ def diagram_of(function: Function, **options: bool) -> bifurc.Diagram:
     [
         (
             lambda u: [u[1] * u[0] - u[0] ** 3],
-            BranchingKind.SUPERCRITICAL,
+            Kind.SUPERCRITICAL,
             [0, 0, 0, 1],
         ),
-        (lambda u: [u[1] * u[0] + u[0] ** 3], BranchingKind.SUBCRITICAL, [0, 1, 1, 1]),
+        (lambda u: [u[1] * u[0] + u[0] ** 3], Kind.SUBCRITICAL, [0, 1, 1, 1]),
         (
             lambda u: [u[1] * u[0] - u[0] ** 2],
-            BranchingKind.TRANSCRITICAL,
+            Kind.TRANSCRITICAL,
             [0, 0, 1, 1],
         ),
     ],

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import bifurc
-from bifurc.diagrams.diagram import BranchingKind
+from bifurc.singular.point import Kind
 
 
 def has_point(points, expected, digits) -> bool:
@@ -142,7 +142,7 @@ def test_two_bars_under_a_symmetric_load_buckle_in_pitchforks() -> None:
     gap = 2 / math.sqrt(3)
     np.testing.assert_allclose(folds, [2 - gap, 2 + gap], rtol=0, atol=1e-9)
     kinds = [one.kind for one in atlas.diagram.branchings]
-    assert kinds == [BranchingKind.SUPERCRITICAL] * 2
+    assert kinds == [Kind.SUPERCRITICAL] * 2
     heights = sorted(point.point.u[0] for point in atlas.bifurcations)
     gap = math.sqrt(2)
     np.testing.assert_allclose(heights, [2 - gap, 2 + gap], rtol=0, atol=1e-12)

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import bifurc
-from bifurc.diagrams.diagram import BranchingKind, Stability
+from bifurc.diagrams.diagram import Stability
+from bifurc.singular.point import Kind
 
 Function = Callable[[np.ndarray], Sequence[float]]
 
@@ -34,32 +35,32 @@ def test_folds_beside_a_pitchfork_are_both_found() -> None:
     diagram = diagram_of(lambda u: [u[0] * (u[1] + 1e-4 * u[0] ** 2 - u[0] ** 4)])
     x = np.sqrt(0.5e-4)
     assert sorted(fold.u[0] for fold in diagram.folds) == pytest.approx([-x, x])
-    assert [one.kind for one in diagram.branchings] == [BranchingKind.SUBCRITICAL]
+    assert [one.kind for one in diagram.branchings] == [Kind.SUBCRITICAL]
 
 
 @pytest.mark.parametrize("power", [4, 6, 8])
 def test_a_flat_pitchfork_has_no_fold_of_its_own(power) -> None:
     diagram = diagram_of(lambda u: [u[0] * (u[1] - u[0] ** power)])
-    assert [one.kind for one in diagram.branchings] == [BranchingKind.SUPERCRITICAL]
+    assert [one.kind for one in diagram.branchings] == [Kind.SUPERCRITICAL]
     assert not diagram.folds
     assert sorted(one.unstable for one in diagram.stretches) == [0, 0, 0, 1]
 
 
 def test_a_flat_subcritical_pitchfork_is_one() -> None:
     diagram = diagram_of(lambda u: [u[0] * (u[1] + u[0] ** 4 - u[0] ** 6)])
-    assert [one.kind for one in diagram.branchings] == [BranchingKind.SUBCRITICAL]
+    assert [one.kind for one in diagram.branchings] == [Kind.SUBCRITICAL]
     assert [fold.u[1] for fold in diagram.folds] == pytest.approx([-4 / 27] * 2)
 
 
 def test_a_parameter_that_slows_down_and_goes_on_crosses() -> None:
     diagram = diagram_of(lambda u: [u[0] * (u[1] - u[0] ** 3)])
-    assert [one.kind for one in diagram.branchings] == [BranchingKind.TRANSCRITICAL]
+    assert [one.kind for one in diagram.branchings] == [Kind.TRANSCRITICAL]
     assert not diagram.folds
 
 
 def test_a_form_on_which_the_parameter_rests_makes_a_branch_point() -> None:
     diagram = diagram_of(lambda u: [(u[1] - 0.5) * (u[0] - u[1] ** 2)])
-    assert [one.kind for one in diagram.branchings] == [BranchingKind.OTHER]
+    assert [one.kind for one in diagram.branchings] == [Kind.OTHER]
 
 
 def test_a_pitchfork_is_one_whatever_the_unknowns_are_counted_in() -> None:
@@ -72,9 +73,9 @@ def test_a_pitchfork_is_one_whatever_the_unknowns_are_counted_in() -> None:
     assert diagram is not None
     (branching,) = diagram.branchings
     assert branching.kind in (
-        BranchingKind.PITCHFORK,
-        BranchingKind.SUPERCRITICAL,
-        BranchingKind.SUBCRITICAL,
+        Kind.PITCHFORK,
+        Kind.SUPERCRITICAL,
+        Kind.SUBCRITICAL,
     )
 
 

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from bifurc.equations.recording import record
-from studies.methods.cases import bratu
+from tests.bifurc.known_curves import Bratu, double_watt
 from tests.bifurc.search.test_explore import COPIES, KNOWN
 from tests.bifurc.singular.test_degenerate_points import AT_THE_ORIGIN
-from tests.test_literature import double_watt
 
 BOX = (0.1, 0.9)
 
@@ -99,7 +98,7 @@ FUNCTIONS = {
     "aircraft": (aircraft, 6),
     "four-bar": (four_bar, 3),
     "double watt": (double_watt_lengths(), 8),
-    "bratu": (bratu(20).problem._function, 21),
+    "bratu": (Bratu(20).residual, 21),
     "filled array": (filled, 4),
     "rotation": (rotation, 3),
     "norms": (lambda u: [np.linalg.norm(u) - 1, np.linalg.norm([u[0], 2.0])], 3),

@@ -9,7 +9,7 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.problem import Anchor, MarchSettings, MarchStatus
 from bifurc.settings import TraceSettings
-from studies.methods.cases import bratu
+from tests.bifurc.known_curves import Bratu
 
 
 def circle(size, weight):
@@ -87,13 +87,13 @@ def test_a_march_with_an_anchor_ends_where_the_bounds_are_left():
 
 
 def test_many_unknowns_have_a_sparse_jacobian():
-    case = bratu(150)
-    jacobian = case.problem.jacobian(case.start)
-    assert case.problem.derivatives == "recorded"
+    problem = Bratu(150)
+    jacobian = problem.jacobian(problem.start)
+    assert problem.derivatives == "recorded"
     assert issparse(jacobian)
     assert jacobian.nnz == 150 + 2 * 149 + 150
     branch = trace_branch(
-        case.problem, case.start, case.tangent, TraceSettings(tolerance=1e-8)
+        problem, problem.start, problem.tangent, TraceSettings(tolerance=1e-8)
     )
     assert branch.outcome is Outcome.LEFT_REGION
     assert branch.residuals.max() < 1e-8
@@ -102,13 +102,13 @@ def test_many_unknowns_have_a_sparse_jacobian():
 @pytest.mark.parametrize("tolerance", [1e-8, 1e-13])
 def test_a_curve_is_exact_where_the_equations_are_far_larger_elsewhere(tolerance):
     # exp(20) within the bounds, 1 and less along the curve
-    case = bratu(30)
+    problem = Bratu(30)
     branch = trace_branch(
-        case.problem, case.start, case.tangent, TraceSettings(tolerance=tolerance)
+        problem, problem.start, problem.tangent, TraceSettings(tolerance=tolerance)
     )
     points = branch.sample(300)
     # rounding over the magnitude, which is 1e5, would be 1e-10
-    assert np.abs(case.problem.residuals(points)).max() < 2 * tolerance + 5e-12
+    assert np.abs(problem.residuals(points)).max() < 2 * tolerance + 5e-12
 
 
 def test_a_curve_starts_where_rounding_is_far_more_than_at_most_solutions():

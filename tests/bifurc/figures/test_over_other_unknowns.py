@@ -7,7 +7,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from bifurc.errors import ProblemError
-from bifurc.figures.singular_values_against import plot_singular_values_against
+from bifurc.figures.singular_values import plot_singular_values_against
 from bifurc.figures.space import plot_map_in_space
 
 

@@ -11,16 +11,15 @@ import pytest
 from bifurc.atlas import Atlas, Event, NearMotion, Surface
 from bifurc.diagrams.diagram import (
     Branching,
-    BranchingKind,
     Diagram,
     DiagramPoint,
-    PointKind,
     Stability,
     Stretch,
 )
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
+from bifurc.singular.point import Kind
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 
 
@@ -99,22 +98,20 @@ def atlas() -> Atlas:
             (
                 DiagramPoint(
                     "F1",
-                    PointKind.FOLD,
+                    Kind.FOLD,
                     1,
                     1 / 3,
                     np.array([0.1, -0.0]),
                     7.0,
                     error=0.2,
                 ),
-                DiagramPoint(
-                    "E1", PointKind.EVENT, 0, 0.0, np.zeros(2), -1e-300, "a name"
-                ),
+                DiagramPoint("E1", Kind.EVENT, 0, 0.0, np.zeros(2), -1e-300, "a name"),
             ),
             (
                 Stretch(0, 0.0, 2 / 3, Stability.UNSTABLE, 2),
                 Stretch(1, 0.1, 7.0, Stability.UNKNOWN, -1),
             ),
-            (Branching(1, BranchingKind.SUBCRITICAL),),
+            (Branching(1, Kind.SUBCRITICAL),),
             ("event 'a name': it jumps", "and another"),
         ),
         dead_points=(

@@ -20,7 +20,7 @@ from bifurc.files.dataset import (
     save_atlas,
     to_dataset,
 )
-from bifurc.files.seal import MARK
+from bifurc.files.netcdf import MARK
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings

@@ -7,7 +7,7 @@ import pytest
 from scipy.sparse import csr_array, eye_array
 
 from bifurc import LargeProblem, ProblemError
-from bifurc.large.colouring import column_groups
+from bifurc.large.large_problem import column_groups
 from studies.methods.fields import bratu_field
 
 

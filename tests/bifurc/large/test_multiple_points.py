@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array, diags_array, eye_array, kron
 
-from bifurc import LargeKind, LargeProblem, LargeSettings, trace_large_branch
+from bifurc import Kind, LargeProblem, LargeSettings, trace_large_branch
 
 LOOKING = LargeSettings(values=3)
 SIDE = 12  # inner points of a side of the square
@@ -115,8 +115,8 @@ def test_a_circle_of_directions_is_said_to_be_not_computed() -> None:
     step = 2 * np.pi / m
     _, branch = trivial_branch(csr_array(ring) / step**2, -0.5, 2.0)
     first, second = branch.points
-    assert first.kind is LargeKind.CROSSING and first.multiplicity == 1
-    assert second.kind is LargeKind.MULTIPLE and second.multiplicity == 2
+    assert first.kind is Kind.CROSSING and first.multiplicity == 1
+    assert second.kind is Kind.MULTIPLE and second.multiplicity == 2
     assert second.parameter == pytest.approx(
         2 * (1 - np.cos(step)) / step**2, abs=1e-10
     )
@@ -128,7 +128,7 @@ def test_a_circle_of_directions_is_said_to_be_not_computed() -> None:
 def test_all_values_may_vanish_at_once(count: int) -> None:
     _, branch = trivial_branch(csr_array((count, count)), -0.7, 1.0)
     (point,) = branch.points
-    assert point.kind is LargeKind.MULTIPLE
+    assert point.kind is Kind.MULTIPLE
     assert point.multiplicity == count
     assert np.abs(point.u).max() < 1e-12
 

@@ -12,7 +12,7 @@ from scipy.sparse import csr_array, eye_array
 from scipy.sparse.linalg import LinearOperator, splu
 
 import bifurc
-from bifurc import LargeKind, LargeProblem, LargeSettings, trace_large_branch
+from bifurc import Kind, LargeProblem, LargeSettings, trace_large_branch
 from bifurc.branch import Outcome
 from bifurc.settings import TraceSettings
 from studies.methods.fields import (
@@ -351,7 +351,7 @@ WHOLE = LargeSettings(
 def test_a_crossing_is_seen_from_any_start_itself_among_them(parameter: float) -> None:
     problem = LargeProblem(pitchfork, 2, (-1.0, 1.5))
     branch = trace_large_branch(problem, [0.0, parameter], settings=WHOLE)
-    assert [point.kind for point in branch.points] == [LargeKind.CROSSING]
+    assert [point.kind for point in branch.points] == [Kind.CROSSING]
     assert np.abs(branch.crossings[0].u).max() < 1e-12
     assert np.all(np.isfinite(branch.values))
 

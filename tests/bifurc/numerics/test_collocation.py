@@ -3,19 +3,10 @@
 import numpy as np
 import pytest
 
-from bifurc.curves.continuation import trace_branch
-from bifurc.function_problem import FunctionProblem, NumericalProblem
+from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.collocation import bridge_by_collocation, march_by_collocation
 from bifurc.pieces import points_on_piece
 from bifurc.problem import MarchSettings, MarchStatus
-from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
-
-
-class WithoutSeries(LoopClosure):
-    """The closure of a loop as any other problem: no Taylor series."""
-
-    march = NumericalProblem.march
 
 
 @pytest.fixture
@@ -81,18 +72,3 @@ def test_a_bridge_passes_a_crossing_on_its_own_branch():
     assert points == pytest.approx(
         np.stack([np.linspace(-0.2, 0.2, 101), np.zeros(101)], axis=1), abs=1e-9
     )
-
-
-@pytest.mark.parametrize("name", ["bennett", "bricard-line-symmetric"])
-def test_a_motion_traced_without_series_is_the_one_traced_with_it(name):
-    loop = entry(name).build()
-    problem = LoopClosure(loop)
-    start = problem.seeds(np.random.default_rng(0), 1).points[0]
-    series, plain = (
-        trace_branch(problem, start),
-        trace_branch(WithoutSeries(loop), start),
-    )
-    assert plain.outcome is series.outcome
-    assert plain.length == pytest.approx(series.length, abs=1e-10)
-    # both within tolerance 1e-13 over the smallest singular value, 0.02 to 0.1
-    assert series.nearest(plain.sample(300))[0].max() < 1e-10

@@ -50,8 +50,8 @@ def test_a_correction_across_the_tangent_reaches_rounding_whatever_the_weights_o
 
 
 def test_a_correction_of_inconsistent_equations_ends_at_the_smallest_residual():
-    # y = 0 and y = 0.01 with x free: the valley is y = 0.005 with a residual of 0.005
-    # sqrt(2)
+    # y = 0 and y = 0.01 with x free: the valley is y = 0.005, and the residual there
+    # 0.005 sqrt(2)
     problem = FunctionProblem(lambda u: np.array([u[1], u[1] - 0.01]), BOX[:2])
     point, gap, _ = correct_across(
         problem, np.array([0.3, 0.4]), np.array([1.0, 0.0]), 1e-13

@@ -4,14 +4,11 @@ arclengths."""
 import numpy as np
 import pytest
 
-from bifurc.atlas import Atlas
 from bifurc.errors import BifurcError, RouteError
 from bifurc.routes.route import find_route
 from bifurc.routes.spread import spread_route
 from tests.bifurc.drawn_atlas import bridge, draw, ring
-from tests.bifurc.known_surfaces import sarrus
 
-SARRUS = sarrus()
 COUNTS = (2, 3, 7, 10, 361)
 
 
@@ -36,30 +33,10 @@ def test_the_count_is_that_of_the_whole_route_whatever_its_legs(count: int) -> N
     np.testing.assert_allclose(spread.configurations, corner_route(expected), atol=1e-9)
 
 
-@pytest.mark.parametrize("count", COUNTS)
-def test_over_surfaces_they_are_solutions_at_even_steps(
-    folded_sarrus: Atlas, count: int
-) -> None:
-    route = find_route(folded_sarrus, "Form 1", "Form 2", problem=SARRUS)
-    spread = spread_route(folded_sarrus, route, count, SARRUS)
-    assert spread.configurations.shape == (count, 6)
-    assert np.abs(SARRUS.residuals(spread.configurations)).max() < 1e-12
-    ends = spread.configurations[[0, -1]]
-    np.testing.assert_allclose(ends, route.path[[0, -1]], atol=1e-9)
-    steps = np.linalg.norm(np.diff(spread.configurations, axis=0), axis=1)
-    step = route.length / (count - 1)
-    assert steps.max() < step * (1 + 1e-6)
-    # shorter only where a form is left, and along the bend of a form
-    assert np.median(steps) > 0.99 * step or count < 20
-
-
-def test_what_cannot_be_spread_is_refused_by_name(folded_sarrus: Atlas) -> None:
+def test_what_cannot_be_spread_is_refused_by_name() -> None:
     atlas = draw({"ring": ring(0.0)}, {})
     with pytest.raises(RouteError, match="no length"):
         spread_route(atlas, find_route(atlas, "ring", "ring"), 5)
     route = find_route(atlas, np.array([0.0, 0.0]), np.array([1.0, 0.0]))
     with pytest.raises(BifurcError, match="count"):
         spread_route(atlas, route, 1)
-    route = find_route(folded_sarrus, "Form 1", "Form 2", problem=SARRUS)
-    with pytest.raises(RouteError, match="problem"):
-        spread_route(folded_sarrus, route, 5)

@@ -8,7 +8,7 @@ from bifurc.branch import Branch
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
-from bifurc.search.assemble import near_misses_of
+from bifurc.search.answer.assemble import near_misses_of
 from bifurc.search.findings import TracedBranch
 from bifurc.singular.point import Kind, SingularPoint
 

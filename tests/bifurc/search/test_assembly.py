@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bifurc.function_problem import FunctionProblem
-from bifurc.search.assembly import polished
+from bifurc.search.solutions import polished
 
 
 def problem_of_order(order):

@@ -14,8 +14,6 @@ from bifurc.search.canonical_order import (
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from bifurc.surfaces.covering import cover_surface
-from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import Loop
 from tests.bifurc.known_surfaces import Level
 
 NO_PERIODS = np.full(2, np.inf)
@@ -43,20 +41,6 @@ def test_forms_of_equal_length_stand_in_one_order_whatever_the_seed(seed):
     centers = [form.branch.sample(8).mean(axis=0) for form in atlas.forms]
     expected = [(1.5, 1.0), (1.5, -1.0), (0.0, 2.0), (-1.5, 0.0)]
     assert np.array(centers) == pytest.approx(np.array(expected), abs=1e-9)
-
-
-@pytest.mark.parametrize("seed", range(1, 4))
-def test_mirror_images_and_events_of_a_loop_keep_their_places(seed):
-    # spherical, with right angles: four forms of equal length, many dead points
-    loop = Loop((0.0,) * 4, (np.pi / 2,) * 4, (0.0,) * 4)
-    one, other = (explore(LoopClosure(loop), seed=k) for k in (0, seed))
-    for left, right in zip(one.forms, other.forms, strict=True):
-        assert right.branch.nearest(left.branch.sample(9))[0].max() < 1e-9
-    for left, right in zip(one.points, other.points, strict=True):
-        gap = LoopClosure(loop).difference(left.point.u, right.point.u)
-        assert (left.name, left.kind) == (right.name, right.kind)
-        assert np.abs(gap).max() < 1e-9
-        assert [form for form, _ in left.passes] == [form for form, _ in right.passes]
 
 
 @pytest.mark.parametrize("seed", range(1, 4))

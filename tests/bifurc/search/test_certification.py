@@ -7,18 +7,14 @@ import pytest
 from bifurc.completeness import Claim, Level
 from bifurc.curves.certificate import CertificateStatus
 from bifurc.function_problem import FunctionProblem
-from bifurc.search import search as search_module
+from bifurc.search import branch_examination, tracing
 from bifurc.search.explore import explore
 from bifurc.seeds import Audit, Seeds
 from bifurc.settings import SearchSettings
-from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
-from linkages.families.bricard import bricard_line_symmetric
 from tests.bifurc.curves.test_jumps import polyline
 
-ERRORS = [1e-2, 1e-3, 1e-4]
 SETTINGS = SearchSettings(starts=40)
-trace_branch = search_module.trace_branch
+trace_branch = tracing.trace_branch
 
 
 class Hyperbola(FunctionProblem):
@@ -46,26 +42,6 @@ def counts(atlas):
     return len(atlas.forms), len(atlas.bifurcations)
 
 
-@pytest.mark.parametrize("error", ERRORS)
-def test_a_right_map_near_a_surface_is_certified(error):
-    loop = entry("special-double-subtractive-goldberg").build(
-        alpha=2.0, beta=1.0, delta=1.0 + error
-    )
-    atlas = explore(LoopClosure(loop), settings=SETTINGS)
-    assert counts(atlas) == (4, 4)
-    assert all(form.certificate.holds for form in atlas.forms)
-    assert atlas.completeness.level is Level.PROVED
-
-
-@pytest.mark.parametrize("error", [1e-2, 1e-3])
-def test_a_right_map_of_a_bricard_linkage_near_a_surface_is_certified(error):
-    loop = bricard_line_symmetric(1.0, 1.0 + error, 1.3, 1.0, 1.0 + error, 1.9)
-    atlas = explore(LoopClosure(loop), settings=SETTINGS)
-    assert counts(atlas) == (4, 4)
-    assert all(form.certificate.holds for form in atlas.forms)
-    assert atlas.completeness.level is Level.PROVED
-
-
 def jumping_branch(problem, start, direction, settings, closing, *_):
     """A curve that runs along the axes instead of the hyperbola between them."""
     if settings.tolerance == SETTINGS.tracing.tolerance:
@@ -75,11 +51,12 @@ def jumping_branch(problem, start, direction, settings, closing, *_):
 
 def hide_misclosure(monkeypatch):
     """Let a jump leave no residual, as next to a surface."""
-    monkeypatch.setattr(search_module, "largest_misclosure", lambda *_: 0.0)
+    for module in (tracing, branch_examination):
+        monkeypatch.setattr(module, "largest_misclosure", lambda *_: 0.0)
 
 
 def test_a_branch_that_is_refused_is_traced_again(monkeypatch):
-    monkeypatch.setattr(search_module, "trace_branch", jumping_branch)
+    monkeypatch.setattr(tracing, "trace_branch", jumping_branch)
     hide_misclosure(monkeypatch)
     atlas = explore(Hyperbola(1e-8), settings=SETTINGS)
     assert counts(atlas) == (2, 0)
@@ -91,7 +68,7 @@ def test_a_branch_that_is_refused_is_traced_again(monkeypatch):
 
 def test_where_a_branch_stays_refused_nothing_is_proved(monkeypatch):
     straight = polyline([(1.0, 0.0), (-1.0, 0.0)])
-    monkeypatch.setattr(search_module, "trace_branch", lambda *_: straight)
+    monkeypatch.setattr(tracing, "trace_branch", lambda *_: straight)
     hide_misclosure(monkeypatch)
     atlas = explore(Hyperbola(1e-8), settings=SETTINGS)
     form = atlas.forms[0]
@@ -106,7 +83,7 @@ def test_where_a_branch_stays_refused_nothing_is_proved(monkeypatch):
 
 def test_without_certificates_the_audit_alone_decides(monkeypatch):
     straight = polyline([(1.0, 0.0), (-1.0, 0.0)])
-    monkeypatch.setattr(search_module, "trace_branch", lambda *_: straight)
+    monkeypatch.setattr(tracing, "trace_branch", lambda *_: straight)
     hide_misclosure(monkeypatch)
     settings = SearchSettings(starts=40, certify=False)
     atlas = explore(Hyperbola(1e-8), settings=settings)
@@ -116,7 +93,7 @@ def test_without_certificates_the_audit_alone_decides(monkeypatch):
 
 def test_a_branch_that_turns_off_at_a_crossing_is_refused_there(monkeypatch):
     corner = polyline([(-1.0, 0.0), (0.0, 0.0), (0.0, 1.0)])
-    monkeypatch.setattr(search_module, "trace_branch", lambda *_: corner)
+    monkeypatch.setattr(tracing, "trace_branch", lambda *_: corner)
     cross = FunctionProblem(lambda u: [u[0] * u[1]], [(-2, 2), (-2, 2)])
     atlas = explore(cross, settings=SETTINGS)
     certificate = atlas.forms[0].certificate

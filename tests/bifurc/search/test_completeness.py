@@ -6,9 +6,9 @@ import pytest
 from bifurc.atlas import Provenance
 from bifurc.completeness import Claim, Level
 from bifurc.function_problem import FunctionProblem
-from bifurc.search.completeness import judge_completeness
+from bifurc.search.answer.completeness import judge_completeness
 from bifurc.search.findings import Findings
-from bifurc.search.seed_fates import Fate, SeedFate
+from bifurc.search.seed_book import Fate, SeedFate
 from bifurc.seeding import missed_probability
 from bifurc.seeds import Audit, Seeds
 from bifurc.settings import SearchSettings
@@ -26,9 +26,9 @@ def findings_of(fates, missed=0, constructed=0):
     nowhere = np.zeros((missed, 2))
     seeds = Seeds(np.zeros((count, 2)), is_random, np.full(missed, 0.1), nowhere)
     findings = Findings(PROBLEM)
-    findings.add_seeds(seeds, np.zeros((count, 2)))
+    findings.book.add(seeds, np.zeros((count, 2)))
     known = enumerate([*fates, *[OTHER_FORM] * constructed])
-    findings.fates = {number: fate for number, fate in known if fate is not None}
+    findings.book.fates = {number: fate for number, fate in known if fate is not None}
     return findings
 
 

@@ -1,14 +1,9 @@
 """Components of dimension 2 and more in a search: surfaces with their charts, and the
 singular points at which forms meet them."""
 
-import time
-
-import networkx as nx
 import numpy as np
 import pytest
 
-from bifurc.atlas import Atlas
-from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
 from bifurc.graphs import transition_graph
 from bifurc.problem import Problem
@@ -20,9 +15,6 @@ from bifurc.surfaces.chart_atlas import Covering
 from tests.bifurc.known_surfaces import (
     CONE,
     SPHERE,
-    equal_double_goldberg,
-    general,
-    planar,
 )
 
 
@@ -30,45 +22,6 @@ def seeds_at(points: np.ndarray) -> Seeds:
     """These solutions (k, n) alone as seeds."""
     count, n = points.shape
     return Seeds(points, np.ones(count, dtype=bool), np.empty(0), np.empty((0, n)))
-
-
-def test_a_double_goldberg_loop_with_equal_links_never_meets_its_torus() -> None:
-    problem = equal_double_goldberg()
-    atlas = explore(problem)
-    assert len(atlas.forms) == 2
-    assert len(atlas.bifurcations) == 2
-    assert len(atlas.points) == 2
-    (surface,) = atlas.surfaces
-    assert surface.dimension == 2
-    assert surface.complete
-    assert surface.charts is not None
-    assert surface.charts.euler_characteristic == 0
-    # theta3 = theta6 = pi, theta4 = -theta2, theta5 = -theta1
-    theta3 = surface.samples[:, 2] - np.pi
-    theta2_and_4 = surface.samples[:, 1] + surface.samples[:, 3]
-    assert np.abs(np.sin(theta3 / 2)).max() < 1e-9
-    assert np.abs(np.sin(theta2_and_4 / 2)).max() < 1e-9
-    jacobians = problem.jacobians(surface.charts.centers)
-    smallest_regular = np.linalg.svd(jacobians, compute_uv=False)[:, 3]
-    # rank 4 all over: no singular point, and so no way out
-    assert smallest_regular.min() > 0.1
-    assert not nx.has_path(transition_graph(atlas), atlas.forms[0].name, surface.name)
-
-
-def test_a_sarrus_loop_with_folded_legs_changes_mobility_where_its_forms_meet_the_torus(
-    folded_sarrus: Atlas,
-) -> None:
-    assert len(folded_sarrus.forms) == 2
-    assert [surface.dimension for surface in folded_sarrus.surfaces] == [2]
-    assert len(folded_sarrus.points) == 4
-    for point in folded_sarrus.points:
-        assert point.kind is Kind.DIMENSION_CHANGE
-        assert len(point.point.half_branches) == 2
-        assert len(point.passes) == 1
-        assert point.surfaces == (0,)
-        assert point.note == ""
-    assert nx.is_connected(transition_graph(folded_sarrus))
-    assert len({form.component for form in folded_sarrus.forms}) == 1
 
 
 @pytest.mark.parametrize("bend", [0.0, 0.4], ids=["line", "parabola"])
@@ -106,45 +59,7 @@ def test_curves_that_meet_a_plane_are_found_from_the_plane_alone() -> None:
     assert np.abs(np.sort(meeting, axis=0) - expected).max() < 1e-9
 
 
-@pytest.mark.parametrize(
-    ("problem", "dimension"),
-    [
-        (planar(1, 1.2, 0.9, 1.3, 1.1, 0.8), 3),
-        (planar(1, 2, 1, 2, 1, 2, 1, 2), 5),
-        (general(9), 3),
-        (general(12), 6),
-    ],
-    ids=["planar 6R", "planar 8R", "9R", "12R"],
-)
-def test_components_of_higher_dimension_are_reported_with_it_and_nothing_else(
-    problem: Problem, dimension: int
-) -> None:
-    atlas = explore(problem)
-    assert [surface.dimension for surface in atlas.surfaces] == [dimension]
-    assert not atlas.forms
-    assert not atlas.points
-    assert not len(atlas.rigid)
-
-
 # --- what is not finished is said -----------------------------------------------------
-
-
-def test_a_search_ends_when_its_budget_is_used_up_and_says_so() -> None:
-    began = time.perf_counter()
-    atlas = explore(general(8), settings=SearchSettings(budget=1.0))
-    assert time.perf_counter() - began < 5.0
-    assert atlas.provenance.out_of_time
-    assert atlas.completeness.level == "out of time"
-    # how far the covering comes in a second hangs on the machine, but not to its end
-    coverings = [s.charts for s in atlas.surfaces if s.charts is not None]
-    assert {charts.outcome for charts in coverings} <= {Covering.OUT_OF_TIME}
-
-
-def test_a_search_that_ends_before_its_budget_says_nothing_of_it() -> None:
-    atlas = explore(planar(1, 2, 1.4, 2.2), settings=SearchSettings(budget=60.0))
-    assert not atlas.provenance.out_of_time
-    with pytest.raises(ProblemError, match="budget"):
-        explore(general(8), settings=SearchSettings(budget=0.0))
 
 
 def test_seeds_outside_unfinished_charts_belong_to_the_surface_they_can_walk_to() -> (

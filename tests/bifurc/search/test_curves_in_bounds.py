@@ -9,8 +9,8 @@ import pytest
 from bifurc import FunctionProblem, explore
 from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
-from bifurc.diagrams.diagram import BranchingKind
 from bifurc.seeds import Seeds
+from bifurc.singular.point import Kind
 from bifurc.systems.verdict import verdict_of
 
 SEEDS = range(4)
@@ -85,7 +85,7 @@ def test_four_species_of_which_any_may_be_missing(seed: int) -> None:
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize(
     ("power", "kind"),
-    [(1, BranchingKind.TRANSCRITICAL), (2, BranchingKind.SUPERCRITICAL)],
+    [(1, Kind.TRANSCRITICAL), (2, Kind.SUPERCRITICAL)],
 )
 def test_a_branch_that_ends_in_the_other_one(seed: int, power: int, kind) -> None:
     problem = FunctionProblem(

@@ -12,20 +12,17 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.blur import blur_along
+from bifurc.search.answer.completeness import judge_completeness
+from bifurc.search.answer.doubts import doubts_of
+from bifurc.search.answer.meeting_points import meeting_points
 from bifurc.search.branch_parts import part_of
-from bifurc.search.completeness import judge_completeness
-from bifurc.search.doubts import doubts_of
 from bifurc.search.explore import explore
 from bifurc.search.findings import Findings, TracedBranch
-from bifurc.search.meeting_points import meeting_points
 from bifurc.seeds import Audit
 from bifurc.settings import SearchSettings
 from bifurc.singular.classify import classify_singular_point
 from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.point import Kind, SingularPoint
-from linkages.closure.loop_closure import LoopClosure
-from linkages.families.four_bar import four_bar, kite
-from linkages.mapping import map_linkage
 from tests.bifurc.known_surfaces import SPHERE
 from tests.bifurc.near_surfaces import CirclesBesideSphere
 
@@ -64,7 +61,7 @@ def traced(problem, branch: Branch) -> TracedBranch:
 def test_a_form_known_less_well_than_points_are_told_apart_is_in_doubt():
     clear = CirclesBesideSphere(1e-3)
     branch = trace_branch(clear, clear.points(3)[1])
-    assert doubts_of(clear, [traced(clear, branch)], [], [], []) == []
+    assert not list(doubts_of(clear, [traced(clear, branch)], [], [], []))
     # the great circle is a solution whatever e is
     blurred = CirclesBesideSphere(1e-10)
     (doubt,) = doubts_of(blurred, [traced(blurred, branch)], [], [], [])
@@ -74,7 +71,7 @@ def test_a_form_known_less_well_than_points_are_told_apart_is_in_doubt():
 def test_a_form_that_stalls_at_nothing_known_is_in_doubt():
     problem = CirclesBesideSphere(1.0)
     branch = trace_branch(problem, problem.points(3)[1])
-    assert doubts_of(problem, [traced(problem, branch)], [], [], []) == []
+    assert not list(doubts_of(problem, [traced(problem, branch)], [], [], []))
     loose = replace(branch, outcome=Outcome.STALLED)
     (doubt,) = doubts_of(problem, [traced(problem, loose)], [], [], [])
     assert doubt.text.startswith("form 1 stalls at 2 of its 2 ends")
@@ -104,23 +101,6 @@ def test_a_form_that_ends_at_a_cusp_and_at_the_bounds_is_not_in_doubt(power):
     assert not atlas.completeness.is_in_doubt
 
 
-def test_a_point_is_in_doubt_for_what_it_misses_in_many_digits():
-    # a kite but for e: where it is flat it misses closure by 2/3 e
-    for error, is_doubtful in ((1e-14, True), (0.0, False)):
-        loop = four_bar(1.0, 2.0, 2.0 + error, 1.0)
-        atlas = explore(LoopClosure(loop), settings=FEW)
-        assert atlas.completeness.is_in_doubt is is_doubtful
-
-
-def test_an_unknown_that_rounding_may_move_is_in_doubt():
-    atlas = map_linkage(kite(1.0, 1e-7))
-    statement = atlas.completeness.statement
-    assert statement.startswith("in doubt: ")
-    assert "rounding hides whether these unknowns stand still" in statement
-    plain = map_linkage(kite(1.0, 1e-2))
-    assert not plain.completeness.is_in_doubt
-
-
 def test_forms_that_end_where_no_bounds_are_given_are_in_doubt():
     parabola = FunctionProblem(lambda u: [u[1] - u[0] ** 2], [(-2, 2), (-1, np.inf)])
     assert not explore(parabola).completeness.is_in_doubt
@@ -148,7 +128,7 @@ def test_a_point_with_fewer_branches_traced_than_seen_is_in_doubt():
     whole = meeting_points(problem, [point], branches, (), periods)
     assert whole[0].note == ""
     lines = [traced(problem, branch) for branch in branches]
-    assert doubts_of(problem, lines, [], whole, ()) == []
+    assert not list(doubts_of(problem, lines, [], whole, ()))
     lacking = meeting_points(problem, [point], branches[:1], (), periods)
     (doubt,) = doubts_of(problem, lines[:1], [], lacking, ())
     assert "2 half-branches were traced, the section shows 4" in doubt.text

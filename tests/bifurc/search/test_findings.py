@@ -13,7 +13,7 @@ from bifurc.curves.monitor import profile_branch
 from bifurc.decisions import is_same_point
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.findings import Findings, TracedBranch
-from bifurc.search.seed_fates import Fate, SeedFate
+from bifurc.search.seed_book import Fate, SeedFate
 from bifurc.seeds import Audit, Seeds
 from bifurc.singular.germ import Germ
 from bifurc.singular.local_branches import Neighbourhood
@@ -41,30 +41,30 @@ def findings():
     count = len(points)
     findings = Findings(PROBLEM)
     seeds = Seeds(points, np.ones(count, dtype=bool), np.empty(0), np.empty((0, 2)))
-    findings.add_seeds(seeds, np.zeros((count, 2)))
+    findings.book.add(seeds, np.zeros((count, 2)))
     return findings
 
 
 def test_seeds_on_a_branch_are_settled_and_the_others_stay_open(findings):
-    assert findings.open_seeds == [0, 1, 2, 3]
-    number = findings.add_branch(traced(ON_CIRCLE[0]))
-    assert findings.match_seeds([3, 2, 0], number) == [3]
-    assert findings.fates[0] == findings.fates[2] == SeedFate(Fate.ON_FORM, number)
-    assert findings.open_seeds == [1, 3]
-    findings.reopen_seeds([0])
-    assert findings.open_seeds == [0, 1, 3]
-    assert findings.match_seeds([], number) == []
+    assert findings.book.open_seeds == [0, 1, 2, 3]
+    fate = findings.add_branch(traced(ON_CIRCLE[0]))
+    assert findings.match_seeds([3, 2, 0], fate.number) == [3]
+    assert findings.book.fates[0] == findings.book.fates[2] == fate
+    assert findings.book.open_seeds == [1, 3]
+    findings.book.reopen([0])
+    assert findings.book.open_seeds == [0, 1, 3]
+    assert findings.match_seeds([], fate.number) == []
 
 
 def test_a_branch_is_known_by_a_point_on_it_and_by_its_course(findings):
     assert findings.branch_through(ON_CIRCLE[1]) is None
-    number = findings.add_branch(traced(ON_CIRCLE[0]))
-    assert findings.branch_through(ON_CIRCLE[1]) == number
+    fate = findings.add_branch(traced(ON_CIRCLE[0]))
+    assert findings.branch_through(ON_CIRCLE[1]) == fate
     assert (
         findings.branch_through(ON_CIRCLE[1] * (1 + 5 * is_same_point.threshold))
         is None
     )
-    assert findings.branch_along(trace_branch(PROBLEM, ON_CIRCLE[2])) == number
+    assert findings.branch_along(trace_branch(PROBLEM, ON_CIRCLE[2])) == fate
 
 
 def test_a_singular_point_is_new_once(findings):
@@ -80,12 +80,16 @@ def test_seeds_at_points_that_are_one_follow_the_point_that_stays(findings):
     for k, error in enumerate(errors):
         findings.add_point(replace(point_at([0.1 * k, 1.0]), error=error))
     for k in range(4):
-        findings.fates[k] = SeedFate(Fate.AT_SINGULAR_POINT, k)
+        findings.book.fates[k] = SeedFate(Fate.AT_SINGULAR_POINT, k)
     findings.merge_points([(0, 1), (1, 0), (1, 3)])  # 0 is 1, and this is 3
-    assert [point.error for point in findings.points] == [0.3, 0.4]
-    at_third = SeedFate(Fate.AT_SINGULAR_POINT, 0)
-    at_fourth = SeedFate(Fate.AT_SINGULAR_POINT, 1)
-    assert findings.fates == {0: at_fourth, 1: at_fourth, 2: at_third, 3: at_fourth}
+    assert [point.error for point in findings.points.values()] == [0.3, 0.4]
+    at_third, at_fourth = (SeedFate(Fate.AT_SINGULAR_POINT, k) for k in findings.points)
+    assert findings.book.fates == {
+        0: at_fourth,
+        1: at_fourth,
+        2: at_third,
+        3: at_fourth,
+    }
 
 
 def test_seeds_at_points_that_a_germ_replaces_are_at_its_point():
@@ -95,25 +99,22 @@ def test_seeds_at_points_that_a_germ_replaces_are_at_its_point():
     far = point_at([1.0, 1.0])
     for point in (ghost, far):
         findings.add_point(point)
-    findings.fates = {k: SeedFate(Fate.AT_SINGULAR_POINT, k) for k in (0, 1)}
-    findings.rigid_assembly(np.array([0.0, 0.0]))
-    findings.fates[2] = SeedFate(Fate.RIGID, 0)
+    findings.book.fates = {k: SeedFate(Fate.AT_SINGULAR_POINT, k) for k in (0, 1)}
+    findings.book.fates[2] = findings.add_assembly(np.array([0.0, 0.0]))
     neighbourhood = Neighbourhood(0.01, ())
     germ = Germ(
         np.zeros(2), np.empty((0, 2)), (), neighbourhood, None, np.empty((0, 2))
     )
-    findings.add_germ(germ)
-    number = findings.add_point(point_at(germ.u)).number
-    assert findings.points[:1] == [far]
-    assert findings.fates[1] == SeedFate(Fate.AT_SINGULAR_POINT, 0)
-    at_germ = SeedFate(Fate.AT_SINGULAR_POINT, number)
-    assert findings.fates[0] == findings.fates[2] == at_germ
+    sighting = findings.add_point(point_at(germ.u), germ)
+    assert list(findings.points.values()) == [far, sighting.point]
+    assert findings.points[findings.book.fates[1].number] is far
+    assert findings.book.fates[0] == findings.book.fates[2] == sighting.fate
     assert not findings.rigid
 
 
 def test_a_rigid_assembly_keeps_its_number(findings):
     places = [np.array([1.0, 2.0]), np.array([2.0, 1.0]), np.array([1.0, 2.0 + 1e-9])]
-    assert [findings.rigid_assembly(u) for u in places] == [0, 1, 0]
+    assert [findings.add_assembly(u).number for u in places] == [0, 1, 0]
     assert len(findings.rigid) == 2
 
 
@@ -141,8 +142,8 @@ def test_what_stalled_on_the_way_along_another_branch_is_forgotten(findings):
         residuals=part.residuals[: len(kept)],
     )
     findings.add_branch(replace(whole, branch=half))
-    number = findings.add_branch(whole)
-    findings.match_seeds([0, 1, 2], number)
+    fate = findings.add_branch(whole)
+    findings.match_seeds([0, 1, 2], fate.number)
     findings.forget_parts()
     assert findings.branches == [whole.branch]
-    assert findings.fates[0] == SeedFate(Fate.ON_FORM, 0)
+    assert findings.book.fates[0] == fate

@@ -5,29 +5,8 @@ import pytest
 
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
-from linkages.linkage import load
-from linkages.mapping import map_linkage
 
 BOX = [(-1.0, 1.0)] * 2
-
-
-@pytest.mark.parametrize(
-    "name", ["double-subtractive-goldberg", "double-subtractive-goldberg-type-i"]
-)
-def test_tangents_at_a_bifurcation_are_as_exact_as_the_point(name):
-    atlas = map_linkage(load(name))
-    assert len(atlas.bifurcations) == 4
-    for bifurcation in atlas.bifurcations:
-        exact = bifurcation.point.tangents
-        cosines = np.abs(bifurcation.tangents @ exact.T)
-        assert np.sort(cosines.max(axis=1)) == pytest.approx([1.0, 1.0], abs=1e-15)
-        for (form, s), tangent in zip(
-            bifurcation.passes, bifurcation.tangents, strict=True
-        ):
-            nearest = exact[np.argmax(np.abs(exact @ tangent))]
-            assert np.abs(np.abs(tangent) - np.abs(nearest)).max() < 1e-15
-            # it runs the way of the form
-            assert tangent @ atlas.forms[form].branch(s, 1) > 1.0 - 1e-9
 
 
 def test_where_second_order_gives_no_tangents_those_of_the_forms_are_taken():

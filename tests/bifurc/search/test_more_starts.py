@@ -8,9 +8,9 @@ from bifurc.curves.minima import singular_value_minima
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.components import Components
-from bifurc.search.findings import Findings, TracedBranch
-from bifurc.search.more_starts import FEWEST, asks_for_more_starts
-from bifurc.search.seed_fates import Fate, SeedFate
+from bifurc.search.findings import Findings, RigidAssembly, TracedBranch
+from bifurc.search.seed_book import Fate, SeedFate
+from bifurc.search.starts import FEWEST, asks_for_more_starts
 from bifurc.seeds import Seeds
 from bifurc.singular.point import SingularPoint
 
@@ -25,10 +25,11 @@ def findings_with(hits):
     points = np.tile([1.0, 0.0], (len(fates), 1))
     nowhere = np.empty((0, 2))
     seeds = Seeds(points, np.ones(len(fates), dtype=bool), np.empty(0), nowhere)
-    findings.add_seeds(seeds, np.ones((len(fates), 2)))
-    findings.fates = dict(enumerate(fates))
+    findings.book.add(seeds, np.ones((len(fates), 2)))
+    findings.book.fates = dict(enumerate(fates))
     numbers = [fate.number for fate in hits if fate.fate is Fate.RIGID]
-    findings.rigid = [np.array([0.5, k]) for k in range(max(numbers, default=-1) + 1)]
+    for k in range(max(numbers, default=-1) + 1):
+        findings.rigid.add(RigidAssembly(np.array([0.5, k]), 0.0))
     return findings
 
 
@@ -63,7 +64,7 @@ def test_forms_that_cross_count_as_one():
     crossing = SingularPoint(
         np.zeros(2), 0, np.eye(2), 0.0, nothing, nothing, 1, 0, 0.01
     )
-    findings.points.append(crossing)
+    findings.points.add(crossing)
     assert not asks_for_more_starts(findings)
 
 

@@ -12,7 +12,7 @@ import bifurc
 from bifurc.branch import Outcome
 from bifurc.completeness import Claim
 from bifurc.curves.certificate import CertificateStatus
-from bifurc.search.unit_problem import in_own_units
+from bifurc.search.own_units.unit_problem import in_own_units
 from bifurc.seeds import Audit
 from bifurc.systems.equation_file import read_equations
 

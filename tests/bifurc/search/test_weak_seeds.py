@@ -4,7 +4,7 @@ import numpy as np
 
 from bifurc.decisions import is_solution
 from bifurc.numerics.singular_values import singular_values
-from bifurc.search.weak_seeds import sharpened, with_weak_solutions
+from bifurc.search.solutions import sharpened, with_weak_solutions
 from bifurc.seeds import Seeds
 from tests.bifurc.near_surfaces import CirclesBesideSphere
 

@@ -5,8 +5,7 @@ import pytest
 import sympy
 
 import bifurc
-from bifurc.singular.discriminant import invariants_of
-from bifurc.singular.puiseux import half_branches, pairs_of
+from bifurc.singular.puiseux import half_branches, invariants_of, pairs_of
 
 x, y = sympy.symbols("x y")
 

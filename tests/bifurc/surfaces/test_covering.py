@@ -12,8 +12,6 @@ from tests.bifurc.known_surfaces import (
     CONE,
     SPHERE,
     Level,
-    equal_double_goldberg,
-    planar,
     seeds,
     torus,
     two_spheres,
@@ -112,25 +110,6 @@ def test_a_cone_is_covered_but_for_its_tip_and_says_so() -> None:
     assert charts.outcome is Covering.SINGULAR
     assert charts.euler_characteristic is None
     assert np.linalg.norm(charts.centers, axis=1).min() < 0.05
-
-
-def test_the_charts_of_a_planar_5r_loop_form_a_surface_of_genus_four() -> None:
-    # Havel 1991, Some examples of the use of distances as coordinates for Euclidean
-    # geometry: the equilateral pentagon
-    problem = planar(1, 1, 1, 1, 1)
-    charts = cover_surface(problem, seeds(problem)[:1], radius=0.7)
-    assert charts.complete
-    assert charts.euler_characteristic == -6
-    assert len(charts.parts()) == 1
-
-
-def test_the_trivial_component_of_the_double_goldberg_loop_is_a_flat_torus() -> None:
-    start = np.array([[0.3, 0.5, np.pi, -0.5, -0.3, np.pi]])
-    charts = cover_surface(equal_double_goldberg(), start, radius=1.0)
-    assert charts.complete
-    assert charts.euler_characteristic == 0
-    # theta1 and theta2 turn freely, each with another joint
-    assert charts.area == pytest.approx(8 * np.pi**2, rel=1e-6)
 
 
 def test_a_covering_stops_at_its_limits_and_is_continued_from_there() -> None:

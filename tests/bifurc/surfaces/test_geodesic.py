@@ -6,7 +6,7 @@ import pytest
 from bifurc.surfaces.chart_atlas import ChartAtlas
 from bifurc.surfaces.covering import cover_surface
 from bifurc.surfaces.geodesic import SurfacePathError, path_length, shortest_path
-from tests.bifurc.known_surfaces import SPHERE, Union, equal_double_goldberg
+from tests.bifurc.known_surfaces import SPHERE, Union
 
 
 def chords(path: np.ndarray) -> np.ndarray:
@@ -38,16 +38,6 @@ def test_around_the_waist_of_a_hyperboloid_the_way_is_a_circle() -> None:
     assert np.abs(path[:, 2]).max() < 1e-4
     assert np.abs(problem.residuals(path)).max() < 1e-12
     assert chords(path).sum() == pytest.approx(0.5 * np.pi, rel=1e-4)
-
-
-def test_a_path_on_a_torus_of_angles_has_no_jump_where_a_period_ends() -> None:
-    problem = equal_double_goldberg()
-    start = np.array([3.0, 0.2, np.pi, -0.2, -3.0, np.pi])
-    goal = np.array([-3.0, 0.4, np.pi, -0.4, 3.0, np.pi])
-    charts = cover_surface(problem, start[None], radius=1.0)
-    path = shortest_path(problem, charts, start, goal, 0.1)
-    assert np.abs(np.diff(path, axis=0)).max() < 0.2
-    assert path[-1, 0] == pytest.approx(2 * np.pi - 3)
 
 
 def test_an_end_outside_the_charts_is_named(sphere_charts: ChartAtlas) -> None:

@@ -562,7 +562,7 @@ def test_ctrl_c_ends_every_command_with_one_line(arguments, folder, monkeypatch)
     "command", [("route", "kite", "a", "b"), ("view", "kite"), ("tolerance", "kite")]
 )
 def test_half_a_map_is_no_map_for_other_commands(command, monkeypatch):
-    monkeypatch.setattr("bifurc.search.search.trace_branch", interrupt)
+    monkeypatch.setattr("bifurc.search.tracing.trace_branch", interrupt)
     result = bifurc(*command)
     assert result.exit_code == ExitCode.INTERRUPTED
     assert "interrupted" in result.stderr.splitlines()[-1]
@@ -613,20 +613,24 @@ def test_standard_output_on_a_full_disk_ends_with_one_line():
     assert "No space left" in message
 
 
+@contextmanager
 def full_disk():
     """Files of this process may grow to 4 kB and no further."""
-    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+    before, most = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, most))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (before, most))
 
 
 def test_a_full_disk_keeps_what_is_on_the_screen(tmp_path):
-    process = start(
-        "map", "kite", "--out", tmp_path, stdout=subprocess.PIPE, preexec_fn=full_disk
-    )
-    shown, message = process.communicate()
-    assert process.returncode == ExitCode.BAD_INPUT
-    assert "The linkage moves with mobility 1" in shown
-    assert len(messages(message)) == 1, message
-    assert f"--out {tmp_path}" in message
+    with full_disk():
+        result = bifurc("map", "kite", "--out", tmp_path)
+    assert result.exit_code == ExitCode.BAD_INPUT
+    assert "The linkage moves with mobility 1" in result.stdout
+    assert len(messages(result.stderr)) == 1, result.stderr
+    assert f"--out {tmp_path}" in result.stderr
     assert list(tmp_path.iterdir()) == []
 
 
@@ -643,11 +647,11 @@ def test_a_full_disk_names_the_option_and_leaves_older_files(arguments, name, tm
     out = tmp_path / name
     if out.suffix:
         out.write_text("old", encoding="utf-8")
-    process = start(*arguments, out, stdout=subprocess.PIPE, preexec_fn=full_disk)
-    _, message = process.communicate()
-    assert process.returncode == ExitCode.BAD_INPUT
-    assert len(messages(message)) == 1, message
-    assert f"{arguments[-1]} {out}: nothing can be written there" in message
+    with full_disk():
+        result = bifurc(*arguments, out)
+    assert result.exit_code == ExitCode.BAD_INPUT
+    assert len(messages(result.stderr)) == 1, result.stderr
+    assert f"{arguments[-1]} {out}: nothing can be written there" in result.stderr
     if out.suffix:
         assert out.read_text(encoding="utf-8") == "old"
         assert list(tmp_path.iterdir()) == [out]

@@ -8,10 +8,10 @@ import pytest
 from click.testing import CliRunner
 from scipy.spatial.transform import Rotation
 
-from linkages.app.answer.subject import subject_at
 from linkages.app.cli import main
 from linkages.app.commands.export_command import make_table
 from linkages.app.exit_codes import ExitCode
+from linkages.app.subject import subject_at
 from linkages.export.glb import make_glb
 from linkages.export.model import Shape, model_of_mechanism
 from linkages.export.motion import motion_of_form

@@ -5,7 +5,7 @@ import json
 import pytest
 from click.testing import CliRunner
 
-import bifurc.search.search
+import bifurc.search.tracing
 from linkages.app.cli import main
 from linkages.app.files import prepare_folder, write_data
 from linkages.closure.loop_closure import LoopClosure
@@ -24,7 +24,7 @@ def names(folder):
 @pytest.fixture
 def interrupted_search(monkeypatch):
     """Ctrl-C when the second branch is about to be traced."""
-    trace, calls = bifurc.search.search.trace_branch, []
+    trace, calls = bifurc.search.tracing.trace_branch, []
 
     def trace_one(*arguments, **options):
         calls.append(1)
@@ -32,7 +32,7 @@ def interrupted_search(monkeypatch):
             raise KeyboardInterrupt
         return trace(*arguments, **options)
 
-    monkeypatch.setattr(bifurc.search.search, "trace_branch", trace_one)
+    monkeypatch.setattr(bifurc.search.tracing, "trace_branch", trace_one)
 
 
 def test_out_holds_dataset_graph_summary_and_figures_and_nothing_else(tmp_path):
@@ -93,7 +93,7 @@ def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(
 ):
     (tmp_path / "file").write_text("in the way")
     monkeypatch.setattr(
-        bifurc.search.search, "trace_branch", None
+        bifurc.search.tracing, "trace_branch", None
     )  # any computation would fail
     for folder in (tmp_path / "file", tmp_path / "file" / "below", "/proc/nothing"):
         result = run("map", "parallelogram", "--out", folder)

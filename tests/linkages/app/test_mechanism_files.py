@@ -7,8 +7,8 @@ import numpy as np
 import xarray as xr
 
 from bifurc.files.dataset import load_atlas
-from linkages.app.answer.subject import subject_at
 from linkages.app.files import write_data
+from linkages.app.subject import subject_at
 from linkages.mapping import map_linkage
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.graphml import write_mechanism_graph
@@ -78,7 +78,7 @@ def test_datasets_have_variables_of_locked_and_spherical_joints(tmp_path):
     atlas = map_linkage(mechanism)
     assert atlas.forms
     subject = subject_at(atlas)
-    write_data(atlas, tmp_path, "", subject.dataset_variables(), subject.files())
+    write_data(atlas, tmp_path, "", subject.dataset_variables(atlas), subject.files())
     data = xr.load_dataset(tmp_path / "atlas.nc")
     assert list(data.joint_variable_name.values) == ["R", "C.turn", "C.slide"]
     assert list(data.joint_variable_unit.values) == ["rad", "rad", "length"]

@@ -12,8 +12,8 @@ from click.testing import CliRunner
 
 from bifurc.torus import SEAM
 from linkages.app.cli import main
-from linkages.app.reports.mechanism_file import mechanism_text
 from linkages.closure.loop_closure import LoopClosure
+from linkages.formats.table import mechanism_text
 from linkages.linkage import load
 from linkages.loop import Loop
 from linkages.readout.readout import Readout

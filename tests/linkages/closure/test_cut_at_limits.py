@@ -12,8 +12,8 @@ from bifurc.branch import Outcome
 from bifurc.completeness import Level
 from bifurc.curves.continuation import trace_branch
 from linkages.closure.cut_at_limits import (
-    CutMotions,
     cut_motions,
+    for_subject,
     loop_without_limits,
 )
 from linkages.closure.mechanism_closure import MechanismClosure
@@ -92,8 +92,8 @@ def test_that_nothing_is_within_limits_is_certified():
 def cut_of(mechanism):
     """What is held against the forms of a mechanism."""
     problem = MechanismClosure(mechanism)
-    single = loop_without_limits(problem.structure)
-    return CutMotions(problem.structure, single, problem.lattice, 50, 0)
+    rng = np.random.default_rng(0)
+    return for_subject(problem, problem.structure, rng, 50)
 
 
 def test_parts_that_are_not_listed_are_starts_and_take_the_level():

@@ -99,7 +99,7 @@ def test_what_is_brought_within_limits_is_closed_there():
     starts = rng.uniform(-np.pi, np.pi, (40, 6))
     points, gaps = problem.project(starts)
     beyond = points[gaps < 1e-12]
-    inside = brought_within_limits(problem, beyond, rng)
+    inside = brought_within_limits(problem, problem.project_with_held, beyond, rng)
     assert len(inside) > 10
     assert np.all(problem.are_inside(inside))
     assert np.abs(problem.residuals(inside)).max() < 1e-9
@@ -108,7 +108,9 @@ def test_what_is_brought_within_limits_is_closed_there():
 def test_nothing_is_brought_from_nowhere():
     problem = MechanismClosure(line_symmetric_loop(R0=(1.0, 1.05)))
     rng = np.random.default_rng(0)
-    assert brought_within_limits(problem, np.empty((0, 6)), rng).shape == (0, 6)
+    assert brought_within_limits(
+        problem, problem.project_with_held, np.empty((0, 6)), rng
+    ).shape == (0, 6)
 
 
 def test_the_way_along_solutions_leads_within_many_limits(monkeypatch):
@@ -123,7 +125,9 @@ def test_the_way_along_solutions_leads_within_many_limits(monkeypatch):
     starts = np.column_stack([starts, rng.uniform(-np.pi, np.pi, 40)])
     points, gaps = problem.project(starts)
     beyond = points[(gaps < 1e-12) & ~problem.are_inside(points)]
-    inside = within_limits.brought_within_limits(problem, beyond, rng)
+    inside = within_limits.brought_within_limits(
+        problem, problem.project_with_held, beyond, rng
+    )
     assert len(inside) > 0.2 * len(beyond) > 2
     assert np.all(problem.are_inside(inside))
     assert np.abs(problem.residuals(inside)).max() < 1e-9

@@ -10,16 +10,14 @@ from linkages.dyads.geometry import (
     DegenerateDyadError,
     Pin,
     Pivot,
+    PlaneGeometry,
+    PlanePose,
     Rail,
     Slider,
-    close_dyad,
-    close_monad,
-    may_be_degenerate,
 )
-from linkages.dyads.poses import PlanePose
 
 KINDS = [kinds for kinds in product("RP", repeat=3) if "R" in kinds]
-SIZE = 1.0
+PLANE = PlaneGeometry(np.array([0.0, 0.0, 1.0]), 1.0)
 
 
 def random_place(rng):
@@ -57,15 +55,15 @@ def middle_at(kind, first, second, rng):
 def misfit_at_end(end, pose):
     if isinstance(end, Pivot):
         return abs(pose(end.local) - end.place)
-    beside = ((pose.shift - end.pose.shift) / end.along).imag
-    return abs(pose.turn - end.pose.turn) + abs(beside)
+    beside = ((pose.shift - end.start.shift) / end.along).imag
+    return abs(pose.turn - end.start.turn) + abs(beside)
 
 
 def misfit_between(middle, first, second):
     if isinstance(middle, Pin):
         return abs(first(middle.first) - second(middle.second))
     relative = first.inverse().after(second)
-    return misfit_at_end(Rail(middle.pose, middle.along), relative)
+    return misfit_at_end(Rail(middle.start, middle.along), relative)
 
 
 def is_among(poses, found):
@@ -86,7 +84,7 @@ def test_a_dyad_closes_where_it_was_taken_from_and_wherever_else(kinds, seed):
     first, second = random_pose(rng), random_pose(rng)
     one, other = end_at(kinds[0], first, rng), end_at(kinds[2], second, rng)
     middle = middle_at(kinds[1], first, second, rng)
-    found = close_dyad(one, middle, other, SIZE)
+    found = PLANE.close_dyad(one, middle, other)
     lines_only = kinds.count("P") == 2
     assert len(found) == (1 if lines_only else 2)
     assert is_among((first, second), found)
@@ -101,37 +99,37 @@ def test_a_body_on_two_joints_is_placed_by_them(kinds):
     rng = np.random.default_rng(3)
     pose = random_pose(rng)
     one, other = (end_at(kind, pose, rng) for kind in kinds)
-    (found,) = close_monad(one, other, SIZE)
+    (found,) = PLANE.close_monad(one, other)
     assert is_among((pose,), [(found,)])
 
 
 def test_a_body_between_two_pivots_that_do_not_fit_is_nowhere():
     one, other = Pivot(0j, 0j), Pivot(1 + 0j, 1.1 + 0j)
-    assert close_monad(one, other, SIZE) == []
+    assert PLANE.close_monad(one, other) == []
 
 
 def test_circles_that_are_apart_do_not_meet():
     one, other = Pivot(0j, 0j), Pivot(3 + 0j, 0j)
-    assert close_dyad(one, Pin(1 + 0j, 1 + 0j), other, SIZE) == []
+    assert PLANE.close_dyad(one, Pin(1 + 0j, 1 + 0j), other) == []
 
 
 def test_equal_circles_about_one_point_meet_all_along():
     one, other, pin = Pivot(0j, 0j), Pivot(0j, 0j), Pin(1 + 0j, -1 + 0j)
-    assert may_be_degenerate(one, pin, other, SIZE)
+    assert PLANE.may_be_degenerate(one, pin, other)
     with pytest.raises(DegenerateDyadError):
-        close_dyad(one, pin, other, SIZE)
+        PLANE.close_dyad(one, pin, other)
     unequal = Pin(1 + 0j, -1.2 + 0j)
-    assert not may_be_degenerate(one, unequal, other, SIZE)
-    assert close_dyad(one, unequal, other, SIZE) == []
+    assert not PLANE.may_be_degenerate(one, unequal, other)
+    assert PLANE.close_dyad(one, unequal, other) == []
 
 
 def test_a_body_with_both_joints_on_one_axis_turns_freely():
     """In a dyad, on a slide, and alone, wherever the axis is."""
     one, other = Pivot(0j, 0j), Pivot(0.7 + 0.1j, 0j)
     coaxial = Pin(1e-17 + 0j, 0.5 + 0j)
-    assert may_be_degenerate(one, coaxial, other, SIZE)
-    assert may_be_degenerate(one, coaxial, Rail(PlanePose(1j, 0.3 + 0j), 1j), SIZE)
+    assert PLANE.may_be_degenerate(one, coaxial, other)
+    assert PLANE.may_be_degenerate(one, coaxial, Rail(PlanePose(1j, 0.3 + 0j), 1j))
     with pytest.raises(DegenerateDyadError):
-        close_dyad(one, coaxial, other, SIZE)
+        PLANE.close_dyad(one, coaxial, other)
     with pytest.raises(DegenerateDyadError):
-        close_monad(one, Pivot(2.0 + 0j, 0j), SIZE)
+        PLANE.close_monad(one, Pivot(2.0 + 0j, 0j))

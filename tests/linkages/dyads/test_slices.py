@@ -9,7 +9,7 @@ import linkages
 from bifurc.completeness import Level
 from bifurc.settings import SearchSettings
 from linkages.closure.mechanism_closure import MechanismClosure
-from linkages.dyads.slices import SLICES, slice_by_dyads
+from linkages.dyads.slices import SLICES, for_subject
 from linkages.files.arcs import read_arcs
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
@@ -68,15 +68,20 @@ NOT_BUILT = {
 
 
 def sliced(mechanism):
-    return slice_by_dyads(Structure(mechanism), np.random.default_rng(0))
+    return sliced_structure(Structure(mechanism))
+
+
+def sliced_structure(structure):
+    problem = MechanismClosure(structure.mechanism)
+    return for_subject(problem, structure, np.random.default_rng(0), 0)
 
 
 @pytest.mark.parametrize("name", BUILT)
 def test_all_that_is_built_closes(name):
     slices = sliced(BUILT[name])
     problem = MechanismClosure(BUILT[name])
-    assert len(slices.points) > SLICES
-    assert problem.gaps(slices.points).max() < 1e-12
+    assert len(slices.starts) > SLICES
+    assert problem.gaps(slices.starts).max() < 1e-12
 
 
 @pytest.mark.parametrize("name", ["slider-crank", "K(2,3)", "cranks", "on a sphere"])
@@ -85,7 +90,7 @@ def test_a_slice_holds_what_random_starts_find_with_the_driver_locked(name):
     slices = sliced(mechanism)
     driver = slices.drivers[0]
     label = slices.structure.unknowns[driver].label
-    column = slices.points[:, driver]
+    column = slices.starts[:, driver]
     for turn in (0, 7, 15):
         value = float(column[0]) + turn * slices.steps[0]
         locked = mechanism.with_locks({label: value})
@@ -128,7 +133,7 @@ def test_without_a_freedom_all_assemblies_are_built():
     settings = SearchSettings(starts=1)
     locked = mechanism.with_locks({label: 0.1})
     atlas = linkages.map_linkage(locked, settings=settings)
-    assert len(atlas.rigid) == len(slices.points)
+    assert len(atlas.rigid) == len(slices.starts)
     assert "no assembly is missing" in atlas.completeness.statement
 
 
@@ -157,7 +162,7 @@ def test_limits_hold_in_slices():
     limited = four_bar(1.5, 1.1, A={"limits": ((-0.5, 1.0),)})
     slices = sliced(limited)
     column = [one.label for one in slices.structure.unknowns].index("A")
-    angles = slices.points[:, column]
+    angles = slices.starts[:, column]
     assert angles.min() >= -0.5
     assert angles.max() <= 1.0
 
@@ -168,7 +173,7 @@ def test_what_is_geared_to_the_driver_is_known_with_it():
     slices = sliced(mechanism)
     labels = [slices.structure.unknowns[driver].label for driver in slices.drivers]
     assert labels == ["A"]
-    assert MechanismClosure(mechanism).gaps(slices.points).max() < 1e-12
+    assert MechanismClosure(mechanism).gaps(slices.starts).max() < 1e-12
 
 
 def test_slides_that_are_locked_stay_slides():
@@ -189,11 +194,11 @@ def test_slides_that_are_locked_stay_slides():
         joints.append(Joint(f"R{k}", "revolute", pair, (0, 0, 0), axis))
     mechanism = Mechanism(tuple(joints))
     structure = Structure(mechanism)
-    slices = slice_by_dyads(structure, np.random.default_rng(0))
+    slices = sliced_structure(structure)
     assert slices is not None
     closure = MechanismClosure(mechanism)
-    assert len(slices.points)
-    assert closure.gaps(slices.points).max() < 1e-11
+    assert len(slices.starts)
+    assert closure.gaps(slices.starts).max() < 1e-11
 
 
 def test_a_body_that_turns_freely_is_not_certified_away():
@@ -213,7 +218,7 @@ def test_slices_hold_every_whole_turn_within_the_limits():
     counts = []
     for turns in (1, 2, 5):
         structure = Structure(revolutes((low, low + turns * turn)))
-        points = slice_by_dyads(structure, np.random.default_rng(0)).points
+        points = sliced_structure(structure).starts
         values = points[:, structure.column_of[0]]
         assert np.all((values >= low) & (values <= low + turns * turn))
         problem = MechanismClosure(structure.mechanism)
@@ -231,5 +236,5 @@ def test_what_follows_many_turns_is_not_built_by_dyads(high, is_built):
         for joint in joints
     ]
     structure = Structure(Mechanism(tuple(limited)))
-    slices = slice_by_dyads(structure, np.random.default_rng(0))
+    slices = sliced_structure(structure)
     assert (slices is not None) is is_built

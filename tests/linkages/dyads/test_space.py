@@ -18,7 +18,7 @@ def random_pose(rng):
 def axis(rng, point=(0.0, 0.0, 0.0)):
     direction = rng.normal(size=3)
     direction /= np.linalg.norm(direction)
-    return Motion("turn", True, direction, np.array(point, dtype=float))
+    return Motion(True, direction, np.array(point, dtype=float))
 
 
 def gap(one, other):

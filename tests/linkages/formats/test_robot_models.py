@@ -6,7 +6,6 @@ import pytest
 
 from bifurc.settings import SearchSettings
 from linkages import load, map_linkage
-from linkages.app.answer.mobility import mobility_of
 from linkages.closure.mechanism_closure import MechanismClosure
 from tests.linkages.formats.robot_models import (
     MJCF,
@@ -38,7 +37,7 @@ def read(name, folder):
 def test_a_model_of_others_is_read_and_mapped(name, tmp_path):
     settings = SearchSettings(starts=60)
     atlas = map_linkage(read(name, tmp_path), settings=settings)
-    facts = mobility_of(atlas), len(atlas.forms), len(atlas.bifurcations)
+    facts = atlas.mobility, len(atlas.forms), len(atlas.bifurcations)
     assert facts == FACTS[name]
 
 

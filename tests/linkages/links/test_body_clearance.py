@@ -2,12 +2,7 @@
 
 import pytest
 
-from linkages.links.body_clearance import (
-    approaches_of_bodies,
-    distances_of_bodies,
-    lines_of_bodies,
-)
-from linkages.links.clearance import TOLERANCE
+from linkages.links.clearance import TOLERANCE, Bodies, approaches_of_bodies
 from linkages.mapping import map_linkage
 from linkages.readout.poses import Poses
 from linkages.structure.structure import Structure
@@ -26,7 +21,7 @@ def test_no_place_of_a_form_has_bodies_nearer_than_is_said(name):
     mechanism = MECHANISMS[name]()
     structure = Structure(mechanism)
     form = map_linkage(mechanism).forms[0]
-    bodies = lines_of_bodies(structure, form.branch)
+    bodies = Bodies(structure, form.branch)
     approaches = approaches_of_bodies(structure, form.branch)
     assert [one.links for one in approaches]
     assert approaches == sorted(approaches, key=lambda one: one.distance)
@@ -34,9 +29,9 @@ def test_no_place_of_a_form_has_bodies_nearer_than_is_said(name):
     for approach in approaches:
         names = {mechanism.bodies[body] for body in approach.links}
         assert not any(names <= set(joint.bodies) for joint in mechanism.joints)
-        there = distances_of_bodies(bodies, approach.theta[None], approach.links)
+        there = bodies.distances(approach.theta[None], approach.links)
         assert there[0] == pytest.approx(approach.distance, abs=1e-12)
-        sampled = distances_of_bodies(bodies, samples, approach.links).min()
+        sampled = bodies.distances(samples, approach.links).min()
         assert approach.distance <= sampled + 1e-9 * structure.unit
         assert approach.error <= 2 * TOLERANCE * structure.unit
 
@@ -45,11 +40,11 @@ def test_distances_are_those_of_the_nearest_points_of_two_bodies():
     mechanism = MECHANISMS["CRCR"]()
     structure = Structure(mechanism)
     form = map_linkage(mechanism).forms[0]
-    bodies = lines_of_bodies(structure, form.branch)
+    bodies = Bodies(structure, form.branch)
     pair = bodies.pairs_apart()[0]
     points = form.branch.sample(3)
     poses = Poses(structure).at(points)
-    distances = distances_of_bodies(bodies, points, pair)
+    distances = bodies.distances(points, pair)
     for pose, distance in zip(poses, distances, strict=True):
         lines = [
             bodies.lines[body] @ pose[body, :3, :3].T + pose[body, :3, 3]

@@ -28,8 +28,10 @@ def test_distances_are_those_of_the_nearest_points():
     loop = load("special-double-subtractive-goldberg").loop
     theta = np.random.default_rng(1).uniform(-3, 3, (6, loop.n))
     pairs = pairs_apart(loop.n)
-    distances = distances_of_links(loop, theta, pairs)
-    for placed, row in zip(place_links(loop, theta), distances, strict=True):
+    distances = [distances_of_links(loop, theta, pair) for pair in pairs]
+    for placed, row in zip(
+        place_links(loop, theta), np.transpose(distances), strict=True
+    ):
         for (first, second), distance in zip(pairs, row, strict=True):
             expected = nearest_by_optimisation(placed[first], placed[second])
             assert distance == pytest.approx(expected, abs=1e-7)
@@ -57,13 +59,14 @@ def test_no_place_of_a_form_has_links_nearer_than_is_said(name):
     pairs = pairs_apart(loop.n)
     for form in atlas.forms[:2]:
         s = np.linspace(0.0, form.branch.length, 4001)
-        seen = distances_of_links(loop, form.branch(s), pairs).min(axis=0)
+        points = form.branch(s)
+        seen = [distances_of_links(loop, points, pair).min() for pair in pairs]
         approaches = approaches_along(loop, form.branch)
         assert len(approaches) == len(pairs)
         assert approaches == sorted(approaches, key=lambda one: one.distance)
         for approach in approaches:
-            there = distances_of_links(loop, approach.theta[None], [approach.links])
-            assert there[0, 0] == pytest.approx(approach.distance, abs=1e-12)
+            there = distances_of_links(loop, approach.theta[None], approach.links)
+            assert there[0] == pytest.approx(approach.distance, abs=1e-12)
             sampled = seen[pairs.index(approach.links)]
             assert approach.distance <= sampled + 1e-9
             assert approach.error <= 2 * TOLERANCE * loop.characteristic_length

@@ -30,7 +30,6 @@ def test_the_outer_loop_closes_at_every_state(name):
 def test_the_outer_loop_is_open_where_the_cells_do_not_close_around_the_centre():
     found = network()
     states = states_of(found)[0] + [0.0, 0.0, 0.0, 0.1]
-    assert found.gap(states) == pytest.approx(0.1)
     assert found.ring_loop.closure_error(found.ring_angles(states)) > 1e-3
 
 
@@ -47,15 +46,13 @@ def test_rates_are_the_derivatives_of_the_angles(name):
 
 
 @every_network
-def test_the_mechanism_closes_at_every_state_and_gives_the_state_back(name):
+def test_the_mechanism_closes_at_every_state(name):
     found = network(name)
     states = states_of(found)
     placed = PlacedNetwork(found, states[1])
     problem = MechanismClosure(placed.mechanism)
     variables = placed.variables(states)
     assert np.abs(problem.residuals(variables)).max() < 1e-13
-    back = placed.states(variables)
-    assert np.abs(np.sin((back - states) / 2)).max() < 1e-13
 
 
 @every_network

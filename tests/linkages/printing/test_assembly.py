@@ -9,12 +9,12 @@ from linkages.loop import Loop
 from linkages.mapping import map_linkage
 from linkages.printing.assembly import (
     Assembly,
+    Dimensions,
     Kind,
     Seats,
     link_corners,
     pairs_that_may_meet,
 )
-from linkages.printing.dimensions import Dimensions
 
 DIMENSIONS = Dimensions(6.0, 0.3, 1.2)
 

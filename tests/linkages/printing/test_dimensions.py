@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from linkages.printing.dimensions import Dimensions
+from linkages.printing.assembly import Dimensions
 from linkages.values import GeometryError
 
 SIZES = [(6.0, 0.3, 1.2), (2.4, 0.3, 1.2), (20.0, 0.1, 0.8), (3.0, 1.0, 1.5)]

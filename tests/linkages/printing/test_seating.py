@@ -6,7 +6,7 @@ import pytest
 from linkages.linkage import load
 from linkages.mapping import map_linkage
 from linkages.printing import seating
-from linkages.printing.dimensions import Dimensions
+from linkages.printing.assembly import Dimensions
 from linkages.printing.seating import choose_seats
 
 

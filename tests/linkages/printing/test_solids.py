@@ -11,18 +11,18 @@ import pytest
 from linkages.linkage import load
 from linkages.links.clearance import pairs_apart
 from linkages.mapping import map_linkage
-from linkages.printing.assembly import Assembly, Kind, Part, Seats
-from linkages.printing.dimensions import Dimensions
+from linkages.printing.assembly import Assembly, Dimensions, Kind, Part, Seats
 from linkages.printing.seating import choose_seats
 
 build123d = pytest.importorskip("build123d", reason="solids need the extra 'cad'")
 trimesh = pytest.importorskip("trimesh", reason="it opens the parts again")
 
-from linkages.printing.files import write_step, write_stl  # noqa: E402
-from linkages.printing.solids import (  # noqa: E402
+from linkages.printing.solids import (  # noqa: E402  # noqa: E402
     link_poses_at,
     make_parts,
     place_solid,
+    write_step,
+    write_stl,
 )
 
 DSG = "special-double-subtractive-goldberg"

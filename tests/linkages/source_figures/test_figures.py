@@ -8,7 +8,6 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from bifurc.torus import difference
-from linkages.source_figures import paths_figure
 from linkages.source_figures.assembly import loop_assembly
 from linkages.source_figures.configurations import (
     atlas_of,
@@ -17,11 +16,11 @@ from linkages.source_figures.configurations import (
     loop_of_content,
     places_at,
 )
+from linkages.source_figures.curves_figure import joints_alike, singular_values
 from linkages.source_figures.draw import draw_source_figure
 from linkages.source_figures.drawing import best_look, look_along, symmetry_line
 from linkages.source_figures.graph_drawing import places_of
 from linkages.source_figures.notation_figure import chain_assembly, ray_angles
-from linkages.source_figures.singular_values_figure import singular_values
 from linkages.source_figures.table import Kind, figure_named, source_figures
 from linkages.source_figures.tori_figure import Torus, companion_torus, shared_turn
 from linkages.source_figures.transitions_figure import tour_of
@@ -111,7 +110,7 @@ def test_the_line_of_symmetry_exchanges_opposite_joints():
 
 def test_curves_that_are_one_are_drawn_as_one():
     atlas = atlas_of({"linkage": "bricard-line-symmetric"})
-    groups = paths_figure.joints_alike(form_named(atlas, "Form I").branch.sample(200))
+    groups = joints_alike(form_named(atlas, "Form I").branch.sample(200))
     assert [group.joints for group in groups] == [(1, 4), (2, 5), (3,)]
 
 

@@ -8,8 +8,8 @@ import pytest
 import linkages
 from bifurc.settings import SearchSettings
 from linkages.app.answer.mechanism_document import describe_mechanism
-from linkages.app.answer.subject import subject_at
 from linkages.app.answer.verdict import judge
+from linkages.app.subject import subject_at
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint

@@ -13,7 +13,6 @@ from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.turns import whole_turns
 from linkages.turns.translates import translates_of
-from linkages.turns.whole_turns import WholeTurns, turns_that_advance
 
 Z = (0, 0, 1)
 
@@ -53,9 +52,10 @@ def test_a_form_is_listed_once_with_all_whole_turns(seed):
 def audit_of(number, seconds):
     """What is said beside so many forms."""
     problem = MechanismClosure(nut_on_a_rocker(2.5))
-    turns = turns_that_advance(problem.structure)
     branch = trace_branch(problem, problem.reference)
-    return WholeTurns(problem, turns, problem.lattice)([branch] * number, seconds)
+    rng = np.random.default_rng(0)
+    judge = whole_turns.for_subject(problem, problem.structure, rng, 0)
+    return judge([branch] * number, seconds)
 
 
 def test_of_many_forms_it_is_said_that_there_are_more():

@@ -16,9 +16,8 @@ from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.subject import mechanism_subject
 from linkages.networks.entries import NETWORKS
-from linkages.networks.mechanism import lock_network, network_subject
-from linkages.viewing.document import MOST_SAMPLES, make_view_document
-from linkages.viewing.title import title_of
+from linkages.networks.mechanism import lock_network
+from linkages.viewing.document import MOST_SAMPLES, make_view_document, title_of
 from tests.linkages.mechanisms.spatial_mechanisms import platform
 from tests.linkages.viewing.conftest import slider_crank
 
@@ -100,8 +99,7 @@ def test_the_title_says_what_is_locked(atlas_of):
     assert title_of(atlas) == "slider-crank, locked: J1=40°, J4=-1.25"
     network = NETWORKS["four-bennett-network"].build()
     locked = lock_network(network, {"2": np.radians(40.0), "6": np.radians(-75.0)})
-    subject = mechanism_subject(locked) | {"network": network_subject(locked)}
-    atlas = replace(atlas, subject=subject)
+    atlas = replace(atlas, subject=mechanism_subject(locked))
     assert title_of(atlas) == f"{network.name}, locked: 2=40°, 6=-75°"
 
 

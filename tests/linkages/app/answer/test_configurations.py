@@ -5,7 +5,7 @@ import pytest
 
 from bifurc.settings import SearchSettings
 from linkages.app.answer.configurations import numbers_at
-from linkages.app.answer.subject import subject_at
+from linkages.app.subject import subject_at
 from linkages.app.texts.summary import make_summary
 from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Joint
@@ -52,5 +52,5 @@ def test_coordinates_of_a_plate_are_in_the_unit_of_the_file(size):
 def test_the_heading_names_what_has_no_unit():
     atlas = map_linkage(platform(1.0), settings=FEW_STARTS)
     words = "plate.z (lengths, entries ax to bz of rotation matrices)"
-    assert subject_at(atlas).heading.endswith(words)
+    assert subject_at(atlas).heading(atlas).endswith(words)
     assert words in make_summary(atlas)

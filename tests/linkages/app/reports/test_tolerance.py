@@ -5,10 +5,10 @@ import pytest
 from click.testing import CliRunner
 
 from linkages.app.cli import main
-from linkages.app.reports.mechanism_file import mechanism_text
 from linkages.app.reports.tolerance import climb, half_branches, measure, slope
 from linkages.catalogue import entry
 from linkages.file import read_file
+from linkages.formats.table import mechanism_text
 from linkages.linkage import load
 from linkages.mapping import map_linkage
 from linkages.mechanisms.of_loop import mechanism_of_loop

@@ -101,6 +101,7 @@ def test_a_damaged_dataset_is_no_traceback(finished):
         count_status(finished)
 
 
+@pytest.mark.usefixtures("same_process")
 def test_the_command_ends_with_one_line_at_a_damaged_journal(tmp_path):
     grid = ("--param", "alpha=40:80:2", "--workers", "1", "--starts", "5")
     out = tmp_path / "a.zarr"

@@ -100,6 +100,7 @@ def test_a_sweep_killed_twice_equals_one_that_was_not(tmp_path):
     )
 
 
+@pytest.mark.usefixtures("same_process")
 def test_a_finished_sweep_does_nothing_more(tmp_path):
     plan = Plan(Family("bennett"), random=3, ranges={"alpha": (0.5, 1.0)}, starts=10)
     run_sweep(plan, tmp_path / "a.zarr", workers=1)
@@ -110,6 +111,7 @@ def test_a_finished_sweep_does_nothing_more(tmp_path):
     assert sum(told) == 3
 
 
+@pytest.mark.usefixtures("same_process")
 def test_atlases_are_written_on_request(tmp_path):
     from bifurc.files.dataset import load_atlas
 
@@ -197,6 +199,7 @@ def test_a_sweep_holds_no_more_of_many_members_than_of_few(tmp_path, monkeypatch
     )  # a record alone is more than 500 bytes
 
 
+@pytest.mark.usefixtures("same_process")
 def test_the_command_says_what_became_of_the_members(tmp_path):
     out = tmp_path / "out.zarr"
     arguments = [

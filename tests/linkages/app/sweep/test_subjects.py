@@ -14,8 +14,9 @@ pytest.importorskip("zarr")
 
 from linkages.app.cli import main
 from linkages.app.exit_codes import CommandError, ExitCode
+from linkages.app.sweep.fields import Status
 from linkages.app.sweep.journal import JournalError
-from linkages.app.sweep.member import Status, map_member
+from linkages.app.sweep.member import map_member
 from linkages.app.sweep.plan import Plan, read_plan
 from linkages.app.sweep.run import journal_path, run_sweep
 from linkages.app.sweep.store import StoreError, SweepStore, open_sweep
@@ -67,6 +68,7 @@ def command(*arguments, code=ExitCode.DONE):
 # --- networks -------------------------------------------------------------------------
 
 
+@pytest.mark.usefixtures("same_process")
 def test_a_network_is_swept_over_parameters_and_locks(tmp_path):
     plan = read_plan(NETWORK, ["beta=30:62:2"], starts=10, locks=CASE_4)
     dataset = sweep(plan, tmp_path / "a.zarr")
@@ -77,6 +79,7 @@ def test_a_network_is_swept_over_parameters_and_locks(tmp_path):
     assert dataset.forms.sel(lock_6=np.radians(-75), method="nearest")[1] == 2
 
 
+@pytest.mark.usefixtures("same_process")
 def test_a_network_without_its_centre_is_the_loop_of_its_outer_joints(tmp_path):
     plan = read_plan(NETWORK, [], starts=10, locks=CASE_4, is_without_centre=True)
     dataset = sweep(plan, tmp_path / "a.zarr")
@@ -113,6 +116,7 @@ def test_members_of_a_network_are_drawn_from_ranges_of_locks():
 # --- mechanisms -----------------------------------------------------------------------
 
 
+@pytest.mark.usefixtures("same_process")
 def test_a_mechanism_is_swept_over_locks_in_degrees_and_lengths(folder):
     plan = read_plan("slider_crank.toml", [], locks=["S/4=-7:1:5"], starts=20)
     assert plan.axes["lock_S%2F4"] == (-7, -5, -3, -1, 1)
@@ -166,6 +170,7 @@ def test_workers_get_the_mechanism_itself_and_not_its_file(folder):
     assert copy.member({"lock_A-7": 0.5}).linkage.joint("A-7").locked == (0.5,)
 
 
+@pytest.mark.usefixtures("same_process")
 def test_a_changed_file_is_refused_where_a_sweep_goes_on(folder):
     locks = ["A-7=0:90:2"]
     plan = read_plan("slider_crank.toml", [], locks=locks, starts=5)
@@ -218,6 +223,7 @@ def old_sweep(out):
     return plan
 
 
+@pytest.mark.usefixtures("same_process")
 def test_a_journal_without_mobility_is_read(tmp_path):
     out = tmp_path / "a.zarr"
     plan = old_sweep(out)
@@ -227,6 +233,7 @@ def test_a_journal_without_mobility_is_read(tmp_path):
     assert "is_being_made" not in dataset.attrs
 
 
+@pytest.mark.usefixtures("same_process")
 def test_a_dataset_whose_making_was_interrupted_is_made_again(tmp_path, monkeypatch):
     out = tmp_path / "a.zarr"
     plan = old_sweep(out)

@@ -1,0 +1,313 @@
+"""From the findings of a search to an atlas."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from bifurc.atlas import (
+    Atlas,
+    Event,
+    Form,
+    MeetingPoint,
+    NearMotion,
+    Provenance,
+    Surface,
+)
+from bifurc.curves.certificate import Certificate
+from bifurc.curves.minima import stand_out
+from bifurc.curves.monitor import dead_points
+from bifurc.curves.near_miss import near_miss_value
+from bifurc.decisions import closes_to_rounding
+from bifurc.limits import Deadline
+from bifurc.numerics.blur import change_by_blur
+from bifurc.numerics.singular_values import singular_values
+from bifurc.problem import Problem
+from bifurc.search.answer.completeness import judge_completeness
+from bifurc.search.answer.doubts import (
+    doubts_of,
+    doubts_of_findings,
+    doubts_of_near_misses,
+)
+from bifurc.search.answer.meeting_points import meeting_points
+from bifurc.search.canonical_order import (
+    order_branches,
+    order_points,
+    order_surfaces,
+    order_values,
+)
+from bifurc.search.certification import certificate_of
+from bifurc.search.findings import Findings, TracedBranch
+from bifurc.search.near_motion_search import closure_gap
+from bifurc.singular.point import Kind, SingularPoint
+from bifurc.torus import wrap, wrapped_periods
+
+# Decades by which the misclosures of two near motions differ that are not alike.
+SAME_MISCLOSURE = 1e-3
+
+
+def assemble_atlas(
+    problem: Problem,
+    findings: Findings,
+    provenance: Provenance,
+    deadline: Deadline,
+) -> Atlas:
+    """The atlas of the findings, in an order that does not depend on the seeds.
+
+    Every point in it is wrapped: see `Atlas`. Past the ``deadline`` of the search a
+    closure gap is measured at few points.
+    """
+    periods = wrapped_periods(problem.periods, problem.bounds)
+    order = order_branches(problem, findings.branches)
+    in_search = list(findings.traced.values())
+    traced = [in_search[k] for k in order]
+    branches = [branch.branch for branch in traced]
+    surfaces = _surfaces(problem, findings, periods)
+    located = [
+        replace(point, u=wrap(point.u, periods))
+        for point in findings.points.values()
+        if not _is_on_near_motion(findings, point)
+    ]
+    met = meeting_points(problem, located, branches, surfaces, periods)
+    points = tuple(_with_misclosure(point, traced) for point in met)
+    places = [assembly.place for assembly in findings.rigid.values()]
+    rigid = wrap(np.array(places).reshape(-1, problem.n), periods)
+    is_mobile = bool(traced or surfaces)
+    forms = _forms(problem, traced, points)
+    singular = list(findings.points.values())
+    near_misses = near_misses_of(problem, traced, singular, points, periods)
+    near_motions = _near_motions(problem, findings, periods)
+    deflated = findings.components.deflated
+    doubts = [
+        *doubts_of(problem, traced, forms, points, surfaces, deflated),
+        *doubts_of_near_misses(problem, near_misses),
+        *doubts_of_findings(problem, findings, located),
+    ]
+    gap = 0.0
+    if near_motions and not is_mobile:
+        gap = min(near.misclosure for near in near_motions)
+    elif not is_mobile:
+        gap = closure_gap(problem, findings.book.seeds, findings.gaps, deadline)
+    return Atlas(
+        names=problem.names,
+        units=problem.units,
+        periods=problem.periods,
+        forms=forms,
+        points=points,
+        near_misses=near_misses,
+        dead_points=_dead_points(problem, traced, periods),
+        rigid=rigid[order_points(rigid, periods, problem.scale)],
+        surfaces=surfaces,
+        near_motions=near_motions,
+        completeness=judge_completeness(findings, provenance, doubts),
+        closure_gap=gap,
+        provenance=provenance,
+    )
+
+
+# --- forms and surfaces ---------------------------------------------------------------
+
+
+def _forms(
+    problem: Problem, traced: Sequence[TracedBranch], points: Sequence[MeetingPoint]
+) -> tuple[Form, ...]:
+    """The branches as forms, numbered from 1."""
+    components = _component_numbers(len(traced), points)
+    singular = {form for point in points for form, _ in point.passes}
+    forms = []
+    for index, (branch, component) in enumerate(zip(traced, components, strict=True)):
+        smallest = 0.0 if index in singular else _smallest_value(problem, branch)
+        passes = [s for point in points for form, s in point.passes if form == index]
+        form = Form(
+            name=f"Form {index + 1}",
+            branch=branch.branch,
+            profile=branch.profile,
+            min_singular_value=smallest,
+            component=component,
+            misclosure=branch.misclosure,
+            certificate=_certificate(problem, branch, passes),
+            multiplicity=max(branch.multiplicity, 1),
+        )
+        forms.append(form)
+    return tuple(forms)
+
+
+def _certificate(
+    problem: Problem, traced: TracedBranch, passes: Sequence[float]
+) -> Certificate | None:
+    """The certificate of a branch between all singular points that it ``passes``, also
+    those that were seen from other branches only."""
+    certificate = traced.certificate
+    if certificate is None:
+        return None
+    if not certificate.leaves_doubt and len(passes) == len(traced.passes):
+        return certificate
+    return certificate_of(problem, traced.branch, traced.profile, passes)
+
+
+def _smallest_value(problem: Problem, traced: TracedBranch) -> float:
+    """The smallest regular singular value along a branch: at its minima or its ends."""
+    branch, profile = traced.branch, traced.profile
+    if not profile.rank:
+        return 0.0
+    _, minima = traced.minima
+    smallest = min(minima.min(initial=np.inf), profile.smallest.min())
+    if not branch.closed:
+        ends = branch(np.array([0.0, branch.length]))
+        at_ends = singular_values(problem, ends)[:, profile.rank - 1]
+        smallest = min(smallest, at_ends.min())
+    return float(smallest)
+
+
+def _component_numbers(count: int, points: Sequence[MeetingPoint]) -> list[int]:
+    """Number of the connected component of every form, counted from 0 in the order of
+    the forms."""
+    # networkx, which could do this, takes longer to import than the search
+    components: list[set[Hashable]] = [{form} for form in range(count)]
+    for point in points:
+        meeting: set[Hashable] = {form for form, _ in point.passes}
+        meeting |= {("surface", k) for k in point.surfaces}
+        apart = [component for component in components if not component & meeting]
+        joined = [component for component in components if component & meeting]
+        components = [*apart, meeting.union(*joined)]
+    parts = [
+        sorted(member for member in component if isinstance(member, int))
+        for component in components
+    ]
+    numbers = [0] * count
+    for number, forms in enumerate(sorted(filter(None, parts))):
+        for form in forms:
+            numbers[form] = number
+    return numbers
+
+
+def _surfaces(
+    problem: Problem, findings: Findings, periods: np.ndarray
+) -> tuple[Surface, ...]:
+    """The surfaces, numbered from 1."""
+    surfaces = findings.components.surfaces(findings.book.seeds.points)
+    in_order = [surfaces[k] for k in order_surfaces(problem, surfaces)]
+    named = []
+    for number, surface in enumerate(in_order, start=1):
+        samples = wrap(surface.samples, periods)
+        named.append(replace(surface, name=f"surface {number}", samples=samples))
+    return tuple(named)
+
+
+def _near_motions(
+    problem: Problem, findings: Findings, periods: np.ndarray
+) -> tuple[NearMotion, ...]:
+    """The near motions: surfaces, the largest mobility first, and then curves, the one
+    that misses least first; those that miss as much in the order of branches."""
+    traces = list(findings.near_motions.values())
+    order = order_branches(problem, [trace.branch for trace in traces])
+    decades = np.array([np.log10(traces[k].misclosure) for k in order])
+    surfaces = sorted(findings.near_surfaces, key=lambda one: -one.dimension)
+    near_motions = [
+        NearMotion(
+            misclosure=surface.misclosure,
+            length=0.0,
+            is_closed=False,
+            sample=wrap(surface.sample, periods),
+            mobility=surface.dimension,
+        )
+        for surface in surfaces
+    ]
+    for k in order[order_values(decades, SAME_MISCLOSURE)]:
+        trace = traces[k]
+        sample = wrap(trace.branch(0.0), periods)
+        near_motions.append(
+            NearMotion(trace.misclosure, trace.length, trace.is_closed, sample)
+        )
+    return tuple(near_motions)
+
+
+def _with_misclosure(
+    point: MeetingPoint, traced: Sequence[TracedBranch]
+) -> MeetingPoint:
+    """The point with a note where a form through it misses closure by more than
+    rounding: then the form passes it to within the root of that."""
+    misclosures = [traced[form].misclosure for form, _ in point.passes]
+    largest = max(misclosures, default=0.0)
+    if closes_to_rounding(largest):
+        return point
+    note = f"within the closing tolerance, the forms miss {largest:.1e}"
+    return replace(point, note="; ".join(filter(None, [point.note, note])))
+
+
+def _is_on_near_motion(findings: Findings, point: SingularPoint) -> bool:
+    """Whether a singular point that no branch passes is the place of a near motion
+    where its rank drops, but for the misclosure."""
+    is_isolated = point.kind is Kind.ISOLATED
+    return is_isolated and findings.near_motion_through(point.u) is not None
+
+
+# --- events ---------------------------------------------------------------------------
+
+
+def near_misses_of(
+    problem: Problem,
+    traced: Sequence[TracedBranch],
+    points: Sequence[SingularPoint],
+    met: Sequence[MeetingPoint],
+    periods: np.ndarray,
+) -> tuple[Event, ...]:
+    """The minima of the singular value that are no singular points, nor as near to one
+    of the ``points`` as its place is open, or to where a form meets one of those that
+    are ``met``, form by form."""
+    events = []
+    for form, branch in enumerate(traced):
+        arclengths, values = branch.minima
+        is_low = stand_out(problem, branch.branch, branch.profile, values)
+        is_near_miss = is_low & ~np.isin(arclengths, branch.located)
+        if not np.any(is_near_miss):
+            continue
+        arclengths = arclengths[is_near_miss]
+        rank = branch.profile.rank
+        places = wrap(branch.branch(arclengths), periods)
+        for k in order_points(places, periods, problem.scale):
+            s = float(arclengths[k])
+            if _is_at_point(problem, places[k], points) or _is_at_pass(form, s, met):
+                continue
+            value, error = near_miss_value(problem, branch.branch, rank, s)
+            events.append(Event(form, s, places[k], value, error))
+    return tuple(events)
+
+
+def _is_at_point(
+    problem: Problem, place: np.ndarray, points: Sequence[SingularPoint]
+) -> bool:
+    """Whether a place (n,) is no farther from a singular point than its error."""
+    return any(
+        float(np.linalg.norm(problem.difference(place, point.u))) <= point.error
+        for point in points
+    )
+
+
+def _is_at_pass(form: int, s: float, met: Sequence[MeetingPoint]) -> bool:
+    """Whether arclength ``s`` of a form is no farther from where it meets a singular
+    point than the error of that: an end that stops short of a cusp is at it."""
+    return any(
+        number == form and abs(s - passed) <= meeting.point.error
+        for meeting in met
+        for number, passed in meeting.passes
+    )
+
+
+def _dead_points(
+    problem: Problem, traced: Sequence[TracedBranch], periods: np.ndarray
+) -> tuple[Event, ...]:
+    """The dead points, form by form and unknown by unknown."""
+    events = []
+    for form, branch in enumerate(traced):
+        by_rounding = change_by_blur(branch.blur)
+        roots = dead_points(branch.branch, by_rounding, problem.slack)
+        unknowns = np.repeat(np.arange(problem.n), [len(each) for each in roots])
+        arclengths = np.concatenate(roots)
+        places = wrap(branch.branch(arclengths), periods)
+        for k in order_points(places, periods, problem.scale, groups=unknowns):
+            s, index = float(arclengths[k]), int(unknowns[k])
+            events.append(Event(form, s, places[k], index=index))
+    return tuple(events)

@@ -1,0 +1,313 @@
+"""What doubles leave undecided in the answer of a search, with the candidates."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from bifurc.atlas import Event, Form, MeetingPoint, Surface
+from bifurc.branch import Branch, Outcome
+from bifurc.completeness import Doubt
+from bifurc.curves.certificate import Certificate
+from bifurc.curves.misclosure import misclosure_at
+from bifurc.curves.monitor import largest_rates
+from bifurc.decisions import (
+    hangs_on_data,
+    is_faint,
+    is_known_assembly,
+    is_known_curve,
+    is_same_line,
+    is_same_point,
+    is_stub,
+    may_be_null,
+    misses_by_rounding,
+    stands_still,
+    unit_over_rounding,
+)
+from bifurc.numerics.blur import (
+    change_by_blur,
+    distance_to_singular,
+    rounding_unit,
+)
+from bifurc.numerics.null_spaces import null_spaces
+from bifurc.problem import Problem
+from bifurc.search.answer.completeness import SearchDoubt
+from bifurc.search.findings import Findings, TracedBranch
+from bifurc.singular.dimension import misclosures_beside, project_slowly
+from bifurc.singular.point import Kind, SingularPoint
+
+MOST_SAMPLES = 200  # of a surface at which it is seen what it misses
+
+
+def doubts_of(
+    problem: Problem,
+    traced: Sequence[TracedBranch],
+    forms: Sequence[Form],
+    points: Sequence[MeetingPoint],
+    surfaces: Sequence[Surface],
+    of_surfaces: Problem | None = None,
+) -> Iterator[Doubt]:
+    """One doubt for each thing that doubles do not decide: surfaces that may be
+    curves, curves that may be surfaces, stretches of forms that are not certified, ends
+    of forms at nothing known, singular points of no certain kind.
+
+    The ``forms`` are those of the branches ``traced``. Solutions on the ``surfaces``
+    are regular ones of the problem ``of_surfaces``, where it is another one.
+    """
+    for surface in surfaces:
+        yield from _doubts_of_surface(of_surfaces or problem, surface)
+    for index, branch in enumerate(traced):
+        yield from _doubts_of_form(problem, index, branch, points)
+    for index, form in enumerate(forms):
+        if form.certificate is not None and form.certificate.leaves_doubt:
+            yield _doubt_of_certificate(_name(index), form.certificate)
+    for point in points:
+        yield from _doubts_of_point(problem, point)
+        yield from _doubts_of_halves(traced, point)
+    double = [
+        point.name
+        for point in points
+        if point.kind is Kind.ISOLATED and point.point.rank == problem.n - 1
+    ]
+    if double:
+        yield SearchDoubt.DOUBLE_SOLUTIONS.doubt(points=double)
+
+
+def doubts_of_near_misses(problem: Problem, misses: Sequence[Event]) -> Iterator[Doubt]:
+    """Whether the numbers that the equations are made of tell near misses from
+    bifurcations.
+
+    At the distance of a singular point the singular value vanishes; F changes on the
+    way by half of their product.
+    """
+    rounding = float(problem.data_rounding)
+    if rounding == 0.0:
+        return
+    hanging = []
+    for miss in misses:
+        change = miss.value * distance_to_singular(problem, miss.u) / 2
+        if hangs_on_data(change, rounding):
+            hanging.append(miss.value)
+    if hanging:
+        smallest, count = min(hanging), len(hanging)
+        kind = SearchDoubt.NEAR_MISSES
+        yield kind.doubt(amount=smallest, count=count, rounding=rounding)
+
+
+def doubts_of_findings(
+    problem: Problem, findings: Findings, points: Sequence[SingularPoint]
+) -> Iterator[Doubt]:
+    """What is open about the ``findings`` of a search besides forms, surfaces and the
+    singular ``points`` listed."""
+    others = _others(problem, findings, points)
+    if others:
+        yield SearchDoubt.HIDDEN_POINTS.doubt(count=others)
+    traces = list(findings.near_motions.values())
+    counts = {
+        SearchDoubt.FAINT_NEAR_MOTIONS: sum(is_faint(t.misclosure) for t in traces),
+        SearchDoubt.LOOSE_NEAR_MOTIONS: sum(t.has_loose_end for t in traces),
+        SearchDoubt.REPEATED_NEAR_MOTIONS: sum(t.is_repeated for t in traces),
+        SearchDoubt.BLURRED_NEAR_MOTIONS: sum(t.is_blurred for t in traces),
+    }
+    for kind, count in counts.items():
+        if count:
+            yield kind.doubt(amount=is_faint.threshold, count=int(count))
+    if traces or findings.near_surfaces:
+        yield SearchDoubt.NEAR_ASSEMBLIES.doubt()
+    hidden = np.array([assembly.hidden for assembly in findings.rigid.values()])
+    hidden = hidden[~is_known_assembly(hidden, problem.scale)]
+    if len(hidden):
+        reach = hidden.max() / problem.scale
+        yield SearchDoubt.HIDDEN_ASSEMBLIES.doubt(amount=reach, count=len(hidden))
+    off_charts = findings.components.off_charts
+    if off_charts:
+        yield SearchDoubt.UNCHARTED.doubt(starts=off_charts)
+    if findings.gaps_of_stops:
+        yield SearchDoubt.SHORT_STOPS.doubt(amount=min(findings.gaps_of_stops))
+
+
+def _others(
+    problem: Problem, findings: Findings, points: Sequence[SingularPoint]
+) -> int:
+    """How many singular points the exact equations have beside ``points``: doubles do
+    not tell them apart."""
+    known = [point.u for point in points]
+    for germ in findings.germs:
+        for other in germ.others:
+            places = np.array(known).reshape(-1, problem.n)
+            distances = np.linalg.norm(problem.difference(places, other), axis=1)
+            if not np.any(is_same_point(distances, problem.scale)):
+                known.append(other)
+    return len(known) - len(points)
+
+
+def _doubts_of_surface(problem: Problem, surface: Surface) -> Iterator[Doubt]:
+    """Whether what a surface misses is more than rounding."""
+    missed = _misclosure(problem, surface)
+    if not _is_rounding(problem, missed, surface.samples[:MOST_SAMPLES]):
+        yield SearchDoubt.SURFACE_OR_CURVES.doubt(surface.name, missed)
+
+
+def _is_rounding(problem: Problem, missed: float, points: np.ndarray) -> bool:
+    """Whether a residual is no more than rounding, which is measured at points (k, n)
+    where it is not plain."""
+    if misses_by_rounding(missed):
+        return True
+    return misses_by_rounding(missed, rounding_unit(problem, points))
+
+
+def _misclosure(problem: Problem, surface: Surface) -> float:
+    """The largest relative residual seen on a surface, infinite where nothing is.
+
+    Where F' has a lower rank, steps towards a solution beside a sample shrink slowly,
+    and what is left tells nothing: the samples themselves count, as near to solutions
+    as they can be known. Some lie next to where another surface crosses, and are known
+    less well: of these residuals it is the median.
+    """
+    seen = np.empty(0)
+    if surface.charts is not None:
+        seen = problem.gaps(surface.charts.centers)
+    samples = surface.samples[:MOST_SAMPLES]
+    sigma, right = null_spaces(problem, samples)
+    is_regular = np.count_nonzero(may_be_null(sigma), axis=1) == surface.dimension
+    missed = misclosures_beside(
+        problem, samples[is_regular], right[is_regular, problem.n - surface.dimension :]
+    )
+    seen = np.concatenate([seen, missed[np.isfinite(missed)]])
+    if not np.all(is_regular):
+        shaky = samples[~is_regular]
+        _, left = project_slowly(problem, shaky, misses_by_rounding)
+        seen = np.append(seen, np.median(left))
+    return float(seen.max()) if len(seen) else np.inf
+
+
+def _doubts_of_form(
+    problem: Problem, index: int, traced: TracedBranch, points: Sequence[MeetingPoint]
+) -> Iterator[Doubt]:
+    """Whether a form is a curve, as far as doubles tell, and has no loose end."""
+    branch, profile = traced.branch, traced.profile
+    name = _name(index)
+    is_regular = profile.rank == branch.n - 1
+    if is_regular and not is_known_curve(traced.blur):
+        yield SearchDoubt.CURVE_OR_SURFACE.doubt(name, traced.blur)
+    if not traced.multiplicity:
+        yield SearchDoubt.MULTIPLICITY.doubt(name, rank=profile.rank)
+    hidden = _hidden_by_rounding(traced)
+    if len(hidden):
+        numbers = [int(k) + 1 for k in hidden]
+        yield SearchDoubt.STILL_UNKNOWNS.doubt(name, unknowns=numbers)
+    if traced.missing and traced.certificate is None:
+        place = traced.missing[0]
+        yield SearchDoubt.UNLOCATED_POINT.doubt(name, place)
+    names = _ended_at_assumed_bounds(problem, branch)
+    if names:
+        yield SearchDoubt.NO_BOUNDS.doubt(name, unknowns=names)
+    if branch.outcome in (Outcome.STEP_LIMIT, Outcome.TIME_LIMIT):
+        yield SearchDoubt.TOO_LONG.doubt(name)
+    if branch.outcome is Outcome.STALLED:
+        ends = {s for point in points for form, s in point.passes if form == index}
+        loose = [
+            branch(s)
+            for s in (0.0, branch.length)
+            if s not in ends and not _is_at_bounds(problem, branch(s))
+        ]
+        if loose:
+            yield _doubt_of_loose_ends(problem, name, loose)
+
+
+def _name(index: int) -> str:
+    """What a form is called before it has a name of its own."""
+    return f"form {index + 1}"
+
+
+def _doubt_of_loose_ends(
+    problem: Problem, name: str, ends: Sequence[np.ndarray]
+) -> Doubt:
+    """That a form stalls at its ``ends`` (n,), and at how many of them F' is not
+    finite."""
+    reach = is_stub.threshold * problem.scale
+    rough = sum(not problem.is_smooth_within(end, reach) for end in ends)
+    if not rough:
+        return SearchDoubt.STALLED.doubt(name, ends=len(ends))
+    return SearchDoubt.STALLED_AT_RIM.doubt(name, ends=len(ends), rough=rough)
+
+
+def _hidden_by_rounding(traced: TracedBranch) -> np.ndarray:
+    """Indices (k,) of the unknowns whose rates along a branch are no larger than what
+    rounding may make, and no rounding of an ordinary curve."""
+    rates = largest_rates(traced.branch)
+    by_rounding = change_by_blur(traced.blur)
+    stands = stands_still(rates, unit_over_rounding(stands_still, by_rounding))
+    hidden: np.ndarray = np.flatnonzero(stands & (rates >= stands_still.threshold))
+    return hidden
+
+
+def _is_at_bounds(problem: Problem, point: np.ndarray) -> bool:
+    """Whether a point (n,) lies at an end of the bounds."""
+    gaps = np.abs(point[:, None] - problem.bounds)
+    return bool(np.any(is_same_point(gaps, problem.scale)))
+
+
+def _ended_at_assumed_bounds(problem: Problem, branch: Branch) -> list[str]:
+    """The unknowns without bounds of which a form reaches the ends of the region that
+    was chosen instead."""
+    is_assumed = problem.has_assumed_bounds
+    if branch.outcome is not Outcome.LEFT_REGION or not np.any(is_assumed):
+        return []
+    ends = np.array([branch(0.0), branch(branch.length)])
+    gaps = np.abs(ends[:, :, None] - problem.bounds)  # (2, n, 2)
+    is_there = is_same_point(gaps, problem.scale).any(axis=0) & is_assumed
+    return [problem.names[k] for k in np.flatnonzero(is_there.any(axis=1))]
+
+
+def _doubt_of_certificate(name: str, certificate: Certificate) -> Doubt:
+    """Where nothing is certified of a form."""
+    if len(certificate.gaps):
+        places = certificate.gaps.tolist()
+        return SearchDoubt.UNCERTIFIED.doubt(name, places=places)
+    return SearchDoubt.BLURRED.doubt(name, places=certificate.blurred.tolist())
+
+
+def _doubts_of_halves(
+    traced: Sequence[TracedBranch], point: MeetingPoint
+) -> Iterator[Doubt]:
+    """Whether forms that stall at a point in opposite directions are one, which goes on
+    through it."""
+    ends: list[tuple[int, np.ndarray]] = []
+    for (index, s), tangent in zip(point.passes, point.tangents, strict=True):
+        branch = traced[index].branch
+        if branch.outcome is Outcome.STALLED and s in (0.0, branch.length):
+            inward = tangent if s == 0.0 else -tangent
+            ends.append((index, inward / np.linalg.norm(inward)))
+    for (one, along), (other, back) in itertools.combinations(ends, 2):
+        if not is_same_line(1.0 + float(along @ back)):
+            continue
+        names = f"the ends of {_name(one)}"
+        if one != other:
+            names = f"forms {one + 1} and {other + 1}"
+        yield SearchDoubt.ONE_CURVE.doubt(names, point=point.name)
+
+
+def _doubts_of_point(problem: Problem, point: MeetingPoint) -> Iterator[Doubt]:
+    """Whether a singular point is one, and of which kind."""
+    place = point.point.u[None]
+    gap = float(problem.gaps(place)[0])
+    # beside the exact point F grows with the square of the distance
+    explained = (point.point.error / problem.scale) ** 2
+    kind = point.kind.value
+    missed = 0.0
+    if not _is_rounding(problem, gap - explained, place):
+        rank = problem.n - point.point.null_space.shape[1]
+        missed = misclosure_at(problem, point.point.u, rank)
+    if not misses_by_rounding(missed - explained):
+        yield SearchDoubt.POINT_OR_NEAR_MISS.doubt(point.name, missed, point_kind=kind)
+    elif point.kind is Kind.UNDECIDED:
+        reason = point.note or "sections of two radii disagree"
+        yield SearchDoubt.UNDECIDED.doubt(point.name, reason=reason)
+    elif point.note:
+        doubt = SearchDoubt.NOT_WHOLE
+        yield doubt.doubt(point.name, point_kind=kind, reason=point.note)
+    elif not point.point.is_confirmed:
+        yield SearchDoubt.UNCONFIRMED.doubt(point.name)

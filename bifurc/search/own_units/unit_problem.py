@@ -1,0 +1,620 @@
+"""A function's equations in units of their own: what a search works on.
+
+The sizes of the unknowns are those of the region in which solutions are, not those of
+the bounds: a curve far smaller than its bounds is looked for about where it is. The
+equations count by their gradients there. So a search sees the same numbers whatever the
+user's units are; `bifurc.search.own_units.restated` takes its answer back into these.
+
+Large systems, and classes that answer some question in a way of their own, have all
+their unknowns counted in one unit, that of their scale.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from bifurc.curves.continuation import trace_branch
+from bifurc.decisions import (
+    is_factor_of_form,
+    is_far_smaller,
+    is_flat_equation,
+    is_on_the_way,
+    may_repeat_factors,
+)
+from bifurc.equations.differentiation import with_gradients
+from bifurc.equations.factors import Factors, polynomial_factors, written_factors
+from bifurc.equations.recording import Recording
+from bifurc.equations.system import LARGEST_DENSE
+from bifurc.equations.tape import Tape
+from bifurc.function_problem import PROBES, EquationProblem, FunctionProblem
+from bifurc.limits import Deadline
+from bifurc.numerics.singular_values import values_of
+from bifurc.problem import PreciseResidual, Problem
+from bifurc.search.own_units.restated import restated_branch
+from bifurc.seeding import random_seeds
+from bifurc.seeds import Audit, Seeds
+from bifurc.settings import TraceSettings
+from bifurc.units import Units
+
+if TYPE_CHECKING:
+    import mpmath
+
+    # SciPy takes longer to import than a small problem to solve
+    from scipy.sparse import sparray
+
+    from bifurc.branch import Branch
+
+STARTS, STARTS_OF_CALLABLE = 100, 24  # from which it is seen where solutions are
+ROUNDS = 40  # in which the region shrinks to them
+MARGIN = 0.25  # of what solutions span, on either side of them
+CLOSE = 0.5  # share of a region that has shrunk which solutions then span
+WIDEST_MIX = 32.0  # sizes that differ by no more are taken for one
+# Share of the bounds below which solutions that lie so near to each other are one point.
+POINT = 1e-10
+OFF_CENTER = 4.0  # widths from zero from which on an unknown is counted from its middle
+HIGHEST, MOST_EQUATIONS = 6, 60  # multiplicity that is looked for, and equations
+FEWEST = 5  # ends of starts by which a multiplicity is told
+FEWEST_FLAT = 2  # of them, where F' is flat, for which factors are looked for
+PLACES = np.linspace(0.05, 0.95, 9)  # shares of a form at which factors are evaluated
+TINY = 1e-300  # keeps a gradient of zero from being divided by
+REGULAR = 1e-6  # smallest regular singular value at an end that is where it belongs
+OF_CURVES = 1e-4  # the same: at points of higher order where starts stop it is 2e-6
+# What a class may answer in its own way: in its own units only, or in any one unit.
+OF_EQUATIONS = (
+    "residuals",
+    "jacobian",
+    "jacobians",
+    "march",
+    "project",
+    "project_to_sphere",
+    "bridge",
+    "missed",
+    "excess",
+)
+OF_ONE_UNIT = ("hessian", "seeds", "curvature_bound", "complex_curvature")
+CURVES = 3  # that are followed out of a region that has shrunk
+SAMPLES = 200  # of each of them
+WAY_OUT = 1e5  # scales that it is followed for
+BEYOND = 0.5  # widths of the region by which it then leaves it
+OUTER = 0.1  # share of the ends of starts that may lie elsewhere than the rest
+
+
+class Simplified(NamedTuple):
+    """Equations with the solutions of those of a user and a smaller multiplicity: on the
+    ``tape`` in place of F stand its different ``factors``, each once, and after them the
+    derivatives that vanish with all of them, up to an ``order`` of derivation less
+    one."""
+
+    tape: Tape
+    factors: Factors
+    order: int = 1
+
+
+class UnitProblem(EquationProblem):
+    """The equations of a function in ``units``, with solutions looked for in the
+    ``region`` (n, 2) besides the bounds of the ``problem``; both in the user's units.
+    Without a region the scale and the magnitude are those of the problem, whose units
+    then have one size.
+
+    Where solutions are multiple ones, the equations are the ``simplified`` ones.
+    """
+
+    def __init__(
+        self,
+        problem: FunctionProblem,
+        units: Units,
+        region: np.ndarray | None = None,
+        simplified: Simplified | None = None,
+    ):
+        jacobian = None if problem._jacobian is None else self._restated_jacobian
+        recording = problem.recording
+        tape = recording.tape if simplified is None else simplified.tape
+        if tape is not None:
+            own = tape.in_units(units.origin, units.sizes, units.weights)
+            recording = Recording(own)
+        rows = len(units.weights)
+        super().__init__(self._restated_function, jacobian, recording, rows)
+        self.problem = problem
+        self.simplified = simplified
+        self.tape = tape
+        self.own_units = units
+        self.names, self.units = problem.names, problem.units
+        self.derivatives, self.equations = problem.derivatives, problem.equations
+        self.has_assumed_bounds = problem.has_assumed_bounds
+        self.periods = problem.periods / units.sizes
+        self.bounds = units.inwards(problem.bounds.T).T
+        own_region = _first_region(problem) if region is None else region
+        self.region = units.inwards(own_region.T).T
+        if region is None:
+            size = float(units.sizes[0])
+            self.scale = problem.scale / size
+            self.curvature_residual = problem.curvature_residual / size
+            self._take_magnitude(size * problem.magnitude, self.region)
+        else:
+            self.scale = float(np.median(np.diff(self.region, axis=1))) / 4.0
+            self._take_magnitude(1.0, self.region)
+            sizes = [np.linalg.norm(matrix, ord=2) for matrix in self._matrices()]
+            magnitude = float(np.median(sizes)) if sizes else 1.0
+            self._take_magnitude(magnitude or 1.0, self.region)
+        if _has_own(problem, "hessian"):
+            self.hessian_error = problem.hessian_error
+
+    def multiplicity_along(self, branch: Branch) -> int:
+        """How often the user's equations are solved all along a ``branch`` in these
+        units: the product over them of the powers of the factors that vanish there."""
+        if self.simplified is None:
+            return 1
+        factors = self.simplified.factors
+        places = branch(branch.length * PLACES)
+        points = np.ascontiguousarray(self.own_units.outwards(places))
+        values = np.abs(factors.tape.compiled.residuals(points))
+        slopes = factors.tape.compiled.jacobians(points) * self.own_units.sizes
+        lengths = np.linalg.norm(slopes, axis=2)
+        distances = np.median(values / (lengths + TINY), axis=0)  # (k,)
+        powers: dict[int, int] = {}
+        for number, row in enumerate(factors.rows):
+            if is_factor_of_form(float(distances[number]), self.scale):
+                powers[row] = powers.get(row, 0) + factors.powers[number]
+        return self.simplified.order * math.prod(powers.values())
+
+    @property
+    def reach(self) -> float:
+        """A quarter of the widest bounds, or the scale: curves may go on far beyond
+        the region to which random starts lead."""
+        widths = np.diff(self.bounds, axis=1)[:, 0]
+        finite = widths[np.isfinite(widths)]
+        return max(self.scale, float(finite.max(initial=0.0)) / 4.0)
+
+    def _restated_function(self, point: np.ndarray) -> np.ndarray:
+        """F (m,) of the user at a point (n,) in these units, weighted."""
+        value = self.problem._function(self.own_units.outwards(point))
+        weighted: np.ndarray = self.own_units.weights * np.asarray(value)
+        return weighted
+
+    def _restated_jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
+        """F' (m, n) of the user at a point (n,) in these units, weighted."""
+        units = self.own_units
+        own = self.problem._given_jacobian(units.outwards(point))
+        if isinstance(own, np.ndarray):
+            matrix: np.ndarray = units.weights[:, None] * own * units.sizes
+            return matrix
+        from scipy.sparse import diags_array
+
+        sparse: sparray = diags_array(units.weights) @ own @ diags_array(units.sizes)
+        return sparse
+
+    def _matrices(self) -> list[np.ndarray]:
+        """F' (m, n) at random points of the region where it is finite."""
+        rng = np.random.default_rng(0)
+        points = rng.uniform(self.region[:, 0], self.region[:, 1], (PROBES, self.n))
+        with np.errstate(all="ignore"):
+            matrices = [self.jacobians(point[None])[0] for point in points]
+        return [matrix for matrix in matrices if np.all(np.isfinite(matrix))]
+
+    def precise_residual(self) -> PreciseResidual | None:
+        """F over mpmath numbers, from that of the user's problem."""
+        if self.simplified is not None:
+            return super().precise_residual()
+        precise = self.problem.precise_residual()
+        if precise is None:
+            return None
+        units = self.own_units
+
+        def residual(unknowns: Sequence[mpmath.mpf]) -> list[mpmath.mpf]:
+            pairs = zip(units.origin, units.sizes, unknowns, strict=True)
+            restated = [float(c) + float(d) * v for c, d, v in pairs]
+            values = precise(restated)
+            weights = units.weights.tolist()
+            return [w * value for w, value in zip(weights, values, strict=True)]
+
+        return residual
+
+    def coefficient_rounding(self, point: np.ndarray) -> np.ndarray:
+        """How far off F (m,) at a point (n,) is, from that of the user's problem."""
+        if self.simplified is not None:
+            return super().coefficient_rounding(point)
+        units = self.own_units
+        own = self.problem.coefficient_rounding(units.outwards(point))
+        rounding: np.ndarray = units.weights * own
+        return rounding
+
+    def hessian(self, point: np.ndarray) -> np.ndarray:
+        """F'' (m, n, n) at a point (n,)."""
+        if not _has_own(self.problem, "hessian"):
+            return super().hessian(point)
+        units = self.own_units
+        by_sizes = units.sizes[:, None] * units.sizes
+        own = self.problem.hessian(units.outwards(point))
+        hessian: np.ndarray = units.weights[:, None, None] * by_sizes * own
+        return hessian
+
+    def curvature_bound(self) -> float | None:
+        """A constant of Lipschitz for F' over the magnitude, where the problem has
+        one."""
+        bound = self.problem.curvature_bound()
+        return None if bound is None else float(self.own_units.sizes[0]) * bound
+
+    def complex_curvature(self, reach: np.ndarray) -> np.ndarray | None:
+        """Bounds (k,) on |F''| over the magnitude, where the problem has them."""
+        size = float(self.own_units.sizes[0])
+        bounds = self.problem.complex_curvature(size * reach)
+        return None if bounds is None else size * bounds
+
+    # --- seeds ------------------------------------------------------------------------
+
+    def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
+        """Solutions reached from ``count`` random starts, half of them from the region
+        where that is smaller than the bounds; or those that the problem has in a way of
+        its own."""
+        return self.seeds_until(rng, count, Deadline())
+
+    def seeds_until(
+        self, rng: np.random.Generator, count: int, deadline: Deadline
+    ) -> Seeds:
+        """The same, from as many of the starts as there is time for before the
+        ``deadline``."""
+        if _has_own(self.problem, "seeds"):
+            return self.seeds_inwards(self.problem.seeds_until(rng, count, deadline))
+        if np.allclose(self.own_box, self.region):
+            return random_seeds(self, rng, count, self.region, deadline)
+        near = random_seeds(self, rng, count - count // 2, self.region, deadline)
+        anywhere = random_seeds(self, rng, count // 2, self.own_box, deadline)
+        return near.and_random(anywhere)
+
+    def seeds_inwards(self, seeds: Seeds) -> Seeds:
+        """Seeds of the user in these units; an audit of theirs, and what shifts
+        curves, see the user's."""
+        units, judge = self.own_units, seeds.audit
+
+        def audit(branches: Sequence[Branch], seconds: float) -> Audit:
+            assert judge is not None
+            periods = self.problem.periods
+            own = [restated_branch(one, units, periods).branch for one in branches]
+            verdict = judge(own, seconds)
+            return replace(verdict, starts=units.inwards(verdict.starts))
+
+        def home(samples: np.ndarray) -> np.ndarray:
+            assert seeds.home is not None
+            shift: np.ndarray = seeds.home(units.outwards(samples)) / units.sizes
+            return shift
+
+        def more(rng: np.random.Generator, count: int, deadline: Deadline) -> Seeds:
+            assert seeds.more is not None
+            return self.seeds_inwards(seeds.more(rng, count, deadline))
+
+        return replace(
+            seeds,
+            points=units.inwards(seeds.points),
+            gaps=seeds.gaps * self.problem.magnitude / self.magnitude,
+            missed=units.inwards(seeds.missed),
+            audit=None if judge is None else audit,
+            home=None if seeds.home is None else home,
+            more=None if seeds.more is None else more,
+        )
+
+    @property
+    def own_box(self) -> np.ndarray:
+        """The bounds (n, 2), and on a circle the region."""
+        box: np.ndarray = np.where(np.isinf(self.bounds), self.region, self.bounds)
+        return box
+
+    def ends(self, count: int, deadline: Deadline | None = None) -> np.ndarray:
+        """Points (k, n), in the user's units, at which ``count`` random starts in the
+        region end: solutions, or where most reach none points on the way to them; of
+        fewer starts where the ``deadline`` comes before."""
+        ends = self.all_ends(count, deadline)
+        sharp = self._is_sharp(ends)
+        if 2 * np.count_nonzero(sharp) > len(ends):
+            ends = ends[sharp]
+        return self.own_units.outwards(ends)
+
+    def all_ends(self, count: int, deadline: Deadline | None = None) -> np.ndarray:
+        """The same in these units, also those beside others that are far from
+        singular."""
+        rng = np.random.default_rng(1)
+        seeds = random_seeds(self, rng, count, self.region, deadline)
+        near = seeds.missed[is_on_the_way(seeds.gaps)]
+        if len(seeds.points) > len(near):
+            near = near[:0]
+        return np.concatenate([seeds.points, near])
+
+    def _is_sharp(self, points: np.ndarray) -> np.ndarray:
+        """Which of the ends (k, n) of starts are far from singular, and so where they
+        belong; others are spread by what a residual leaves open."""
+        if not len(points) or self.n < 2:
+            return np.ones(len(points), dtype=bool)
+        values = values_of(self.jacobians(points))
+        if values.shape[1] < self.n - 1:
+            return np.zeros(len(points), dtype=bool)
+        sharp: np.ndarray = values[:, self.n - 2] > REGULAR * self.magnitude
+        return sharp
+
+
+def in_own_units(
+    problem: Problem, deadline: Deadline | None = None
+) -> UnitProblem | None:
+    """The equations of a function in units of their own; None for any other problem,
+    and where they are in such units as they stand. What is not known of their solutions
+    at the ``deadline`` does not count."""
+    if not isinstance(problem, FunctionProblem):
+        return None
+    if any(_has_own(problem, name) for name in OF_EQUATIONS):
+        return None
+    has_own_answers = any(_has_own(problem, name) for name in OF_ONE_UNIT)
+    if has_own_answers or problem.n > LARGEST_DENSE:
+        own = _in_unit_of_scale(problem)
+    else:
+        own = _in_units_of_solutions(problem, deadline or Deadline())
+    return None if _is_as_it_stands(problem, own) else own
+
+
+def _has_own(problem: FunctionProblem, name: str) -> bool:
+    """Whether the class of a problem has a method of its own of this ``name``."""
+    return getattr(type(problem), name) is not getattr(FunctionProblem, name)
+
+
+def _in_unit_of_scale(problem: FunctionProblem) -> UnitProblem:
+    """The equations with all unknowns counted in the power of 2 next to the scale."""
+    sizes = np.full(problem.n, _unit_of(problem))
+    units = Units(np.zeros(problem.n), sizes, np.ones(problem._rows))
+    return UnitProblem(problem, units)
+
+
+def _unit_of(problem: FunctionProblem) -> float:
+    return float(2.0 ** round(math.log2(problem.scale)))
+
+
+def _in_units_of_solutions(problem: FunctionProblem, deadline: Deadline) -> UnitProblem:
+    """The equations in units of the region where random starts end, as far as that is
+    known at the ``deadline``."""
+    whole = _first_region(problem)
+    region, is_point = whole, np.zeros(problem.n, dtype=bool)
+    count = STARTS if problem.recording.tape is not None else STARTS_OF_CALLABLE
+    simplified = _with_written_factors(problem)
+    own = _problem_on(problem, region, simplified)
+    for _ in range(ROUNDS):
+        closer = _region_of(problem, own.ends(count, deadline), region, is_point)
+        if closer is None or deadline.passed:
+            break
+        # what shrinks without end is a point, and looked at from where it is
+        is_point |= _is_a_point(closer, whole)
+        region = np.where(is_point[:, None], whole, closer)
+        own = _problem_on(problem, region, simplified)
+    else:
+        own = _problem_on(problem, whole, simplified)
+    if deadline.passed:
+        return own
+    if not np.array_equal(region, whole):
+        region = _widened(own, region, is_point)
+        own = _problem_on(problem, region, simplified)
+    own = _deflated(own)
+    if not np.array_equal(region, whole) and not _has_curves(own):
+        own = _deflated(_problem_on(problem, whole, simplified))
+    return own
+
+
+def _is_a_point(region: np.ndarray, whole: np.ndarray) -> np.ndarray:
+    """In which unknowns (n,) a region (n, 2) is so small a part of the ``whole`` (n, 2)
+    that it is one point."""
+    least = POINT * np.maximum(np.diff(whole, axis=1)[:, 0], np.abs(region).max(axis=1))
+    is_point: np.ndarray = np.diff(region, axis=1)[:, 0] < least
+    return is_point
+
+
+def in_one_size(own: UnitProblem) -> UnitProblem:
+    """The same in units in which all unknowns have one size."""
+    size = float(np.exp2(np.round(np.median(np.log2(own.own_units.sizes)))))
+    sizes = np.full(own.n, size)
+    units = replace(own.own_units, sizes=sizes)
+    region = own.own_units.outwards(own.region.T).T
+    return UnitProblem(own.problem, units, region, own.simplified)
+
+
+# --- where solutions are --------------------------------------------------------------
+
+
+def _first_region(problem: Problem) -> np.ndarray:
+    """The bounds (n, 2), those of one period on a circle."""
+    is_circle = np.isinf(problem.bounds).all(axis=1)
+    low, high = np.where(is_circle[:, None], 0.0, problem.bounds).T
+    middles = 0.5 * (low + high)
+    half = 0.5 * np.where(is_circle, problem.periods, high - low)
+    return np.column_stack([middles - half, middles + half])
+
+
+def _region_of(
+    problem: Problem, ends: np.ndarray, region: np.ndarray, is_point: np.ndarray
+) -> np.ndarray | None:
+    """The part of a ``region`` (n, 2) that holds the ``ends`` (k, n) of starts, where
+    that is far smaller; None where it is not. The unknowns that are a point (n,) are
+    left as they are."""
+    if not len(ends):
+        return None
+    widths = np.diff(region, axis=1)[:, 0]
+    low, high = ends.min(axis=0), ends.max(axis=0)
+    spans = high - low
+    whole = np.diff(_first_region(problem), axis=1)[:, 0]
+    is_free = ~np.isfinite(problem.periods) & ~is_point
+    # what has shrunk already is fitted closely, or sizes would differ by the last round
+    is_shrunk = widths < 0.5 * whole
+    unit = np.where(is_shrunk, CLOSE / is_far_smaller.threshold, 1.0)
+    is_constant = spans <= POINT * np.maximum(widths, np.abs(ends).max(axis=0))
+    is_small = is_free & is_far_smaller(spans, unit * widths) & ~is_constant
+    if not np.any(is_small):
+        return None
+    margins = MARGIN * spans
+    closer = np.column_stack([low - margins, high + margins])
+    closer = np.clip(closer, problem.bounds[:, :1], problem.bounds[:, 1:])
+    return np.where(is_small[:, None], closer, region)
+
+
+def _widened(own: UnitProblem, region: np.ndarray, is_point: np.ndarray) -> np.ndarray:
+    """A ``region`` (n, 2) that has shrunk, or more of the bounds in the unknowns in
+    which curves through it leave it: random starts may end on a small part of a long
+    curve only. The unknowns that are a point (n,) are left as they are."""
+    finite = np.isfinite(own.problem.bounds).all(axis=1)
+    settings = TraceSettings(max_length=WAY_OUT)
+    for start in own.ends(STARTS)[:CURVES]:
+        branch = trace_branch(own, own.own_units.inwards(start), settings=settings)
+        if not len(branch.pieces):
+            continue
+        samples = own.own_units.outwards(branch.sample(SAMPLES))
+        low, high = samples.min(axis=0), samples.max(axis=0)
+        widths = np.diff(region, axis=1)[:, 0]
+        leaves = np.maximum(region[:, 0] - low, high - region[:, 1]) > BEYOND * widths
+        is_wider = leaves & finite & ~is_point
+        hull = np.column_stack(
+            [np.minimum(region[:, 0], low), np.maximum(region[:, 1], high)]
+        )
+        region = np.where(is_wider[:, None], hull, region)
+    return region
+
+
+# --- multiplicity ---------------------------------------------------------------------
+
+
+def _with_written_factors(problem: FunctionProblem) -> Simplified | None:
+    """The equations with every factor once; None where they are written so, and where
+    they are not recorded."""
+    tape = problem.recording.tape
+    if tape is None or problem.n < 2:
+        return None
+    factors = written_factors(tape)
+    return Simplified(factors.radical(), factors) if factors.are_repeated else None
+
+
+def _deflated(own: UnitProblem) -> UnitProblem:
+    """The same without what is left of multiplicity: polynomials whose gradients vanish
+    at some solutions by their different factors, and with the derivatives of the
+    equations whose gradients still vanish at all solutions, where that leaves curves of
+    full rank."""
+    tape = own.problem.recording.tape
+    if tape is None or own.n < 2:
+        return own
+    region = own.own_units.outwards(own.region.T).T
+    flatness = _flatness(own)
+    is_flat = may_repeat_factors(flatness)
+    rows = np.flatnonzero(np.count_nonzero(is_flat, axis=0) >= FEWEST_FLAT)
+    if not len(rows):
+        return own
+    factors = polynomial_factors(tape, rows.tolist(), region)
+    if factors.are_repeated:
+        simplified = Simplified(factors.radical(), factors)
+        own = _problem_on(own.problem, region, simplified)
+        flatness = _flatness(own)
+    return _with_derivatives(own, factors, flatness)
+
+
+def _with_derivatives(
+    own: UnitProblem, factors: Factors, flatness: np.ndarray
+) -> UnitProblem:
+    """The same with the derivatives of the equations whose gradients vanish at all
+    solutions, where that leaves curves of full rank; the ``flatness`` (k, m) is that of
+    its equations, and the ``factors`` are those that they are made of."""
+    assert own.tape is not None
+    region = own.own_units.outwards(own.region.T).T
+    tape, deflated = own.tape, own
+    begin, order = 0, 1
+    while order < HIGHEST and tape.m <= MOST_EQUATIONS:
+        flat = [begin + row for row in _flat_everywhere(flatness[:, begin:])]
+        if not flat:
+            break
+        begin = tape.m
+        tape = with_gradients(tape, flat)
+        order += 1
+        simplified = Simplified(tape, factors, order)
+        deflated = _problem_on(own.problem, region, simplified)
+        flatness = _flatness(deflated)
+    return deflated if order > 1 and _has_curves(deflated) else own
+
+
+def _flatness(own: UnitProblem) -> np.ndarray:
+    """Lengths (k, m) of the gradients of the equations where random starts end, over
+    those elsewhere; k is 0 where too few end anywhere."""
+    ends = own.all_ends(STARTS)
+    typical = own._matrices()
+    if len(ends) < FEWEST or not typical:
+        return np.empty((0, own._rows))
+    usual = np.median(np.linalg.norm(typical, axis=2), axis=0)
+    lengths = np.linalg.norm(own.jacobians(ends), axis=2)
+    flatness: np.ndarray = lengths / (usual + TINY)
+    return flatness
+
+
+def _flat_everywhere(flatness: np.ndarray) -> list[int]:
+    """Which of the equations of a ``flatness`` (k, m) have no gradient at solutions, as
+    a rule."""
+    if not len(flatness):
+        return []
+    rule = np.quantile(flatness, 1.0 - OUTER, axis=0)
+    return np.flatnonzero(is_flat_equation(rule)).tolist()
+
+
+def _has_curves(own: UnitProblem) -> bool:
+    """Whether the solutions that random starts reach lie on curves of full rank, as a
+    rule."""
+    seeds = random_seeds(own, np.random.default_rng(1), STARTS, own.region)
+    if len(seeds.points) < FEWEST:
+        return False
+    matrices = own.jacobians(seeds.points) / own.magnitude
+    values = values_of(matrices)
+    regular = np.median(values[:, own.n - 2])
+    left = np.median(values[:, own.n - 1]) if values.shape[1] >= own.n else 0.0
+    return bool(regular > OF_CURVES and left < OF_CURVES * regular)
+
+
+def _problem_on(
+    problem: FunctionProblem,
+    region: np.ndarray,
+    simplified: Simplified | None = None,
+) -> UnitProblem:
+    """The problem, or its ``simplified`` equations where they are given, in the units
+    that a ``region`` (n, 2) gives."""
+    sizes = np.diff(region, axis=1)[:, 0] / 4.0
+    if sizes.max() <= WIDEST_MIX * sizes.min():
+        sizes = np.full(problem.n, np.median(sizes))
+    sizes = np.exp2(np.round(np.log2(sizes)))
+    middles = region.mean(axis=1)
+    is_off = np.abs(middles) > OFF_CENTER * np.diff(region, axis=1)[:, 0]
+    is_arc = np.isfinite(problem.periods) & np.isfinite(problem.bounds).all(axis=1)
+    origin = np.where(is_off | is_arc, middles, 0.0)
+    rows = problem._rows if simplified is None else simplified.tape.m
+    units = Units(origin, sizes, np.ones(rows))
+    own = UnitProblem(problem, units, region, simplified)
+    weights = _weights(own)
+    if np.all(weights == 1.0):
+        return own
+    weighted = replace(units, weights=weights)
+    return UnitProblem(problem, weighted, region, simplified)
+
+
+def _weights(own: UnitProblem) -> np.ndarray:
+    """Powers of 2 (m,) that make the gradients of the equations about as long as each
+    other; ones where they are."""
+    matrices = own._matrices()
+    ones = np.ones(own._rows)
+    if not matrices or own._rows == 1:
+        return ones
+    lengths = np.median(np.linalg.norm(matrices, axis=2), axis=0)
+    is_counted = lengths > 0.0
+    if not np.any(is_counted):
+        return ones
+    counted = lengths[is_counted]
+    if counted.max() <= WIDEST_MIX * counted.min():
+        return ones
+    ones[is_counted] = np.exp2(-np.round(np.log2(counted)))
+    return ones
+
+
+def _is_as_it_stands(problem: FunctionProblem, own: UnitProblem) -> bool:
+    """Whether nothing is gained by other units."""
+    units = own.own_units
+    is_same = not np.any(units.origin) and own.simplified is None
+    has_sizes = np.any(units.sizes != 1.0) or np.any(units.weights != 1.0)
+    is_near_scale = _unit_of(problem) == 1.0
+    return is_same and not has_sizes and is_near_scale

@@ -1,0 +1,199 @@
+"""Solutions as exact as doubles make them, by Newton's method.
+
+F is small all over a surface that is nearly a solution. What counts as a solution by its
+residual may lie far from the curves on it, and a descent of the residual, which has to
+follow every bend of the surface, gets stuck on the way to them. Newton's method knows the
+way: its steps of rank n - 1 go across the curves only, and need not make the residual
+smaller at once.
+
+Where isolated solutions come together F vanishes to a higher order, and along the
+weakest direction it is rounding on a whole stretch: 1e-15 is the cube of 1e-5. How many
+solutions lie on such a stretch, and where, doubles do not tell.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from bifurc.curves.valley import correct_to_valley
+from bifurc.decisions import (
+    closes_to_rounding,
+    is_blurred,
+    is_known_assembly,
+    is_start_solved,
+    is_weakly_isolated,
+    is_without_equation,
+    may_be_crossed,
+)
+from bifurc.numerics.blur import ROUNDING
+from bifurc.numerics.corrector import limited
+from bifurc.numerics.null_spaces import decompose, null_spaces
+from bifurc.numerics.singular_values import singular_values
+from bifurc.problem import Problem
+from bifurc.seeds import Seeds
+
+STEPS, FARTHEST = 4, 1e-2  # from a solution to its curve, and their length in scales
+LONG_STEPS, LONGEST = 30, 0.3  # from a start that missed, and the length of each
+NEARLY = 1e-3  # residual of such a start
+
+
+class Sharpened(NamedTuple):
+    """Solutions ``points`` (k, n), and the numbers (j,) of those that ``moved``."""
+
+    points: np.ndarray
+    moved: np.ndarray
+
+
+def sharpened(problem: Problem, points: np.ndarray, values: np.ndarray) -> Sharpened:
+    """Solutions as near to their curves as doubles tell, from ``points`` (k, n) at
+    which the singular values are ``values`` (k, n).
+
+    Steps of rank n - 1 are taken where a direction is weak. Where they lead far away, or
+    to no better solution, the point stays.
+    """
+    sharp = np.array(points)
+    weak = _weak(problem, values)
+    if not len(weak):
+        return Sharpened(sharp, weak)
+    starts = sharp[weak]
+    longest = FARTHEST * problem.scale
+    ends = _after_newton_steps(problem, starts, STEPS, longest)
+    is_near = np.linalg.norm(ends - starts, axis=1) < longest
+    enough = np.maximum(problem.gaps(starts), ROUNDING)
+    is_better = is_near & (problem.gaps(ends) <= enough)
+    sharp[weak[is_better]] = ends[is_better]
+    return Sharpened(sharp, weak[is_better])
+
+
+def with_weak_solutions(problem: Problem, seeds: Seeds) -> Seeds:
+    """The seeds, and after them the solutions that are reached from where starts missed
+    by little, in a weak direction."""
+    near = np.flatnonzero(seeds.gaps < NEARLY)
+    if not len(near):
+        return seeds
+    values = singular_values(problem, seeds.missed[near])
+    weak = near[_weak(problem, values)]
+    if not len(weak):
+        return seeds
+    longest = LONGEST * problem.scale
+    points = _after_newton_steps(problem, seeds.missed[weak], LONG_STEPS, longest)
+    is_solved = is_start_solved(problem.gaps(points))
+    is_reached = is_solved & problem.are_inside(points)
+    reached = points[is_reached]
+    is_left = np.ones(len(seeds.missed), dtype=bool)
+    is_left[weak[is_reached]] = False
+    return replace(
+        seeds,
+        points=np.concatenate([seeds.points, reached]),
+        random=np.concatenate([seeds.random, np.ones(len(reached), dtype=bool)]),
+        gaps=seeds.gaps[is_left],
+        missed=seeds.missed[is_left],
+    )
+
+
+def _after_newton_steps(
+    problem: Problem, points: np.ndarray, count: int, longest: float
+) -> np.ndarray:
+    """Where ``count`` steps of rank n - 1, none longer than ``longest``, lead from
+    points (k, n)."""
+    for _ in range(count):
+        steps = decompose(problem, points).newton_steps(problem.n - 1)
+        points = points + limited(steps, longest)
+    return points
+
+
+def _weak(problem: Problem, values: np.ndarray) -> np.ndarray:
+    """Numbers of the points with singular values (k, n) of which the smallest regular
+    one is small, and not nothing."""
+    if problem.n < 2:
+        return np.empty(0, dtype=int)
+    sigma = values[:, problem.n - 2]
+    is_weak = may_be_crossed(sigma) & ~is_without_equation(sigma)
+    return np.flatnonzero(is_weak)
+
+
+# Of Newton's method: at a solution of order k each step leaves (1 - 1 / k) of the way.
+NEWTON_STEPS = 60
+FLOOR = 1e-20  # over the largest singular value: steps stay finite
+NEARBY = 1e-2  # of the scale: how far a solution may lie from where it was found
+# Distances along the weakest direction, over the scale, at which F is looked at, and
+# the rounds in which these places are corrected across it.
+DISTANCES = np.geomspace(1e-8, NEARBY, 121)
+CORRECTIONS = 5
+
+
+class IsolatedSolution(NamedTuple):
+    """A ``point`` (n,) with its ``stiffness``, the smallest of all n singular values
+    there. It ``is_isolated`` where rounding moves it by less than what tells points
+    apart. It, or several, lie ``hidden`` on a stretch that reaches as far from the
+    point to either side."""
+
+    point: np.ndarray
+    stiffness: float
+    is_isolated: bool
+    hidden: float
+
+
+def polished(problem: Problem, start: np.ndarray) -> IsolatedSolution:
+    """The solution next to ``start`` (n,), by Newton's method of full rank; where it is
+    hidden by rounding, the middle of the stretch."""
+    best, gap = _solved(problem, start)
+    stiffness = float(singular_values(problem, best)[problem.n - 1])
+    is_isolated = closes_to_rounding(gap) and not is_blurred(stiffness)
+    if not (closes_to_rounding(gap) and is_weakly_isolated(stiffness)):
+        return IsolatedSolution(best, stiffness, is_isolated, 0.0)
+    stretch = _hidden_stretch(problem, best)
+    if is_known_assembly(stretch.half_length, problem.scale):
+        return IsolatedSolution(best, stiffness, is_isolated, stretch.half_length)
+    return IsolatedSolution(stretch.middle, stiffness, is_isolated, stretch.half_length)
+
+
+def _solved(problem: Problem, start: np.ndarray) -> tuple[np.ndarray, float]:
+    """Where Newton's method of full rank ends next to ``start`` (n,), and the relative
+    residual there.
+
+    A step in a weak direction may raise the residual by the bend of the other
+    equations, and is then corrected across that direction.
+    """
+    best = start
+    gap = float(problem.gaps(start[None])[0])
+    for _ in range(NEWTON_STEPS):
+        point = best + decompose(problem, best[None]).newton_steps(problem.n, FLOOR)[0]
+        new_gap = float(problem.gaps(point[None])[0])
+        if not (new_gap < gap or closes_to_rounding(gap)):
+            points, gaps = correct_to_valley(problem, point[None], CORRECTIONS)
+            point, new_gap = points[0], float(gaps[0])
+        distance = np.linalg.norm(point - start)
+        if not distance < NEARBY * problem.scale or not new_gap < gap:
+            break
+        best, gap = point, new_gap
+    return best, gap
+
+
+class _Stretch(NamedTuple):
+    """A stretch of the valley of |F|: its ``middle`` (n,) and half of its length."""
+
+    middle: np.ndarray
+    half_length: float
+
+
+def _hidden_stretch(problem: Problem, solution: np.ndarray) -> _Stretch:
+    """The stretch of the valley on both sides of a ``solution`` (n,) on which F is
+    rounding."""
+    _, right = null_spaces(problem, solution[None])
+    weakest = right[0, -1]
+    distances = DISTANCES * problem.scale
+    reaches = []
+    for sense in (1.0, -1.0):
+        ahead = solution + sense * distances[:, None] * weakest
+        _, gaps = correct_to_valley(problem, ahead, CORRECTIONS)
+        visible = np.flatnonzero(~closes_to_rounding(gaps))
+        last = visible[0] if len(visible) else -1
+        reaches.append(float(distances[last]))
+    offset = 0.5 * (reaches[0] - reaches[1])
+    beside = solution + offset * weakest
+    middle = correct_to_valley(problem, beside[None], CORRECTIONS)[0][0]
+    return _Stretch(middle, 0.5 * (reaches[0] + reaches[1]))

@@ -1,0 +1,299 @@
+"""Figures of points and pieces between them: bars in a plane, arcs on a sphere.
+
+Every piece is a body, and so is the frame, which holds the fixed points. A point is a
+revolute joint of all bodies that it lies on.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any, Generic, TypeVar
+
+from linkages.mechanisms.joint import Joint, JointKind, Vector
+from linkages.values import GeometryError, quoted
+
+FRAME = "frame"
+Place = TypeVar("Place")  # of a point: a complex number or a direction (3,)
+Numbers = TypeVar("Numbers")  # of a point on a piece
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A bar or an arc between two points, with the length or the angle (rad) that is
+    given for it."""
+
+    start: str
+    end: str
+    measure: float | None = None
+
+    @property
+    def name(self) -> str:
+        """What the body is called."""
+        return joined_name(self.start, self.end)
+
+    @property
+    def ends(self) -> tuple[str, str]:
+        """The points at its ends."""
+        return self.start, self.end
+
+
+@dataclass(frozen=True)
+class PointOnPiece(Generic[Numbers]):
+    """A point that is rigid with the body that holds two others, at ``numbers`` that
+    say where."""
+
+    start: str
+    end: str
+    numbers: Numbers
+
+
+@dataclass(frozen=True)
+class FigureKind(Generic[Numbers]):
+    """The words of a kind of figure, as files and errors have them, and its numbers.
+
+    ``read_measure`` and ``read_numbers`` take what an error calls a number, and what
+    the file says.
+    """
+
+    noun: str
+    article: str
+    measure: str
+    numbers: str
+    read_measure: Callable[[str, Any], float]
+    read_numbers: Callable[[str, object], Numbers]
+
+    @property
+    def piece(self) -> str:
+        """The noun with its article."""
+        return f"{self.article} {self.noun}"
+
+
+@dataclass(frozen=True)
+class Figure(Generic[Place, Numbers]):
+    """What a file says: the places of ``points``, which of them are ``fixed``,
+    ``pieces``, and the points ``on_pieces``, in an order in which each follows the
+    points that it lies between."""
+
+    kind: FigureKind[Numbers]
+    points: dict[str, Place]
+    fixed: tuple[str, ...]
+    pieces: tuple[Piece, ...]
+    on_pieces: dict[str, PointOnPiece[Numbers]]
+
+    @property
+    def free(self) -> list[str]:
+        """The points that may be moved."""
+        return [name for name in self.points if name not in self.fixed]
+
+
+# --- keys -----------------------------------------------------------------------------
+
+
+def table_of_points(content: Mapping[str, Any], row: str) -> Mapping[str, object]:
+    """The table ``[points]`` of a file, whose rows look like ``row``; raises
+    `GeometryError`."""
+    table = content.get("points")
+    if not isinstance(table, Mapping) or not table:
+        raise GeometryError("points", quoted(table), f"a table of points {row}")
+    return table
+
+
+def read_figure(
+    content: Mapping[str, Any], kind: FigureKind[Numbers], points: dict[str, Place]
+) -> Figure[Place, Numbers]:
+    """The figure of these ``points`` that a file describes; raises `GeometryError`."""
+    on_pieces = _read_points_on(content, kind, points)
+    known = [*points, *on_pieces]
+    fixed = _read_fixed(content, known)
+    return Figure(kind, points, fixed, _read_pieces(content, kind, known), on_pieces)
+
+
+def _read_points_on(
+    content: Mapping[str, Any], kind: FigureKind[Numbers], points: Mapping[str, object]
+) -> dict[str, PointOnPiece[Numbers]]:
+    key = f"points_on_{kind.noun}s"
+    shape = f'["A", "B", {kind.numbers}]'
+    table = content.get(key, {})
+    if not isinstance(table, Mapping):
+        raise GeometryError(key, quoted(table), f"a table of points {shape}")
+    on_pieces: dict[str, PointOnPiece[Numbers]] = {}
+    for name, row in table.items():
+        what = f"{key} {name}"
+        if name in points:
+            raise GeometryError(what, quoted(name), "no name of a point in [points]")
+        if not isinstance(row, list) or len(row) != 3:
+            raise GeometryError(what, quoted(row), f"a list {shape}")
+        for end in row[:2]:
+            if end not in points and end not in on_pieces:
+                raise GeometryError(what, quoted(end), "a point that stands before it")
+        numbers = kind.read_numbers(what, row[2])
+        on_pieces[name] = PointOnPiece(row[0], row[1], numbers)
+    return on_pieces
+
+
+def _read_fixed(content: Mapping[str, object], known: Sequence[str]) -> tuple[str, ...]:
+    fixed = content.get("fixed", [])
+    if not isinstance(fixed, list):
+        raise GeometryError("fixed", quoted(fixed), "a list of names of points")
+    for name in fixed:
+        _check_point("fixed", name, known)
+        if fixed.count(name) > 1:
+            raise GeometryError("fixed", quoted(name), "named once")
+    return tuple(fixed)
+
+
+def _read_pieces(
+    content: Mapping[str, Any], kind: FigureKind[Any], known: Sequence[str]
+) -> tuple[Piece, ...]:
+    key = f"{kind.noun}s"
+    rows = content.get(key)
+    if not isinstance(rows, list) or not rows:
+        raise GeometryError(key, quoted(rows), f'a list of {key} ["A", "B"]')
+    pieces: list[Piece] = []
+    for number, row in enumerate(rows, start=1):
+        what = f"{key}[{number}]"
+        if not isinstance(row, list) or len(row) not in (2, 3):
+            allowed = f'["A", "B"] or ["A", "B", {kind.measure}]'
+            raise GeometryError(what, quoted(row), allowed)
+        for name in row[:2]:
+            _check_point(what, name, known)
+        if row[0] == row[1]:
+            raise GeometryError(what, row[:2], f"{kind.piece} between two points")
+        if any(set(piece.ends) == set(row[:2]) for piece in pieces):
+            raise GeometryError(what, row[:2], f"{kind.piece} that stands there once")
+        measure = None
+        if len(row) == 3:
+            measure = kind.read_measure(f"{kind.measure} of {what}", row[2])
+        pieces.append(Piece(row[0], row[1], measure))
+    check_joined_names(kind.noun, [piece.ends for piece in pieces])
+    return tuple(pieces)
+
+
+def _check_point(what: str, name: object, known: Sequence[str]) -> None:
+    """Raise `GeometryError` for what is none of the ``known`` points."""
+    if name not in known:
+        allowed = f"one of the points {', '.join(known)}"
+        raise GeometryError(what, quoted(name), allowed)
+
+
+# --- names ----------------------------------------------------------------------------
+
+
+def joined_name(first: str, second: str) -> str:
+    """What a body between two points or joints is called: "A-B"."""
+    return f"{first}-{second}"
+
+
+def check_joined_names(noun: str, ends: Iterable[tuple[str, str]]) -> None:
+    """Raise `GeometryError` where bodies, each a ``noun``, between different ``ends``
+    have one name: "A-B" and "C" make the name of "A" and "B-C"."""
+    owners: dict[str, tuple[str, str]] = {}
+    for pair in ends:
+        name = joined_name(*pair)
+        other = owners.setdefault(name, pair)
+        if other != pair:
+            shown = " and ".join(
+                f'"{first}" to "{second}"' for first, second in (other, pair)
+            )
+            allowed = "different; call their ends otherwise"
+            raise GeometryError(f"names of {noun}s {shown}", f'"{name}"', allowed)
+
+
+# --- joints and bodies ----------------------------------------------------------------
+
+
+def joints_of_figure(
+    figure: Figure[Place, Any],
+    places: Mapping[str, Place],
+    are_apart: Callable[[Sequence[str]], bool],
+    axis_at: Callable[[Place], tuple[Vector, Vector]],
+) -> tuple[Joint, ...]:
+    """A revolute joint at every point on two bodies or more.
+
+    ``are_apart`` says whether points hold two bodies together, ``axis_at`` gives a
+    point and the direction of the axis at a place. Raises `GeometryError` for a point
+    on no body, and where no points are fixed and a body hangs on one joint.
+    """
+    bodies = _bodies(figure, are_apart)
+    kind = figure.kind
+    on_body = {point for points in bodies.values() for point in points}
+    for name, one in figure.on_pieces.items():
+        if name not in on_body:
+            ends = f"{one.start} and {one.end}"
+            allowed = f"on {kind.piece}; there is none between {ends}"
+            raise GeometryError(f"points_on_{kind.noun}s {name}", ends, allowed)
+    joints = []
+    for name, place in places.items():
+        if name not in on_body:
+            value, allowed = f"on no {kind.noun}", f"the end of {kind.piece}"
+            raise GeometryError(f"point {name}", value, allowed)
+        here = tuple(body for body, points in bodies.items() if name in points)
+        if len(here) > 1:
+            joints.append(Joint(name, JointKind.REVOLUTE, here, *axis_at(place)))
+    if not figure.fixed:
+        _check_held(joints)
+    return tuple(joints)
+
+
+def _check_held(joints: Sequence[Joint]) -> None:
+    """Raise `GeometryError` where a body hangs on one joint for want of a frame."""
+    counts = Counter(body for joint in joints for body in joint.bodies)
+    for body, count in counts.items():
+        if count < 2:
+            allowed = (
+                "given, the names of the points that hold the frame; without a frame "
+                f"{body} hangs on one joint only"
+            )
+            raise GeometryError("fixed", "a missing key or an empty list", allowed)
+
+
+def _bodies(
+    figure: Figure[Any, Any], are_apart: Callable[[Sequence[str]], bool]
+) -> dict[str, list[str]]:
+    """The points on every body, the frame first.
+
+    A piece between two points of one body is rigid with it, and no body of its own,
+    wherever it stands.
+    """
+    bodies: dict[str, list[str]] = {}
+    if figure.fixed:
+        bodies[FRAME] = list(figure.fixed)
+    _add_points_on(bodies, figure)
+    bodies |= {piece.name: list(piece.ends) for piece in figure.pieces}
+    _add_points_on(bodies, figure)
+    return _without_parts(bodies, figure, are_apart)
+
+
+def _without_parts(
+    bodies: dict[str, list[str]],
+    figure: Figure[Any, Any],
+    are_apart: Callable[[Sequence[str]], bool],
+) -> dict[str, list[str]]:
+    """The bodies, those that points hold together as one.
+
+    That is called as the frame is, or as the one with the most points, so that it does
+    not depend on the order of the pieces.
+    """
+    ranked = sorted(bodies, key=lambda name: (name != FRAME, -len(bodies[name])))
+    for first, second in combinations(ranked, 2):
+        common = [point for point in bodies[first] if point in bodies[second]]
+        if not are_apart(common):
+            continue
+        joined = dict(bodies)
+        others = joined.pop(second)
+        new = [point for point in others if point not in joined[first]]
+        joined[first] = joined[first] + new
+        _add_points_on(joined, figure)
+        return _without_parts(joined, figure, are_apart)
+    return bodies
+
+
+def _add_points_on(bodies: dict[str, list[str]], figure: Figure[Any, Any]) -> None:
+    """Add the points on pieces to the body that holds both ends of their piece."""
+    for name, one in figure.on_pieces.items():
+        for points in bodies.values():
+            if {one.start, one.end} <= set(points) and name not in points:
+                points.append(name)
