@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum, StrEnum
 from functools import cached_property
-from math import radians
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -58,21 +57,6 @@ class Parameter:
     meaning: str
     low: float
     high: float
-
-    @classmethod
-    def length(
-        cls, name: str, default: float, meaning: str, low: float, high: float
-    ) -> Parameter:
-        """The parameter for a length or an offset."""
-        return cls(name, default, ParameterKind.LENGTH, meaning, low, high)
-
-    @classmethod
-    def angle(
-        cls, name: str, degrees: float, meaning: str, low: float, high: float
-    ) -> Parameter:
-        """The parameter for an angle, default and bounds in degrees."""
-        bounds = radians(low), radians(high)
-        return cls(name, radians(degrees), ParameterKind.ANGLE, meaning, *bounds)
 
 
 @dataclass(frozen=True)

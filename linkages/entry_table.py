@@ -1,4 +1,4 @@
-"""Entries of the catalogue read from the table of their family.
+"""Entries of the catalogue, read from tables.
 
 Beside each module of `linkages.families` stands a TOML file of its name, which says what
 its linkages are; the module says how they are worked out (`Model`).
@@ -67,51 +67,53 @@ def read_entries(family: str, models: Mapping[str, Model]) -> tuple[Entry, ...]:
     Raises `ValueError` where both do not name the same linkages, and `TypeError` or
     `KeyError` for a table that holds something else.
     """
-    file = resources.files("linkages.families") / f"{family}.toml"
-    table = tomllib.loads(file.read_text(encoding="utf-8"))
-    parameters = table.pop("parameters")
-    conditions = table.pop("conditions", {})
-    linkages = table.pop("linkage")
+    linkages = read_records("linkages.families", family, "linkage")
     names = {linkage["name"] for linkage in linkages}
     if names != models.keys():
         raise ValueError(f"{family}: {names ^ models.keys()} without table or model")
-    return tuple(
-        _entry({**table, **linkage}, models[linkage["name"]], parameters, conditions)
-        for linkage in linkages
-    )
+    return tuple(Entry(**one, **vars(models[one["name"]])) for one in linkages)
 
 
-def _entry(
+def read_records(package: str, name: str, kind: str) -> list[dict[str, Any]]:
+    """The fields of every record of a ``kind``, such as "linkage", in the table of this
+    name in a package."""
+    file = resources.files(package) / f"{name}.toml"
+    table = tomllib.loads(file.read_text(encoding="utf-8"))
+    parameters = table.pop("parameters")
+    conditions = table.pop("conditions", {})
+    records = table.pop(kind)
+    return [_record({**table, **one}, parameters, conditions) for one in records]
+
+
+def _record(
     fields: dict[str, Any],
-    model: Model,
     parameters: Mapping[str, Mapping[str, Any]],
     conditions: Mapping[str, str | Mapping[str, str]],
-) -> Entry:
+) -> dict[str, Any]:
     names = fields.pop("parameters", parameters)
     changes = fields.pop("changes", {})
     own = [_parameter(name, parameters[name] | changes.get(name, {})) for name in names]
-    stated = [_condition(one, conditions) for one in fields.pop("conditions")]
-    relations = [_relation(**one) for one in fields.pop("relations", ())]
-    return Entry(
-        parameters=tuple(own),
-        conditions=tuple(stated),
-        relations=tuple(relations),
-        errata=tuple(fields.pop("errata", ())),
-        facts={key: _fact(value) for key, value in fields.pop("facts").items()},
-        **fields,
-        **vars(model),
-    )
+    out: dict[str, Any] = {"parameters": tuple(own)}
+    for key, value in fields.items():
+        if key == "conditions":
+            value = [_condition(one, conditions) for one in value]
+        elif key == "relations":
+            value = [_relation(**one) for one in value]
+        elif key == "facts":
+            value = {name: _fact(fact) for name, fact in value.items()}
+        out[key] = tuple(value) if isinstance(value, list) else value
+    return out
 
 
 def _parameter(name: str, fields: dict[str, Any]) -> Parameter:
-    (unit,) = fields.keys() & UNITS.keys()
+    (unit,) = fields.keys() - {"range", "meaning"}
     kind, size = UNITS[unit]
     default, low, high = (size * _number(x) for x in (fields[unit], *fields["range"]))
     return Parameter(name, default, kind, fields["meaning"], low, high)
 
 
 def _number(value: float | str) -> float:
-    return evaluate(value) if isinstance(value, str) else value
+    return float(evaluate(value) if isinstance(value, str) else value)
 
 
 def _condition(
@@ -123,7 +125,7 @@ def _condition(
         one = named.get(one, one)
     if isinstance(one, str):
         return Condition(one)
-    return Condition(one.get("text", one["equations"]), one["equations"])
+    return Condition(**{"text": one["equations"], **one})
 
 
 def _relation(kind: str, **fields: Any) -> Relation:

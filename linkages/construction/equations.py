@@ -14,6 +14,7 @@ import re
 from collections.abc import Iterator, Mapping
 from functools import cache
 from types import CodeType
+from typing import Any
 
 import numpy as np
 
@@ -34,10 +35,10 @@ def _compiled(formula: str) -> CodeType:
     return compile(python, formula, "eval")
 
 
-def evaluate(formula: str, names: Mapping[str, float] | None = None) -> float:
+def evaluate(formula: str, names: Mapping[str, Any] | None = None) -> Any:
     """The value of a formula, such as ``1.7 sin(66 deg)``; ``names`` are those that it
-    may use besides `NAMES`."""
-    return float(eval(_compiled(formula), {"__builtins__": {}, **NAMES}, names or {}))
+    may use besides `NAMES`, for numbers of any type."""
+    return eval(_compiled(formula), {"__builtins__": {}, **NAMES}, names or {})
 
 
 def equation_gaps(equations: str, table: np.ndarray) -> list[float]:
@@ -81,4 +82,4 @@ def _gap(equation: str, names: Mapping[str, float]) -> float:
     gaps = [first - other for other in others]
     if "alpha" in equation and "(" not in equation:
         gaps = [(gap + math.pi) % (2 * math.pi) - math.pi for gap in gaps]
-    return max(map(abs, gaps))
+    return float(max(map(abs, gaps)))

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import NamedTuple, TypeAlias
+from operator import itemgetter
+from typing import TypeAlias
 
 import numpy as np
 
@@ -21,14 +22,13 @@ from linkages.closed_forms.closed_form import (
     minus,
     negative,
     plus,
-    ratio,
     reciprocal,
     sine_of,
     tangent,
 )
-from linkages.construction.numbers import Number
+from linkages.construction.equations import evaluate
 from linkages.errata.erratum import Amounts, median_and_largest
-from linkages.families.bricard import LETTERS, Three, closure_equations
+from linkages.families.bricard import LETTERS, closure_equations
 
 Change: TypeAlias = Callable[[ClosedForm], ClosedForm]
 INPUTS = 60  # input angles along a form
@@ -71,9 +71,23 @@ def _with_joints(form: ClosedForm, pairs: Mapping[int, Pair]) -> ClosedForm:
     return replace(form, half_tangents=tuple(angles))
 
 
-def _with_constants(form: ClosedForm, **values: Number) -> ClosedForm:
-    """The form with further or other constants."""
+def with_constants(printed: Mapping[str, str], form: ClosedForm) -> ClosedForm:
+    """The form with constants as printed: formulas of the names that `_names` has."""
+    names = _names(form)
+    values = {name: evaluate(text, names) for name, text in printed.items()}
     return replace(form, constants={**form.constants, **values})
+
+
+def _names(form: ClosedForm) -> dict[str, object]:
+    """What the sources write of the parameters of a closed form: m(alpha, beta), lengths
+    and offsets, and the sine s12 and cosine c12 of a twist alpha12."""
+    names: dict[str, object] = {"m": lambda x, y: (x + y) / (x - y)}
+    names |= {name: constant(name) for name in form.lengths}
+    for name in form.angles:
+        u = tangent(name)
+        number = name.removeprefix("alpha")
+        names |= {name: u, f"c{number}": cosine_of(u), f"s{number}": sine_of(u)}
+    return names
 
 
 # --- the Goldberg 5R linkages
@@ -86,17 +100,6 @@ def inverted_factor(form: ClosedForm) -> ClosedForm:
     third = (constant("m_c") * s1, c1)
     fifth = minus(ZERO, plus(reciprocal(first, constant("m_a")), third))
     return _with_joints(form, {3: third, 5: fifth})
-
-
-def other_twist(form: ClosedForm) -> ClosedForm:
-    """m2 for m1."""
-    return _with_constants(form, m_a=ratio("alpha", "gamma"))
-
-
-def other_signs(form: ClosedForm) -> ClosedForm:
-    """m2 for m3, and the sign of m4."""
-    m_a = -ratio("gamma", "alpha")
-    return _with_constants(form, m_a=m_a, m_c=ratio("beta", "gamma"))
 
 
 # --- the mixed double-Goldberg linkages
@@ -146,7 +149,7 @@ def _by_fourth(form: ClosedForm, fourth: Pair) -> ClosedForm:
 def printed_discriminant(form: ClosedForm) -> ClosedForm:
     """Equation (5.2.4) with 1 - m1 m2 before the root: P comes out by (m1 m6 - m1 m2) /
     (2 m6 Q) too large."""
-    changed = _with_constants(form, m_2=ratio("gamma", "alpha"))
+    changed = with_constants({"m_2": "m(gamma, alpha)"}, form)
     s1, c1 = joint(1)
     s4, c4 = joint(4)
     k_b = constant("m_ba") * constant("m_bc")
@@ -160,7 +163,7 @@ def printed_discriminant(form: ClosedForm) -> ClosedForm:
 
 def printed_denominator(form: ClosedForm) -> ClosedForm:
     """Equation (5.2.5) with 2 m2 Q for 2 m6 Q: P comes out times m6/m2."""
-    changed = _with_constants(form, m_2=ratio("gamma", "alpha"))
+    changed = with_constants({"m_2": "m(gamma, alpha)"}, form)
     s4, c4 = joint(4)
     return _by_fourth(changed, (constant("m_bc") * s4, constant("m_2") * c4))
 
@@ -179,63 +182,15 @@ def printed_second_form(form: ClosedForm) -> ClosedForm:
 # --- the line-symmetric Bricard linkages
 
 
-class _Symbols(NamedTuple):
-    """Lengths, cosines, sines and offsets of a closed form of the line-symmetric
-    linkages, three each."""
-
-    lengths: Three
-    cosines: Three
-    sines: Three
-    offsets: Three
-
-
-def _symbols() -> _Symbols:
-    u12 = tangent("alpha12")
-    u23 = tangent("alpha23")
-    u34 = tangent("alpha34")
-    return _Symbols(
-        (constant("a12"), constant("a23"), constant("a34")),
-        (cosine_of(u12), cosine_of(u23), cosine_of(u34)),
-        (sine_of(u12), sine_of(u23), sine_of(u34)),
-        (constant("R1"), constant("R2"), constant("R3")),
-    )
-
-
-def merged(form: ClosedForm) -> ClosedForm:
-    """(4.2.15) as it stands: H2 runs into L2, which is lost."""
-    symbols = _symbols()
-    c12, c23, c34 = symbols.cosines
-    _, s23, _ = symbols.sines
-    _, r2, r3 = symbols.offsets
-    first = -r3 * c12 * s23 + c34
-    second = r2 * (c23 + c12 * c34)
-    third = r3 * (1 + c12 * c23 * c34)
-    return _with_constants(form, H_2=first + second + third, L_2=0)
-
-
-def other_length(form: ClosedForm) -> ClosedForm:
-    """(C6) with a34 for a23 in G2."""
-    symbols = _symbols()
-    _, _, a34 = symbols.lengths
-    c12, _, _ = symbols.cosines
-    _, s23, s34 = symbols.sines
-    return _with_constants(form, G_2=a34 * c12 * s34 + a34 * s23)
-
-
-def no_such_length(form: ClosedForm) -> ClosedForm:
-    """(4.3.6) with the difference in H2', a33 being read as a34."""
-    symbols = _symbols()
-    _, _, a34 = symbols.lengths
-    c12, _, _ = symbols.cosines
-    _, s23, s34 = symbols.sines
-    _, _, r3 = symbols.offsets
-    return _with_constants(form, H_2=r3 * c12 * s23 - a34 * s34)
-
-
 def unprimed(form: ClosedForm) -> ClosedForm:
     """The coefficients (4.2.22) in the place of the missing (4.3.8)."""
-    third = closure_equations(*_symbols()).third
-    constants: dict[str, Number] = {}
-    for letter, value in zip(LETTERS, third, strict=True):
-        constants[f"{letter}_3"] = value
-    return _with_constants(form, **constants)
+    names = _names(form)
+    lengths, cosines, sines, offsets = (
+        itemgetter(*keys.split())(names)
+        for keys in ("a12 a23 a34", "c12 c23 c34", "s12 s23 s34", "R1 R2 R3")
+    )
+    third = closure_equations(lengths, cosines, sines, offsets).third
+    values = {
+        f"{letter}_3": value for letter, value in zip(LETTERS, third, strict=True)
+    }
+    return replace(form, constants={**form.constants, **values})

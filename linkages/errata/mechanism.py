@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linkages.errata.equations import path_along
-from linkages.errata.erratum import Amounts, median_and_largest
+from linkages.errata.erratum import Amounts, largest_gap, median_and_largest
 
 TWIST = radians(100)
 LENGTH = 1.3
@@ -125,12 +125,15 @@ def line_of_meetings() -> Amounts:
         frames = loop.frames(theta)
         axes = [_Line(frame[:3, 3], frame[:3, 2]) for frame in frames]
         line = _unit(_meeting(axes[6], axes[4]) - _meeting(axes[1], axes[5]))
-        second = -np.sin(x) / (1 - np.cos(x))
-        by_x = (np.cos(x) + 1) / np.sin(x) / np.tan(TWIST)
-        by_y = (np.cos(y) + 1) / (np.sin(y) * SIN_TWIST)
-        n = np.array([1, second, by_x + by_y])
-        printed_gap = np.abs(n - line)
-        corrected_gap = np.abs(_unit(n) - line)
-        printed.append(float(printed_gap.max()))
-        corrected.append(float(corrected_gap.max()))
+        n = _printed_direction(x, y)
+        printed.append(largest_gap(n, line))
+        corrected.append(largest_gap(_unit(n), line))
     return median_and_largest(printed, corrected)
+
+
+def _printed_direction(x: float, y: float) -> np.ndarray:
+    """The vector n (3,) of (25) at theta = ``x``, phi = ``y``."""
+    second = -np.sin(x) / (1 - np.cos(x))
+    by_x = (np.cos(x) + 1) / np.sin(x) / np.tan(TWIST)
+    by_y = (np.cos(y) + 1) / (np.sin(y) * SIN_TWIST)
+    return np.array([1, second, by_x + by_y])

@@ -14,7 +14,7 @@ words), and conditions that are only stricter than needed, are not listed.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import cache, partial
 from importlib import resources
 from pkgutil import resolve_name
@@ -22,7 +22,6 @@ from typing import Any
 
 from linkages.errata import conditions, forms
 from linkages.errata.erratum import Amounts, Erratum, WordErratum
-from linkages.loop import Loop
 
 TABLE = "errata.toml"
 
@@ -46,25 +45,26 @@ def _erratum(
     return Erratum(source, equation, linkage, printed, corrected, measure)
 
 
-def _measure(
-    linkage: str,
-    measure: str = "",
-    change: str = "",
-    form: int = 0,
-    loop: str = "",
-    table: Mapping[str, str] | None = None,
-) -> Callable[[], Amounts]:
-    """How a misprint of this linkage is measured, see the head of the table."""
-    if measure:
-        function: Callable[[], Amounts] = resolve_name(f"linkages.errata.{measure}")
-        return function
-    if change:
-        printed = getattr(forms, change)
-        return partial(forms.compare_closed_forms, linkage, form, printed)
-    build: Callable[[], Loop] = partial(conditions.changed_member, linkage, table or {})
-    if loop:
-        build = getattr(conditions, loop)
-    return partial(conditions.compare_mobility, linkage, build)
+def _measure(linkage: str, form: int = 0, **by: Any) -> Callable[[], Amounts]:
+    """How a misprint of this linkage is measured, see the head of the table; raises
+    `ValueError` for another way, and for several."""
+    ((way, what),) = by.items()
+    compare_forms = partial(forms.compare_closed_forms, linkage, form)
+    compare_mobility = partial(conditions.compare_mobility, linkage)
+    match way:
+        case "measure":
+            function: Callable[[], Amounts] = resolve_name(f"linkages.errata.{what}")
+            return function
+        case "change":
+            return partial(compare_forms, getattr(forms, what))
+        case "constants":
+            return partial(compare_forms, partial(forms.with_constants, what))
+        case "loop":
+            return partial(compare_mobility, getattr(conditions, what))
+        case "table":
+            build = partial(conditions.changed_member, linkage, what)
+            return partial(compare_mobility, build)
+    raise ValueError(f"misprint of {linkage}: nothing is measured by {way!r}")
 
 
 def errata_of(name: str) -> tuple[Erratum, ...]:

@@ -40,12 +40,11 @@ from linkages.closed_forms.closed_form import (
     tangent,
 )
 from linkages.construction import numbers
-from linkages.construction.constructions import lock, superpose
+from linkages.construction.constructions import lock
 from linkages.construction.link import (
     Link,
     basic_links,
     chain_constructor,
-    closed_chain,
     half_angle_ratio,
     joined_chain,
     syncopated_link,
@@ -104,55 +103,6 @@ def _product_with_b(links: Mapping[str, Link], names: str) -> Number:
     return product
 
 
-def generalized_serial_goldberg(
-    a: Number,
-    alpha: Number,
-    beta: Number,
-    gamma: Number,
-    delta: Number,
-    kink_1: KinkAngle,
-    kink_2: KinkAngle,
-) -> Loop:
-    """Serial Goldberg 6R with a, c locked at ``kink_1`` and that link and d at
-    ``kink_2``, rad.
-
-    Source: named by Goldberg (1943) and Song (2013), section 2.4.1, without formulas.
-    """
-    link_a, link_b, link_c, link_d = basic_links(a, alpha, beta, gamma, delta).values()
-    pair = _kinked_pair(link_a, link_b, link_c, kink_1)
-    row = pair.relabelled(4)  # c a b [a.c] b
-    third = closed_chain(link_d, link_b, link_d, link_b)
-    return lock(superpose(row, third), 5, kink_2).relabelled(2)
-
-
-def generalized_l_shape_goldberg(
-    a: Number,
-    alpha: Number,
-    beta: Number,
-    gamma: Number,
-    delta: Number,
-    kink_1: KinkAngle,
-    kink_2: KinkAngle,
-) -> Loop:
-    """L-shape Goldberg 6R with b, d locked at ``kink_2`` and a, c at ``kink_1``, rad.
-
-    Source: named by Goldberg (1943) and Song (2013), section 2.4.1, without formulas.
-    """
-    link_a, link_b, link_c, link_d = basic_links(a, alpha, beta, gamma, delta).values()
-    pair = _kinked_pair(link_a, link_b, link_c, kink_1)
-    bent = pair.reversed().relabelled(4)
-    third = closed_chain(link_d, link_a, link_d, link_a)
-    across = lock(superpose(bent, third), 5, kink_2)
-    return across.reversed().relabelled(1)
-
-
-def _kinked_pair(a: Link, b: Link, c: Link, kink: KinkAngle) -> Loop:
-    """Two Bennett loops on the link b, a and c locked: links a, b, [a.c], b, c."""
-    first = closed_chain(a, b, a, b)
-    second = closed_chain(c, b, c, b)
-    return lock(superpose(first, second), 4, kink)
-
-
 def _locked_ring(order: str, *locks: tuple[int, str]) -> Callable[..., Loop]:
     """The constructor of the loop that a ring of basic links leaves when joints are
     locked, one after the other, each at the kink (rad, or a `Kink`) of this name."""
@@ -173,6 +123,14 @@ def _locked_ring(order: str, *locks: tuple[int, str]) -> Callable[..., Loop]:
     return construct
 
 
+# links b, [[a c] d], b, d, c, a, and [b d], [a c], b, c, d, a: named by Goldberg (1943) and
+# Song (2013), section 2.4.1, without formulas
+generalized_serial_goldberg = _locked_ring(
+    "b a c d b d c a", (3, "kink_1"), (3, "kink_2")
+)
+generalized_l_shape_goldberg = _locked_ring(
+    "d b a c b c d a", (4, "kink_1"), (2, "kink_2")
+)
 # links [b d], a, c, b, [c d], a: case 2 of section 5.4.3 of Song (2013)
 generalized_l_shape_variant = _locked_ring(
     "d b a c b c d a", (7, "kink_2"), (2, "kink_1")

@@ -20,7 +20,12 @@ from linkages.identification.equivalence import (
     readings,
     table,
 )
-from linkages.identification.recovery import Row, plain_guess, plain_parameters
+from linkages.identification.recovery import (
+    Row,
+    plain_guess,
+    plain_parameters,
+    plain_places,
+)
 from linkages.loop import Loop
 from linkages.values import GeometryError
 
@@ -215,7 +220,7 @@ def _unchanged(
     construct: Callable[..., Loop], parameters: tuple[Parameter, ...]
 ) -> np.ndarray:
     """Mask (3, n) of the numbers of the table that only plain parameters change."""
-    plain = plain_parameters(Entry("", "", "", construct, parameters))
+    plain = plain_places(construct, parameters)
     defaults = {p.name: p.default for p in parameters}
     base = table(construct(**defaults))
     mask = np.ones(base.shape, dtype=bool)
@@ -358,27 +363,17 @@ def _descend(
 ) -> Candidate:
     """Gauss-Newton on the hidden angles ``names`` alone, from a point of a scan, with
     the signs that fit best at each step."""
-    read = start.view.values
-    parameters = start.parameters
-    values = start.values
+    candidate = start
     for _ in range(STEPS):
-        signs = find_signs(read, values, unit)
-        base = signs.of(values)
-        columns = []
-        for name in names:
-            moved = _build(entry, {**parameters, name: parameters[name] + STEP})
-            if moved is None:
-                columns.append(np.zeros(base.size))
-            else:
-                columns.append(_gaps(signs.of(moved), base, unit) / STEP)
-        gaps = _gaps(read, base, unit)
-        step = np.linalg.lstsq(np.array(columns).T, gaps, rcond=1e-9)[0]
-        after = dict(parameters)
+        member = _member(entry, candidate, unit)
+        gaps = _gaps(member.view.values, member.signs.of(member.values), unit)
+        jacobian = _jacobian(entry, member, names, unit)
+        step = np.linalg.lstsq(jacobian, gaps, rcond=1e-9)[0]
+        after = dict(candidate.parameters)
         for name, turn in zip(names, step, strict=True):
             after[name] += float(np.clip(turn, -LONGEST_TURN, LONGEST_TURN))
         built = _build(entry, after)
         if built is None or np.abs(step).max() < 1e-10:
             break
-        parameters = after
-        values = built
-    return Candidate(start.view, parameters, values)
+        candidate = Candidate(start.view, after, built)
+    return candidate

@@ -7,7 +7,7 @@ the entry has ``guesses``, or a ``scan``, see `linkages.entry.Entry`.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from functools import cache
@@ -31,89 +31,60 @@ class Row(Enum):
     OFFSETS = 2
 
 
-class Sense(Enum):
-    """What stands in the table for a parameter x."""
-
-    SAME = "x"
-    OPPOSITE = "-x"
-    SUPPLEMENT = "pi - x"
-
-    def of(self, x: float) -> float:
-        """The number in the table for the parameter ``x``."""
-        if self is Sense.OPPOSITE:
-            return -x
-        if self is Sense.SUPPLEMENT:
-            return pi - x
-        return x
-
-
 @dataclass(frozen=True)
 class Place:
-    """Where a parameter stands in the table, and as what."""
+    """Where a parameter stands in the table: as it is, or, a twist modulo pi, with the
+    ``sign`` -1."""
 
     row: Row
     column: int
-    sense: Sense
+    sign: int = 1
 
-
-@dataclass(frozen=True)
-class _Member:
-    """Parameters and the table (3, n) that they make."""
-
-    parameters: dict[str, float]
-    table: np.ndarray
+    def gap(self, value: float, values: np.ndarray) -> float:
+        """How far a parameter is from the number at the place in a table (3, n)."""
+        gap = float(self.sign * value - values[self.row.value, self.column])
+        return abs(np.sin(gap)) if self.row is Row.TWISTS else abs(gap)
 
 
 def plain_parameters(entry: Entry) -> dict[str, Place]:
     """The places of all parameters that stand in the table as they are, by name."""
-    return _plain_parameters(entry.construct, entry.parameters)
+    return plain_places(entry.construct, entry.parameters)
 
 
 @cache
-def _plain_parameters(
+def plain_places(
     construct: Callable[..., Loop], parameters: tuple[Parameter, ...]
 ) -> dict[str, Place]:
-    members = [_nudged_member(construct, parameters, nudge) for nudge in NUDGES]
+    """The same for a constructor and its parameters."""
+    members = []
+    for nudge in NUDGES:
+        values = _nudged(parameters, nudge)
+        members.append((values, table(construct(**values))))
     places = {}
     for parameter in parameters:
-        place = _place(parameter, members)
-        if place is not None:
-            places[parameter.name] = place
+        for place in _possible_places(parameter, members[0][1].shape[1]):
+            gaps = [place.gap(values[parameter.name], made) for values, made in members]
+            if max(gaps) < SAME:
+                places[parameter.name] = place
+                break
     return places
 
 
-def _nudged_member(
-    construct: Callable[..., Loop], parameters: tuple[Parameter, ...], nudge: float
-) -> _Member:
-    """The member whose parameters differ from the defaults, each by its own part of
-    ``nudge``."""
+def _nudged(parameters: tuple[Parameter, ...], nudge: float) -> Mapping[str, float]:
+    """Parameters that differ from the defaults, each by its own part of ``nudge``."""
     values = {}
     for i, p in enumerate(parameters):
         values[p.name] = p.default * (1 + nudge * (i + 1) / (i + 2))
-    return _Member(values, table(construct(**values)))
+    return values
 
 
-def _place(parameter: Parameter, members: list[_Member]) -> Place | None:
-    """The first place where the parameter stands in all members; None for none."""
-    n = members[0].table.shape[1]
+def _possible_places(parameter: Parameter, n: int) -> Iterator[Place]:
     if parameter.kind is ParameterKind.ANGLE:
-        choices = itertools.product([Row.TWISTS], range(n), Sense)
-    else:
-        rows = [Row.LENGTHS, Row.OFFSETS]
-        choices = itertools.product(rows, range(n), [Sense.SAME])
-    for row, column, sense in choices:
-        place = Place(row, column, sense)
-        gaps = [_gap(member, parameter.name, place) for member in members]
-        if max(gaps) < SAME:
-            return place
-    return None
-
-
-def _gap(member: _Member, name: str, place: Place) -> float:
-    """How far the parameter is from the number at the place; angles modulo pi."""
-    number = member.table[place.row.value, place.column]
-    gap = float(place.sense.of(member.parameters[name]) - number)
-    return abs(np.sin(gap)) if place.row is Row.TWISTS else abs(gap)
+        for column, sign in itertools.product(range(n), (1, -1)):
+            yield Place(Row.TWISTS, column, sign)
+        return
+    for row, column in itertools.product((Row.LENGTHS, Row.OFFSETS), range(n)):
+        yield Place(row, column)
 
 
 def plain_guess(entry: Entry, form: np.ndarray) -> dict[str, float]:
@@ -122,5 +93,5 @@ def plain_guess(entry: Entry, form: np.ndarray) -> dict[str, float]:
     out = {}
     for name, place in plain_parameters(entry).items():
         value = float(form[place.row.value, place.column])
-        out[name] = value if place.sense is Sense.SAME else (-value) % pi
+        out[name] = value if place.sign > 0 else (-value) % pi
     return out

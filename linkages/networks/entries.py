@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import radians, sin
+from typing import Any
 
 import numpy as np
 
 from linkages.construction.numbers import Number
 from linkages.entry import Condition, Parameter, UnknownParameterError
+from linkages.entry_table import read_records
 from linkages.networks.network import Network, build_network
 from linkages.networks.plan import Plan
 from linkages.networks.plans import FOUR_BENNETT, L_SHAPE, SERIAL
 
+PLANS = (FOUR_BENNETT, L_SHAPE, SERIAL)
 LENGTHS = ("b", "c", "d")  # that follow from the other parameters
 
 
@@ -63,68 +65,12 @@ class NetworkEntry:
         return build_network(self.plan, **{**defaults, **values})
 
 
-PARAMETERS = (
-    Parameter.length("a", 1.7 * sin(radians(35)), "length of link a", 0.3, 3.0),
-    Parameter.angle("alpha", 35, "twist of link a", 15, 110),
-    Parameter.angle("beta", 62, "twist of link b", 15, 110),
-    Parameter.angle("gamma", 81, "twist of link c", 15, 110),
-    Parameter.angle("delta", 48, "twist of link d", 15, 110),
-)
-EQUAL_RATIOS = Condition("sin(twist)/length is the same for the links a, b, c, d")
-SOURCE = "Goldberg (1943); Baker (1983); Song (2013), section 5.4"
+def _entry(name: str, **fields: Any) -> NetworkEntry:
+    (plan,) = (plan for plan in PLANS if plan.name == name)
+    return NetworkEntry(plan, **fields)
 
-FOUR_JOINTS = (
-    "joints 2, 4, 6, 8 all straight (0) or all folded (180): a Bennett linkage if "
-    "tan(alpha/2) tan(beta/2) = tan(gamma/2) tan(delta/2), or else rigid"
-)
-# of table 5.4.1 and of the text beside it
-TABLE_MISPRINTS = (
-    'table 5.4.1 prints "1/3, 4/5, 5/7, 7/1"; it must be 1/3, 3/5, 5/7, 7/1',
-    "table 5.4.1 ends the list of pairs n/n+3 at 5/8; 6/1, 7/2 and 8/3 belong to it",
-    "three locks are said to leave nothing that moves; the triples 1/2/3, 3/4/5, 5/6/7 "
-    "and 7/8/1 leave mobility 1",
-)
-TWO_LOCKS = "two locks leave a Bennett linkage for 14 of the 28 pairs, at any geometry"
-THREE_MISPRINTS = (
-    "the text on figure 5.4.14 exchanges (a) and (b); the caption is right",
-)
 
-_ENTRIES = (
-    NetworkEntry(
-        FOUR_BENNETT,
-        SOURCE,
-        PARAMETERS,
-        (
-            EQUAL_RATIOS,
-            Condition("bars 12 = 67 = 08 = a, 23 = 56 = 04 = b, 34 = 81 = 02 = c"),
-            Condition("bars 45 = 78 = 06 = d; no offsets"),
-        ),
-        remarks=(FOUR_JOINTS,),
-        errata=TABLE_MISPRINTS,
-    ),
-    NetworkEntry(
-        L_SHAPE,
-        SOURCE,
-        PARAMETERS,
-        (
-            EQUAL_RATIOS,
-            Condition("bars 12 = 08 = a, 23 = 56 = 04 = b, 34 = 81 = 02 = c"),
-            Condition("bars 45 = 60 = d; no offsets"),
-        ),
-        remarks=(TWO_LOCKS,),
-        errata=THREE_MISPRINTS,
-    ),
-    NetworkEntry(
-        SERIAL,
-        SOURCE,
-        PARAMETERS,
-        (
-            EQUAL_RATIOS,
-            Condition("rails U0U1 = V1V0 = a, U1U2 = V2V1 = b, U2U3 = V3V2 = c"),
-            Condition("rungs V0U0 = U1V1 = U2V2 = U3V3 = d; no offsets"),
-        ),
-        remarks=(TWO_LOCKS,),
-        errata=THREE_MISPRINTS,
-    ),
-)
-NETWORKS: Mapping[str, NetworkEntry] = {entry.name: entry for entry in _ENTRIES}
+NETWORKS: Mapping[str, NetworkEntry] = {
+    fields["name"]: _entry(**fields)
+    for fields in read_records("linkages.networks", "entries", "network")
+}

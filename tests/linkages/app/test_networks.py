@@ -75,8 +75,8 @@ def test_the_tables_of_locks_are_written(tmp_path, monkeypatch):
     from linkages.identification import locked_networks
 
     expected = ("generalized-goldberg-5r", "bennett")
-    entries = tuple(e for e in locked_networks._entries() if e.name in expected)
-    monkeypatch.setattr(locked_networks, "_entries", lambda: entries)
+    entries = tuple(e for e in locked_networks.distinct_entries() if e.name in expected)
+    monkeypatch.setattr(locked_networks, "distinct_entries", lambda: entries)
     result = run("network", "serial-bennett-network", "--locks", "--out", str(tmp_path))
     assert result.exit_code == ExitCode.DONE
     page = (tmp_path / "locks.md").read_text(encoding="utf-8")
