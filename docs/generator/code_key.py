@@ -15,7 +15,7 @@ from docs.generator.places import DOCS, ROOT
 FOLDERS = (ROOT / "bifurc", ROOT / "linkages", ROOT / "studies")
 # of the generator, what records and pictures are made by; pages are written each time
 MODULES = ("exploration.py", "linkage_record.py", "pictures.py", "study_scripts.py")
-ENDINGS = frozenset({".py", ".hpp", ".cpp", ".js", ".json"})
+ENDINGS = frozenset({".py", ".hpp", ".cpp", ".js", ".json", ".toml"})
 LIBRARIES = ("matplotlib", "numpy", "scipy", "sympy")
 
 
