@@ -6,8 +6,7 @@ import pytest
 
 from bifurc.atlas import Atlas
 from bifurc.errors import BifurcError, RouteError
-from bifurc.routes.route import find_route
-from bifurc.routes.spread import spread_route
+from bifurc.routes.route import find_route, spread_route
 from tests.bifurc.drawn_atlas import bridge, draw, ring
 from tests.bifurc.known_surfaces import sarrus
 
