@@ -60,6 +60,15 @@ def _operators(name: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
     return method, reflected
 
 
+def _refusal(reason: str) -> Callable[..., NoReturn]:
+    """A method of recorded numbers that leaves no trace on a tape."""
+
+    def method(self: RecordedNumber, *_: object) -> NoReturn:
+        self.writer.refuse(reason)
+
+    return method
+
+
 class RecordedNumber:
     """A number on a tape that is being written."""
 
@@ -161,33 +170,15 @@ class RecordedNumber:
 
     # --- what leaves no trace on a tape -----------------------------------------------
 
-    def _branch(self, *_: object) -> NoReturn:
-        self.writer.refuse(BRANCHES)
-
-    def _plain(self, *_: object) -> NoReturn:
-        self.writer.refuse(PLAIN)
-
-    def _absolute(self) -> NoReturn:
-        self.writer.refuse(ABSOLUTE)
-
-    def _whole(self, *_: object) -> NoReturn:
-        self.writer.refuse(WHOLE)
-
-    def _index(self) -> NoReturn:
-        self.writer.refuse(INDEX)
-
-    def _complex(self) -> NoReturn:
-        self.writer.refuse(COMPLEX)
-
-    __lt__ = __le__ = __gt__ = __ge__ = __bool__ = _branch
-    __eq__ = __ne__ = _branch
+    __lt__ = __le__ = __gt__ = __ge__ = __bool__ = _refusal(BRANCHES)
+    __eq__ = __ne__ = _refusal(BRANCHES)
     __hash__ = object.__hash__
-    __float__ = _plain
-    __complex__ = _complex
-    __abs__ = _absolute
-    __int__ = __floor__ = __ceil__ = __trunc__ = __round__ = _whole
-    __mod__ = __rmod__ = __floordiv__ = __rfloordiv__ = __divmod__ = _whole
-    __index__ = _index
+    __float__ = _refusal(PLAIN)
+    __complex__ = _refusal(COMPLEX)
+    __abs__ = _refusal(ABSOLUTE)
+    __int__ = __floor__ = __ceil__ = __trunc__ = __round__ = _refusal(WHOLE)
+    __mod__ = __rmod__ = __floordiv__ = __rfloordiv__ = __divmod__ = _refusal(WHOLE)
+    __index__ = _refusal(INDEX)
 
 
 _BY_NUMPY_NAME = {
