@@ -18,7 +18,7 @@ from bifurc.errors import ProblemError, RouteError
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas
-from bifurc.tables import html_paragraph, html_table
+from bifurc.tables import count_of, html_paragraph, html_table
 
 # Values that JSON can hold, nested to any depth, by their names.
 JsonObject: TypeAlias = Mapping[str, Any]
@@ -273,12 +273,17 @@ class Atlas:
     def _repr_html_(self) -> str:
         """Tables for a notebook; `bifurc.figures.notebook` adds the picture."""
         unit = _common_unit(self)
+        forms = [_form_row(form) for form in self.forms]
+        points = [_point_row(self, point) for point in self.points]
+        surfaces = [_surface_row(surface) for surface in self.surfaces]
+        misses = [_miss_row(self, event) for event in self.near_misses]
+        rigid = [[_configuration(point)] for point in self.rigid]
         tables = [
-            _table(f"Forms{unit}", FORM_HEADS, _form_rows(self)),
-            _table(f"Singular points{unit}", POINT_HEADS, _point_rows(self)),
-            _table("Surfaces", SURFACE_HEADS, _surface_rows(self)),
-            _table(f"Near misses{unit}", MISS_HEADS, _miss_rows(self)),
-            _table(f"Rigid assemblies{unit}", RIGID_HEADS, _rigid_rows(self)),
+            _table(f"Forms{unit}", FORM_HEADS, forms),
+            _table(f"Singular points{unit}", POINT_HEADS, points),
+            _table("Surfaces", SURFACE_HEADS, surfaces),
+            _table(f"Near misses{unit}", MISS_HEADS, misses),
+            _table(f"Rigid assemblies{unit}", RIGID_HEADS, rigid),
         ]
         level, statement = self.completeness.level, self.completeness.statement
         completeness = html_paragraph(f"Completeness: {level}.", f"{statement}.")
@@ -329,16 +334,8 @@ def _counts(atlas: Atlas) -> str:
         (len(atlas.rigid), "rigid assembly"),
         (len(atlas.near_motions), "near motion"),
     ]
-    counts = [_counted(number, noun) for number, noun in numbers if number]
+    counts = [count_of(number, noun) for number, noun in numbers if number]
     return ", ".join(counts) or "nothing"
-
-
-def _counted(number: int, noun: str) -> str:
-    if number == 1:
-        return f"1 {noun}"
-    if noun.endswith("y"):
-        return f"{number} {noun[:-1]}ies"
-    return f"{number} {noun}{'es' if noun.endswith('s') else 's'}"
 
 
 def _first(lines: Sequence[str], noun: str) -> list[str]:
@@ -411,42 +408,27 @@ def _table(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> s
     return html_table(title, heads, rows, SHOWN_IN_NOTEBOOK)
 
 
-def _form_rows(atlas: Atlas) -> list[list[str]]:
-    rows = []
-    for form in atlas.forms:
-        branch = form.branch
-        length, smallest = f"{branch.length:.6g}", f"{form.min_singular_value:.3g}"
-        course = [length, _end(branch), _winding(branch)]
-        rows.append([form.name, *course, smallest, str(form.component)])
-    return rows
+def _form_row(form: Form) -> list[str]:
+    branch = form.branch
+    length, smallest = f"{branch.length:.6g}", f"{form.min_singular_value:.3g}"
+    course = [length, _end(branch), _winding(branch)]
+    return [form.name, *course, smallest, str(form.component)]
 
 
-def _point_rows(atlas: Atlas) -> list[list[str]]:
-    rows = []
-    for point in atlas.points:
-        members = ", ".join(_members(atlas, point))
-        rank, error = str(point.point.rank), f"{point.point.error:.0e}"
-        place = _configuration(point.point.u)
-        row = [point.name, point.kind.value, members, rank, error, place, point.note]
-        rows.append(row)
-    return rows
+def _point_row(atlas: Atlas, point: MeetingPoint) -> list[str]:
+    members = ", ".join(_members(atlas, point))
+    rank, error = str(point.point.rank), f"{point.point.error:.0e}"
+    place = _configuration(point.point.u)
+    return [point.name, point.kind.value, members, rank, error, place, point.note]
 
 
-def _surface_rows(atlas: Atlas) -> list[list[str]]:
-    return [[s.name, str(s.dimension), _covering(s), s.note] for s in atlas.surfaces]
+def _surface_row(surface: Surface) -> list[str]:
+    return [surface.name, str(surface.dimension), _covering(surface), surface.note]
 
 
-def _miss_rows(atlas: Atlas) -> list[list[str]]:
-    rows = []
-    for event in atlas.near_misses:
-        name = atlas.forms[event.form].name
-        place = _configuration(event.u)
-        rows.append([name, f"{event.s:.6g}", f"{event.value:.4g}", place])
-    return rows
-
-
-def _rigid_rows(atlas: Atlas) -> list[list[str]]:
-    return [[_configuration(point)] for point in atlas.rigid]
+def _miss_row(atlas: Atlas, event: Event) -> list[str]:
+    name = atlas.forms[event.form].name
+    return [name, f"{event.s:.6g}", f"{event.value:.4g}", _configuration(event.u)]
 
 
 def _configuration(point: np.ndarray) -> str:

@@ -172,18 +172,13 @@ class Branch:
     def reversed(self) -> Branch:
         """The same curve run the other way."""
         signs = (-1.0) ** np.arange(self.pieces.shape[1])
-        pieces = self.pieces * signs[:, None]
-        centers = self.length - self.centers
-        breaks = self.length - self.breaks
-        return Branch(
-            pieces=pieces[::-1],
-            centers=centers[::-1],
+        return replace(
+            self,
+            pieces=(self.pieces * signs[:, None])[::-1],
+            centers=(self.length - self.centers)[::-1],
             radii=self.radii[::-1],
-            breaks=breaks[::-1],
+            breaks=(self.length - self.breaks)[::-1],
             residuals=self.residuals[::-1],
-            periods=self.periods,
-            outcome=self.outcome,
-            gap=self.gap,
         )
 
     def begun_at(self, s: float) -> Branch:

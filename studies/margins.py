@@ -319,7 +319,7 @@ HEAD = """# Decisions, and how clear they are
 What *proved*, *certified*, *estimated*, *in doubt* and *undecided* mean stands in [how sure](how_sure.md).
 
 Every comparison on which a count, a kind, a level or a word hangs compares one quantity with one threshold. They stand
-in `bifurc/decisions.py` and `linkages/decisions.py`; singular values and residuals are over the problem's magnitude,
+in the tables `decisions.toml` of both packages; singular values and residuals are over the problem's magnitude,
 lengths over its scale. `python -m studies.margins --page` writes this page: it notes every quantity that was decided on
 over the catalogue, random members of its linkages, linkages that nearly bifurcate or end in something larger, surfaces,
 mechanisms, networks, hard cases and random plane curves. `python -m studies.margins --nearest "same point"` says in

@@ -1,4 +1,4 @@
-"""The tables of decisions of both packages."""
+"""The tables of decisions: all say what they compare."""
 
 from types import ModuleType
 
@@ -11,11 +11,17 @@ from bifurc.decisions import Decision, Role
 MODULES = [bifurc.decisions, linkages.decisions]
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_no_two_decisions_share_a_name(module: ModuleType) -> None:
-    decisions = [one for one in vars(module).values() if isinstance(one, Decision)]
-    assert len(decisions) == len(module.TABLE)
+def test_no_two_decisions_share_a_name() -> None:
+    names = [one.name for module in MODULES for one in module.TABLE.values()]
+    assert len(set(names)) == len(names)
     assert not bifurc.decisions.TABLE.keys() & linkages.decisions.TABLE.keys()
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_decisions_are_had_by_their_names_in_code(module: ModuleType) -> None:
+    for name, decision in module.TABLE.items():
+        assert getattr(module, name) is decision
+    assert not hasattr(module, "is_nothing")
 
 
 @pytest.mark.parametrize("decision", [one for m in MODULES for one in m.TABLE.values()])

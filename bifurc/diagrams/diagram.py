@@ -114,19 +114,6 @@ class Diagram:
         of_kind = [p for p in self.points if p.kind is kind]
         return tuple(p for p in of_kind if label in ("", p.label))
 
-    def stretch_at(self, form: int, s: float) -> Stretch | None:
-        """The stretch of a form, given by its index, on which arclength ``s`` lies."""
-        own = [stretch for stretch in self.stretches if stretch.form == form]
-        length = max((one.end for one in own), default=0.0)
-        length -= min((one.start for one in own), default=0.0)
-        for stretch in own:
-            if any(
-                stretch.start <= place <= stretch.end
-                for place in (s, s + length, s - length)
-            ):
-                return stretch
-        return None
-
     def __repr__(self) -> str:
         kinds = [point.kind for point in self.points]
         counts = {kind.plural: kinds.count(kind) for kind in Kind if kind.plural}

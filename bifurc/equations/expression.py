@@ -54,27 +54,15 @@ class _Function(NamedTuple):
     is_partial: bool
 
 
-_OF_ONE = {
-    "sin": math.sin,
-    "cos": math.cos,
-    "tan": math.tan,
-    "asin": math.asin,
-    "acos": math.acos,
-    "atan": math.atan,
-    "sinh": math.sinh,
-    "cosh": math.cosh,
-    "tanh": math.tanh,
-    "asinh": math.asinh,
-    "acosh": math.acosh,
-    "atanh": math.atanh,
-    "exp": math.exp,
-    "log": math.log,
-    "sqrt": math.sqrt,
-}
+_OF_ONE = (
+    *("sin", "cos", "tan", "asin", "acos", "atan"),
+    *("sinh", "cosh", "tanh", "asinh", "acosh", "atanh"),
+    *("exp", "log", "sqrt"),
+)
 _PARTIAL = {"tan", "asin", "acos", "acosh", "atanh", "log", "sqrt"}
 _FUNCTIONS: dict[str, _Function] = {
-    name: _Function(1, getattr(sympy, name), in_doubles, name in _PARTIAL)
-    for name, in_doubles in _OF_ONE.items()
+    name: _Function(1, getattr(sympy, name), getattr(math, name), name in _PARTIAL)
+    for name in _OF_ONE
 }
 _FUNCTIONS["atan2"] = _Function(2, sympy.atan2, math.atan2, True)
 _FUNCTIONS["ln"] = _FUNCTIONS["log"]

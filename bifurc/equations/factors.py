@@ -57,15 +57,15 @@ def written_factors(tape: Tape) -> Factors:
     """The factors of the products and powers that the equations are written as."""
     writer = TapeWriter(tape.n)
     slots = tape.write_on(writer)
-    collection = _Collection(writer)
+    entries: list[tuple[int, int, int]] = []
     for row, slot in enumerate(tape.outputs.tolist()):
         output = slots[slot]
         powers = _powers_of(writer, output)
         if any(writer.node(factor).operation in _ROOTS for factor in powers):
             powers = Counter({output: 1})  # the square of a root is smoother than it
         for factor in sorted(powers):
-            collection.add(row, factor, powers[factor])
-    return collection.factors()
+            entries.append((row, factor, powers[factor]))
+    return _factors(writer, entries)
 
 
 def polynomial_factors(tape: Tape, rows: Sequence[int], region: np.ndarray) -> Factors:
@@ -80,7 +80,7 @@ def polynomial_factors(tape: Tape, rows: Sequence[int], region: np.ndarray) -> F
     writer = TapeWriter(tape.n)
     slots = tape.write_on(writer)
     of_factors = written.tape.write_on(writer)
-    collection = _Collection(writer)
+    entries: list[tuple[int, int, int]] = []
     origins = _origins(region)
     for row, slot in enumerate(tape.outputs.tolist()):
         found = None
@@ -98,29 +98,14 @@ def polynomial_factors(tape: Tape, rows: Sequence[int], region: np.ndarray) -> F
                 if number == row
             }
         for factor, power in found.items():
-            collection.add(row, factor, power)
-    return collection.factors()
+            entries.append((row, factor, power))
+    return _factors(writer, entries)
 
 
-class _Collection:
-    """Factors on a tape while they are collected."""
-
-    def __init__(self, writer: TapeWriter):
-        self._writer = writer
-        self._outputs: list[int] = []
-        self._rows: list[int] = []
-        self._powers: list[int] = []
-
-    def add(self, row: int, slot: int, power: int) -> None:
-        """Add the factor in a ``slot``, which equation ``row`` has to a ``power``."""
-        self._outputs.append(slot)
-        self._rows.append(row)
-        self._powers.append(power)
-
-    def factors(self) -> Factors:
-        """All of them."""
-        tape = self._writer.tape(self._outputs)
-        return Factors(tape, tuple(self._rows), tuple(self._powers))
+def _factors(writer: TapeWriter, entries: Sequence[tuple[int, int, int]]) -> Factors:
+    """Factors on a tape, each by its equation, its slot and its power."""
+    rows, slots, powers = zip(*entries, strict=True)
+    return Factors(writer.tape(slots), rows, powers)
 
 
 # --- as written -----------------------------------------------------------------------

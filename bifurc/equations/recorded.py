@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from bifurc.equations.tape import Operation, TapeWriter
+from bifurc.equations.tape import IN_DOUBLES, TapeWriter
 
 BRANCHES = "it branches on the value of an unknown"
 PLAIN = (
@@ -47,6 +47,28 @@ class Recorder(TapeWriter):
         raise NotRecordable(reason)
 
 
+def _operators(name: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
+    """An operator of recorded numbers and the reflected one, by the method that writes
+    it on a tape."""
+
+    def method(self: RecordedNumber, other: object) -> Any:
+        return self.binary(other, name, is_reflected=False)
+
+    def reflected(self: RecordedNumber, other: object) -> Any:
+        return self.binary(other, name, is_reflected=True)
+
+    return method, reflected
+
+
+def _refusal(reason: str) -> Callable[..., NoReturn]:
+    """A method of recorded numbers that leaves no trace on a tape."""
+
+    def method(self: RecordedNumber, *_: object) -> NoReturn:
+        self.writer.refuse(reason)
+
+    return method
+
+
 class RecordedNumber:
     """A number on a tape that is being written."""
 
@@ -75,46 +97,25 @@ class RecordedNumber:
             self.writer.refuse(COMPLEX)
         return None
 
-    def _binary(
-        self, other: object, write: Callable[[int, int], int], is_reflected: bool
-    ) -> Any:
+    def binary(self, other: object, name: str, *, is_reflected: bool) -> Any:
+        """What an operation on this number and another one is; ``name`` is that of the
+        method which writes it."""
         if isinstance(other, np.ndarray):
             return NotImplemented
         slot = self._slot_of(other)
         if slot is None:
             return NotImplemented
         operands = (slot, self.slot) if is_reflected else (self.slot, slot)
-        return self._of(write(*operands))
+        if name == "power":
+            return self._of(self._power(*operands))
+        return self._of(getattr(self.writer, name)(*operands))
 
-    def __add__(self, other: object) -> Any:
-        return self._binary(other, self.writer.add, False)
-
-    def __radd__(self, other: object) -> Any:
-        return self._binary(other, self.writer.add, True)
-
-    def __sub__(self, other: object) -> Any:
-        return self._binary(other, self.writer.subtract, False)
-
-    def __rsub__(self, other: object) -> Any:
-        return self._binary(other, self.writer.subtract, True)
-
-    def __mul__(self, other: object) -> Any:
-        return self._binary(other, self.writer.multiply, False)
-
-    def __rmul__(self, other: object) -> Any:
-        return self._binary(other, self.writer.multiply, True)
-
-    def __truediv__(self, other: object) -> Any:
-        return self._binary(other, self.writer.divide, False)
-
-    def __rtruediv__(self, other: object) -> Any:
-        return self._binary(other, self.writer.divide, True)
-
-    def __pow__(self, other: object) -> Any:
-        return self._binary(other, self._power, False)
-
-    def __rpow__(self, other: object) -> Any:
-        return self._binary(other, self._power, True)
+    __add__, __radd__ = _operators("add")
+    __sub__, __rsub__ = _operators("subtract")
+    __mul__, __rmul__ = _operators("multiply")
+    __truediv__, __rtruediv__ = _operators("divide")
+    __pow__, __rpow__ = _operators("power")
+    arctan2, _ = _operators("angle")  # of the vector (other, self)
 
     def _power(self, base: int, exponent: int) -> int:
         value = self.writer.value(base)
@@ -144,10 +145,6 @@ class RecordedNumber:
         """The length of the vector (self, other)."""
         return (self * self + other * other).sqrt()  # type: ignore[operator]
 
-    def arctan2(self, other: object) -> Any:
-        """The angle of the vector (other, self)."""
-        return self._binary(other, self.writer.angle, False)
-
     def __getattr__(self, name: str) -> Callable[[], RecordedNumber]:
         """A function of one number, by its name in NumPy."""
         operation = _BY_NUMPY_NAME.get(name)
@@ -173,54 +170,19 @@ class RecordedNumber:
 
     # --- what leaves no trace on a tape -----------------------------------------------
 
-    def _branch(self, *_: object) -> NoReturn:
-        self.writer.refuse(BRANCHES)
-
-    def _plain(self, *_: object) -> NoReturn:
-        self.writer.refuse(PLAIN)
-
-    def _absolute(self) -> NoReturn:
-        self.writer.refuse(ABSOLUTE)
-
-    def _whole(self, *_: object) -> NoReturn:
-        self.writer.refuse(WHOLE)
-
-    def _index(self) -> NoReturn:
-        self.writer.refuse(INDEX)
-
-    def _complex(self) -> NoReturn:
-        self.writer.refuse(COMPLEX)
-
-    __lt__ = __le__ = __gt__ = __ge__ = __bool__ = _branch
-    __eq__ = __ne__ = _branch
+    __lt__ = __le__ = __gt__ = __ge__ = __bool__ = _refusal(BRANCHES)
+    __eq__ = __ne__ = _refusal(BRANCHES)
     __hash__ = object.__hash__
-    __float__ = _plain
-    __complex__ = _complex
-    __abs__ = _absolute
-    __int__ = __floor__ = __ceil__ = __trunc__ = __round__ = _whole
-    __mod__ = __rmod__ = __floordiv__ = __rfloordiv__ = __divmod__ = _whole
-    __index__ = _index
+    __float__ = _refusal(PLAIN)
+    __complex__ = _refusal(COMPLEX)
+    __abs__ = _refusal(ABSOLUTE)
+    __int__ = __floor__ = __ceil__ = __trunc__ = __round__ = _refusal(WHOLE)
+    __mod__ = __rmod__ = __floordiv__ = __rfloordiv__ = __divmod__ = _refusal(WHOLE)
+    __index__ = _refusal(INDEX)
 
 
 _BY_NUMPY_NAME = {
-    "exp": Operation.EXP,
-    "expm1": Operation.EXPM1,
-    "log": Operation.LOG,
-    "log1p": Operation.LOG1P,
-    "sqrt": Operation.SQRT,
-    "cbrt": Operation.CBRT,
-    "sin": Operation.SIN,
-    "cos": Operation.COS,
-    "tan": Operation.TAN,
-    "arcsin": Operation.ASIN,
-    "arccos": Operation.ACOS,
-    "arctan": Operation.ATAN,
-    "sinh": Operation.SINH,
-    "cosh": Operation.COSH,
-    "tanh": Operation.TANH,
-    "arcsinh": Operation.ASINH,
-    "arccosh": Operation.ACOSH,
-    "arctanh": Operation.ATANH,
+    function.__name__: operation for operation, function in IN_DOUBLES.items()
 }
 _FACTORS = {
     "deg2rad": np.pi / 180.0,
@@ -235,27 +197,13 @@ _LOGARITHMS = {"log2": float(np.log(2.0)), "log10": float(np.log(10.0))}
 # Functions that NumPy looks for as methods of the elements, which plain numbers have
 # not.
 _BY_ELEMENT = {*_BY_NUMPY_NAME, *_FACTORS, *_LOGARITHMS, "exp2", "hypot", "arctan2"}
+_COMPARING = ("maximum", "minimum", "fmax", "fmin", "heaviside", "copysign")
+_TESTING = ("isfinite", "isnan", "isinf", "signbit")
+_ROUNDING = ("floor", "ceil", "rint", "trunc", "fmod", "remainder", "modf")
 _REFUSED = {
-    "absolute": ABSOLUTE,
-    "fabs": ABSOLUTE,
-    "sign": ABSOLUTE,
-    "maximum": BRANCHES,
-    "minimum": BRANCHES,
-    "fmax": BRANCHES,
-    "fmin": BRANCHES,
-    "heaviside": BRANCHES,
-    "copysign": BRANCHES,
-    "isfinite": BRANCHES,
-    "isnan": BRANCHES,
-    "isinf": BRANCHES,
-    "signbit": BRANCHES,
-    "floor": WHOLE,
-    "ceil": WHOLE,
-    "rint": WHOLE,
-    "trunc": WHOLE,
-    "fmod": WHOLE,
-    "remainder": WHOLE,
-    "modf": WHOLE,
+    **dict.fromkeys(("absolute", "fabs", "sign"), ABSOLUTE),
+    **dict.fromkeys((*_COMPARING, *_TESTING), BRANCHES),
+    **dict.fromkeys(_ROUNDING, WHOLE),
 }
 
 

@@ -83,25 +83,9 @@ FUNCTIONS = {
     for operation in Operation
     if Operation.POWER < operation < Operation.ANGLE
 }
-_IN_DOUBLES: Mapping[Operation, Callable[..., Any]] = {
-    Operation.EXP: np.exp,
-    Operation.EXPM1: np.expm1,
-    Operation.LOG: np.log,
-    Operation.LOG1P: np.log1p,
-    Operation.SQRT: np.sqrt,
-    Operation.CBRT: np.cbrt,
-    Operation.SIN: np.sin,
-    Operation.COS: np.cos,
-    Operation.TAN: np.tan,
-    Operation.ASIN: np.arcsin,
-    Operation.ACOS: np.arccos,
-    Operation.ATAN: np.arctan,
-    Operation.SINH: np.sinh,
-    Operation.COSH: np.cosh,
-    Operation.TANH: np.tanh,
-    Operation.ASINH: np.arcsinh,
-    Operation.ACOSH: np.arccosh,
-    Operation.ATANH: np.arctanh,
+# the same in NumPy
+IN_DOUBLES: Mapping[Operation, np.ufunc] = {
+    operation: getattr(np, name) for name, operation in FUNCTIONS.items()
 }
 
 
@@ -225,13 +209,11 @@ class Tape:
         numbers in this list, and the numbers (m,) of the equations in it."""
         numbers = {slot: number for number, slot in enumerate(self._needed)}
         nodes = []
-        for slot in self._needed:
-            operation = Operation(int(self.operations[slot]))
-            left, right, _ = self.operands[slot].tolist()
+        for _, (operation, left, right, constant) in self._program:
             if operation > Operation.CONSTANT:
                 left = numbers[left]
             right = numbers[right] if operation in _BINARY else 0
-            nodes.append(Node(operation, left, right, float(self.constants[slot])))
+            nodes.append(Node(operation, left, right, constant))
         return nodes, [numbers[slot] for slot in self.outputs.tolist()]
 
     def in_units(
@@ -258,18 +240,12 @@ class Tape:
         """Write the equations on another tape, in terms of its slots ``unknowns`` (n,)
         or else its unknowns; where each slot of this one stands there."""
         slots: dict[int, int] = {}
-        for slot in self._needed:
-            operation = Operation(int(self.operations[slot]))
-            left, right, _ = self.operands[slot].tolist()
-            if operation is Operation.UNKNOWN:
-                slots[slot] = (
-                    writer.unknown(left) if unknowns is None else unknowns[left]
-                )
+        for slot, (operation, left, right, constant) in self._program:
+            if operation is Operation.UNKNOWN and unknowns is not None:
+                slots[slot] = unknowns[left]
                 continue
-            is_leaf = operation is Operation.CONSTANT
-            first = left if is_leaf else slots[left]
+            first = slots[left] if operation > Operation.CONSTANT else left
             second = slots[right] if operation in _BINARY else right
-            constant = float(self.constants[slot])
             node = Node(operation, first, second, constant)
             slots[slot] = writer.copy(_with_one_shift(node, writer))
         return slots
@@ -506,7 +482,7 @@ class TapeWriter:
         value = self.value(operand)
         if value is not None:
             with np.errstate(all="ignore"):
-                return self.constant(float(_IN_DOUBLES[operation](value)))
+                return self.constant(float(IN_DOUBLES[operation](value)))
         return self._slot(Node(operation, operand))
 
     def angle(self, y: int, x: int) -> int:

@@ -25,9 +25,7 @@ def singular_values(problem: Problem, points: np.ndarray) -> np.ndarray:
         return np.empty(points.shape)
     flat = points.reshape(-1, points.shape[-1])
     jacobians = problem.jacobians(flat) / problem.magnitude
-    is_finite = np.asarray(np.isfinite(jacobians).all(axis=(1, 2)))
-    if not np.all(is_finite):
-        jacobians = np.where(is_finite[:, None, None], jacobians, 0.0)
+    is_finite, jacobians = _sound(jacobians)
     is_few = problem.n <= FEW
     decomposed = _core.singular_values if is_few else np.linalg.svdvals
     values = decomposed(jacobians)
@@ -49,10 +47,7 @@ class Factors(NamedTuple):
 def factors_of(matrices: np.ndarray, full_matrices: bool = True) -> Factors:
     """The singular value decomposition of matrices (..., m, n); infinite singular
     values of one that is not finite."""
-    is_finite = np.isfinite(matrices).all(axis=(-2, -1))
-    if np.all(is_finite):
-        return Factors(*np.linalg.svd(matrices, full_matrices=full_matrices))
-    sound = np.where(is_finite[..., None, None], matrices, 0.0)
+    is_finite, sound = _sound(matrices)
     left, sigma, right = np.linalg.svd(sound, full_matrices=full_matrices)
     return Factors(left, np.where(is_finite[..., None], sigma, np.inf), right)
 
@@ -60,10 +55,15 @@ def factors_of(matrices: np.ndarray, full_matrices: bool = True) -> Factors:
 def values_of(matrices: np.ndarray) -> np.ndarray:
     """The singular values (..., min(m, n)) of matrices (..., m, n) alone, in decreasing
     order; infinite ones of a matrix that is not finite."""
-    is_finite = np.isfinite(matrices).all(axis=(-2, -1))
-    if np.all(is_finite):
-        values: np.ndarray = np.linalg.svd(matrices, compute_uv=False)
-        return values
-    sound = np.where(is_finite[..., None, None], matrices, 0.0)
+    is_finite, sound = _sound(matrices)
     values = np.linalg.svd(sound, compute_uv=False)
     return np.where(is_finite[..., None], values, np.inf)
+
+
+def _sound(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Which matrices (..., m, n) are finite, and the matrices with zeros in the place of
+    the others."""
+    is_finite = np.asarray(np.isfinite(matrices).all(axis=(-2, -1)))
+    if np.all(is_finite):
+        return is_finite, matrices
+    return is_finite, np.where(is_finite[..., None, None], matrices, 0.0)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from html import escape
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,7 +23,7 @@ from bifurc.routes.places import (
 )
 from bifurc.routes.surface_legs import Crossing
 from bifurc.routes.ways import GOAL, START, Stage, WayGraph
-from bifurc.surfaces.geodesic import resample
+from bifurc.surfaces.geodesic import place_at, resample
 from bifurc.torus import wrap
 
 NO_WAY = 1e-9  # length below which a leg is none
@@ -235,3 +236,60 @@ def _describe(where: str | np.ndarray) -> str:
     if isinstance(where, str):
         return repr(where)
     return np.array2string(np.asarray(where), precision=6)
+
+
+# --- at even distances ----------------------------------------------------------------
+
+
+class SpreadRoute(NamedTuple):
+    """Configurations (k, n) without jumps, at ``arclengths`` (k,) from 0 to the length
+    of a route."""
+
+    arclengths: np.ndarray
+    configurations: np.ndarray
+
+
+def spread_route(
+    atlas: Atlas, route: Route, count: int, problem: Problem | None = None
+) -> SpreadRoute:
+    """``count`` solutions at even arclengths along a route of `find_route`, its begin
+    and its end among them.
+
+    Unlike `Route.path` these need not meet the points where the route changes from one
+    form to another. Legs over surfaces need the ``problem`` that was explored. Raises
+    `RouteError` for a route without length or where the problem is needed, and
+    `ProblemError` for a count below 2.
+    """
+    check_whole("count", count, 2)
+    if not route.legs:
+        raise RouteError("the route has no length: it begins where it ends")
+    lengths = [leg.length for leg in route.legs]
+    ends = np.cumsum(lengths)
+    arclengths = np.linspace(0.0, ends[-1], count)
+    owners = np.searchsorted(ends, arclengths)
+    parts = []
+    for i, leg in enumerate(route.legs):
+        along = arclengths[owners == i] - (ends[i] - lengths[i])
+        if len(along):
+            shares = np.clip(along / lengths[i], 0.0, 1.0)
+            parts.append(_place_on_leg(atlas, leg, shares, problem))
+    return SpreadRoute(arclengths, np.concatenate(parts))
+
+
+def _place_on_leg(
+    atlas: Atlas, leg: Leg, shares: np.ndarray, problem: Problem | None
+) -> np.ndarray:
+    """Solutions (k, n) at shares (k,) of the length of a leg, continuous with its
+    path."""
+    if leg.dimension > 1:
+        search = begin_search(atlas, problem)
+        names = [surface.name for surface in atlas.surfaces]
+        k = names.index(leg.form)
+        return place_at(search.surface_problem(k), search.charts[k], leg.path, shares)
+    branch = atlas.forms[atlas.form(leg.form)].branch
+    points = branch(leg.start + shares * (leg.end - leg.start))
+    shift = leg.path[0] - branch(leg.start)
+    is_periodic = np.isfinite(atlas.periods)
+    periods = atlas.periods[is_periodic]
+    points[:, is_periodic] += periods * np.round(shift[is_periodic] / periods)
+    return points

@@ -10,8 +10,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Form
 from bifurc.problem import Problem
-from bifurc.routes.route import Route
-from bifurc.routes.spread import spread_route
+from bifurc.routes.route import Route, spread_route
 from linkages.loop import Loop
 
 

@@ -17,15 +17,15 @@ from typing import TypeAlias
 import numpy as np
 
 from bifurc.branch import Branch
-from linkages.links.least_distance import (
+from linkages.links.distances import (
     MARGIN,
     RATE_SAMPLES,
+    distances_by_ends,
     find_least_distance,
     largest_rates,
 )
 from linkages.links.mechanism_drawing import draw_bodies
 from linkages.links.rods import place_links
-from linkages.links.segments import distances_by_ends
 from linkages.loop import Loop
 from linkages.readout.poses import Poses
 from linkages.structure.structure import Structure

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linkages.links.segments import distances_by_ends
+from linkages.links.distances import distances_by_ends
 from linkages.loop import Loop
 from linkages.values import GeometryError, told_apart
 

@@ -8,8 +8,11 @@ import numpy as np
 
 from bifurc.atlas import Form
 from bifurc.branch import Branch
-from linkages.links.least_distance import find_least_distance, largest_rates
-from linkages.links.segments import distances_by_ends
+from linkages.links.distances import (
+    distances_by_ends,
+    find_least_distance,
+    largest_rates,
+)
 from linkages.printing.assembly import Assembly, Part
 
 TOLERANCE = 1e-3  # of the characteristic length

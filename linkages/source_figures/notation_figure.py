@@ -105,8 +105,9 @@ def _draw_chain(axes: Axes, content: Content) -> None:
     extent = float(np.linalg.norm(points - centre, axis=1).max())
     for name, axis in assembly.axes.items():
         tip = assembly.offset(name)[1] + 1.15 * REACH * extent * axis.direction
-        _write(axes, tip, f"$z_{{{name}}}$", np.zeros(2))
-        axes.plot(*(tip @ LOOK.plane), alpha=0)
+        spot = tip @ LOOK.plane
+        _write(axes, spot, f"$z_{{{name}}}$", np.zeros(2))
+        axes.plot(*spot, alpha=0)
     _draw_turns(axes, assembly, content)
     axes.margins(0.12)
 
@@ -133,7 +134,7 @@ def _draw_turns(axes: Axes, assembly: Assembly, content: Content) -> None:
             _draw_line(axes, [foot, start], color=ARC_COLOR, linewidth=2.6, zorder=3)
             before = foot - STUB * along
             _draw_line(axes, [before, foot], color=RAY_COLOR, linewidth=1.6)
-            _write(axes, before, f"$x_{{{name}}}$", np.array([-8.0, 0.0]))
+            _write(axes, before @ LOOK.plane, f"$x_{{{name}}}$", np.array([-8.0, 0.0]))
         along = unit(end - start)
 
 
@@ -174,7 +175,7 @@ def _draw_arc(axes: Axes, arc: np.ndarray, label: str) -> None:
     middle = len(spots) // 2
     outwards = spots[middle] - (spots[0] + spots[-1]) / 2
     size = max(float(np.linalg.norm(outwards)), 1e-9)
-    _write(axes, arc[middle], label, 9 * outwards / size, ARC_COLOR)
+    _write(axes, spots[middle], label, 9 * outwards / size, ARC_COLOR)
 
 
 def _write_along(
@@ -187,15 +188,14 @@ def _write_along(
     across = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1e-9)
     if across @ (spots.mean(axis=0) - away) < 0:
         across = -across
-    _write(axes, ends[0] + share * (ends[1] - ends[0]), text, 11 * across)
+    _write(axes, spots[0] + share * along, text, 11 * across)
 
 
 def _write(
-    axes: Axes, point: np.ndarray, text: str, shift: np.ndarray, color: str = "black"
+    axes: Axes, spot: np.ndarray, text: str, shift: np.ndarray, color: str = "black"
 ) -> None:
-    """A text off a point (3,), by a ``shift`` (2,) in points."""
+    """A text off a spot (2,), by a ``shift`` (2,) in points."""
     style: Properties = {"color": color, "zorder": 7, "path_effects": HALO}
-    spot = point @ LOOK.plane
     write_beside(axes, spot, text, shift, annotation_clip=False, **style)
 
 

@@ -106,44 +106,23 @@ class UnknownFigureError(BifurcError, KeyError):
 @cache
 def source_figures() -> dict[str, SourceFigure]:
     """Every figure by its name, in the order of the sources."""
-    figures: dict[str, SourceFigure] = {}
     folder = resources.files("linkages.source_figures") / "data"
+    tables: dict[str, dict[str, Any]] = {}
     for file in FILES:
         text = (folder / f"{file}.toml").read_text(encoding="utf-8")
         for name, table in tomllib.loads(text).items():
-            figures[name] = _figure(name, _completed(table, figures))
-    return figures
+            # a figure takes over what it does not say from the one that it is like
+            model = tables[table.pop("like")] if "like" in table else {}
+            tables[name] = model | table
+    return {name: _figure(name, dict(table)) for name, table in tables.items()}
 
 
-def _completed(
-    table: dict[str, Any], figures: Mapping[str, SourceFigure]
-) -> dict[str, Any]:
-    """The table of a figure with what it takes over from the figure that it is
-    ``like``."""
-    if "like" not in table:
-        return table
-    model = figures[table["like"]]
-    inherited = {
-        "kind": model.kind,
-        "title": model.title,
-        "agreement": model.agreement,
-        "remark": model.remark,
-        **model.content,
-    }
-    own = {key: value for key, value in table.items() if key != "like"}
-    return inherited | own
-
-
-def _figure(name: str, table: dict[str, Any]) -> SourceFigure:
-    content = dict(table)
-    return SourceFigure(
-        name,
-        Kind(content.pop("kind")),
-        content.pop("title"),
-        Agreement(content.pop("agreement")),
-        content.pop("remark", ""),
-        content,
-    )
+def _figure(name: str, content: dict[str, Any]) -> SourceFigure:
+    kind = Kind(content.pop("kind"))
+    title = content.pop("title")
+    agreement = Agreement(content.pop("agreement"))
+    remark = content.pop("remark", "")
+    return SourceFigure(name, kind, title, agreement, remark, content)
 
 
 def figure_named(name: str) -> SourceFigure:

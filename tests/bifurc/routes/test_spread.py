@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 
 from bifurc.errors import BifurcError, RouteError
-from bifurc.routes.route import find_route
-from bifurc.routes.spread import spread_route
+from bifurc.routes.route import find_route, spread_route
 from tests.bifurc.drawn_atlas import bridge, draw, ring
 
 COUNTS = (2, 3, 7, 10, 361)

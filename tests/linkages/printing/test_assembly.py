@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from linkages.linkage import load
-from linkages.links.segments import segment_distances
+from linkages.links.distances import segment_distances
 from linkages.loop import Loop
 from linkages.mapping import map_linkage
 from linkages.printing.assembly import (

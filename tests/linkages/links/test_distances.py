@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from linkages.links.segments import segment_distances
+from linkages.links.distances import segment_distances
 
 ORIGIN, X, Y, Z = np.zeros(3), *np.eye(3)
 
