@@ -72,7 +72,9 @@ def make_plan(mechanism: Mechanism, driver: int | None) -> Plan | None:
         parts.union(numbers[pair.base], numbers[pair.moved])
     part = tuple(parts[body] for body in range(len(numbers)))
     contacts = [
-        c for c in _contacts(mechanism, numbers, known) if _joins_two_parts(c, part)
+        contact
+        for contact in _contacts(mechanism, numbers, known)
+        if part[contact.first] != part[contact.second]
     ]
     sizes = Counter(part)
     for start in sorted(sizes, key=lambda one: (-sizes[one], one))[:MOST_BEGUN]:
@@ -109,11 +111,6 @@ def _contacts(
             is_turn = mechanism.variables[variable].motion.is_turn
             for first, _ in bodies[:k]:
                 yield Contact(joint.name, first, second, variable, is_turn)
-
-
-def _joins_two_parts(contact: Contact, part: tuple[int, ...]) -> bool:
-    """Whether a joint joins two parts."""
-    return part[contact.first] != part[contact.second]
 
 
 # --- order ----------------------------------------------------------------------------

@@ -395,20 +395,16 @@ def _mirrored(joint: Joint) -> Joint:
     )
 
 
-def _sign_in_mirror(motion: Motion, image: Motion) -> float:
-    """+1.0 where the ``image`` of a motion in the plane z = 0 moves as its mirror image
-    does, -1.0 where it moves against it."""
-    expected = MIRROR * motion.direction
-    if motion.is_turn:
-        expected = -expected
-    return 1.0 if float(expected @ image.direction) > 0 else -1.0
-
-
 def _signs_in_mirror(joint: Joint, image: Joint) -> list[float]:
-    """What the variables of a joint are multiplied with in its mirror image."""
-    motions = zip(joint.motions, image.motions, strict=True)
-    of_body = [_sign_in_mirror(*pair) for pair in motions]
-    return of_body * (len(joint.bodies) - 1)
+    """What the variables of a joint are multiplied with in its image in the plane z = 0:
+    +1.0 where it moves as the mirror image does, -1.0 where it moves against it."""
+    signs = []
+    for motion, of_image in zip(joint.motions, image.motions, strict=True):
+        expected = MIRROR * motion.direction
+        if motion.is_turn:
+            expected = -expected
+        signs.append(1.0 if float(expected @ of_image.direction) > 0 else -1.0)
+    return signs * (len(joint.bodies) - 1)
 
 
 # --- checks ---------------------------------------------------------------------------

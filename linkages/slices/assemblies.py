@@ -239,25 +239,19 @@ def _link_matrix(link: np.ndarray, angle: float = 0.0) -> np.ndarray:
 
 
 @cache
-def _stored_loop() -> GenericLoop:
-    """The generic loop that comes with the package."""
-    text = files("linkages.slices").joinpath("generic_loop.json").read_text("utf-8")
-    stored = json.loads(text)
-    table = np.array(stored["table"]) @ [1.0, 1.0j]
-    configurations = np.array(stored["configurations"]) @ [1.0, 1.0j]
-    return GenericLoop(table, configurations)
-
-
-@cache
 def _generic_loop(number: int) -> GenericLoop:
-    """The generic loop from which the paths of attempt ``number`` start.
+    """The generic loop from which the paths of attempt ``number`` start: the first one
+    comes with the package.
 
     Another geometry makes other paths: those of an attempt may pass too near to a
     singular geometry to be followed in doubles.
     """
-    loop = _stored_loop()
     if number == 0:
-        return loop
+        text = files("linkages.slices").joinpath("generic_loop.json").read_text("utf-8")
+        stored = json.loads(text)
+        table = np.array(stored["table"]) @ [1.0, 1.0j]
+        return GenericLoop(table, np.array(stored["configurations"]) @ [1.0, 1.0j])
+    loop = _generic_loop(0)
     table = loop.table.copy()
     table[[0, 2]] *= ROTATION**number
     table[1] += 0.1j * number

@@ -80,7 +80,7 @@ def test_two_assemblies_that_nearly_coincide_are_told_apart():
 
 
 def test_the_generic_loop_closes_in_sixteen_configurations():
-    loop = assemblies._stored_loop()
+    loop = assemblies._generic_loop(0)
     assert loop.configurations.shape == (16, 6)
     one_another = [
         gap(a, b)
@@ -94,7 +94,7 @@ def test_the_generic_loop_closes_in_sixteen_configurations():
 
 
 def test_one_configuration_leads_to_all_sixteen_by_going_round_in_the_geometries():
-    loop = assemblies._stored_loop()
+    loop = assemblies._generic_loop(0)
     rng = np.random.default_rng(0)
     found = loop.configurations[:1]
     for _ in range(14):
@@ -131,7 +131,7 @@ def test_no_path_is_begun_after_the_time_is_over():
 def test_paths_far_from_real_configurations_are_followed_by_quaternions():
     # three of its paths end at angles with imaginary parts of 4 to 9
     table = assemblies._with_six_joints(entry("yu-baker").build()).table
-    paths = follow_paths(assemblies._stored_loop(), table)
+    paths = follow_paths(assemblies._generic_loop(0), table)
     ends = assemblies._Ends.of(paths, table)
     far = ends.regular[np.abs(ends.regular.imag).max(axis=1) > 4]
     assert len(far) == 4
@@ -194,7 +194,7 @@ def test_ends_near_a_lower_rank_are_counted_and_leave_nothing_complete(
     twist = np.arcsin(short * np.sin(1.0))
     loop = Loop((1.0, short, 1.0, short), (1.0, twist, 1.0, twist), (0.0,) * 4)
     table = assemblies._with_six_joints(loop).table
-    start = assemblies._stored_loop()
+    start = assemblies._generic_loop(0)
     paths = follow_paths(start, table)
     paths = assemblies._followed_on(paths, start, table, Deadline(np.inf))
     ends = assemblies._Ends.of(paths, table)
