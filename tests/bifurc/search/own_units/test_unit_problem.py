@@ -410,7 +410,7 @@ def test_more_unknowns_than_are_compiled_are_found_in_any_size():
 
 def test_a_curve_on_whose_flat_end_all_starts_stop_is_followed_whole():
     # an amplifier that is saturated at nearly every start
-    file = Path(__file__).parents[3] / "data" / "problems" / "trigger_circuit.toml"
+    file = Path(__file__).parents[4] / "data" / "problems" / "trigger_circuit.toml"
     atlas = read_equations(file).explore()
     (form,) = atlas.forms
     assert form.branch.outcome is Outcome.LEFT_REGION
