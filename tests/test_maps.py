@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from bifurc.graphs import arc_graph
-from bifurc.search.explore import explore
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
+from tests.maps import curves_of
 
 MAPS = json.loads(
     (Path(__file__).parents[1] / "data" / "reference_maps.json").read_text()
@@ -27,7 +27,7 @@ def maps():
     out = {}
     for reference in MAPS:
         loop = Loop(reference["lengths"], reference["twists"], reference["offsets"])
-        out[reference["name"]] = reference, loop, explore(LoopClosure(loop))
+        out[reference["name"]] = reference, loop, curves_of(loop)
     return out
 
 
@@ -285,7 +285,7 @@ def _closure_with_derivative(loop, u):
 
 
 def counts(loop):
-    atlas = explore(LoopClosure(loop))
+    atlas = curves_of(loop)
     assert not any(point.note for point in atlas.points)
     assert len(atlas.points) == len(atlas.bifurcations)
     return len(atlas.forms), len(atlas.bifurcations), arc_graph(atlas).number_of_edges()
@@ -338,7 +338,7 @@ def test_no_bifurcation_is_invented_on_random_bennett_linkages():
 
 def test_no_bifurcation_is_invented_next_to_a_parallelogram():
     for error in (1e-2, 1e-4, 1e-6):
-        atlas = explore(LoopClosure(planar(1.0, 2.0, 1.0 + error, 2.0)))
+        atlas = curves_of(planar(1.0, 2.0, 1.0 + error, 2.0))
         assert not atlas.bifurcations
         # sigma at the closest approach goes as the square root of the length error
         smallest = min(event.value for event in atlas.near_misses)
@@ -349,7 +349,7 @@ def test_no_near_miss_is_invented_where_the_singular_value_is_monotone_or_consta
     right_angled = Loop((0.0,) * 4, (np.pi / 2,) * 4, (0.0,) * 4)
     for loop in (planar(1.0, 1.0, 1.0, 1.0), right_angled):
         for seed in range(3):
-            atlas = explore(LoopClosure(loop), seed=seed)
+            atlas = curves_of(loop, seed=seed)
             assert len(atlas.points) > 2
             assert not atlas.near_misses
 
@@ -357,7 +357,7 @@ def test_no_near_miss_is_invented_where_the_singular_value_is_monotone_or_consta
 def test_near_misses_do_not_depend_on_the_start_of_the_curve():
     linkage = entry("yu-baker-two-ratios").build()
     for seed in range(4):
-        atlas = explore(LoopClosure(linkage), seed=seed)
+        atlas = curves_of(linkage, seed=seed)
         values = [event.value for event in atlas.near_misses]
         assert values == pytest.approx([0.0908601462117729] * 2, rel=1e-9)
 

@@ -5,17 +5,16 @@ import re
 import numpy as np
 
 from docs.generator.pictures import clearest_configuration, draw_linkage
-from linkages.linkage import load
-from linkages.mapping import map_linkage
+from tests.maps import map_of
 
 
 def test_a_parallelogram_is_not_drawn_folded():
-    theta = clearest_configuration(map_linkage(load("parallelogram")))
+    theta = clearest_configuration(map_of("parallelogram"))
     assert np.abs(np.sin(theta)).max() > 0.5
 
 
 def test_drawing_and_map_are_written_without_empty_margins(tmp_path):
-    draw_linkage(map_linkage(load("bennett")), "bennett", tmp_path)
+    draw_linkage(map_of("bennett"), "bennett", tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {
         "bennett-drawing.svg",
         "bennett-map.svg",

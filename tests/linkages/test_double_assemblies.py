@@ -11,7 +11,7 @@ from linkages.app.answer.document import make_document
 from linkages.app.answer.verdict import judge
 from linkages.axes import loop_from_axes
 from linkages.loop import Loop
-from linkages.mapping import map_linkage
+from tests.maps import map_of
 
 
 def loop_with_double_assembly(draw, opening=0.0):
@@ -34,7 +34,7 @@ def loop_with_double_assembly(draw, opening=0.0):
 
 @pytest.mark.parametrize("seed", [0, 1])
 def test_a_double_assembly_is_one_and_in_doubt(seed):
-    atlas = map_linkage(loop_with_double_assembly(5), seed=seed)
+    atlas = map_of(loop_with_double_assembly(5), seed=seed)
     assert len(atlas.rigid) == 4
     (point,) = atlas.points
     assert point.kind is Kind.ISOLATED
@@ -55,7 +55,7 @@ def test_a_double_assembly_is_one_and_in_doubt(seed):
 )
 def test_two_assemblies_are_told_apart_or_said_to_be_in_doubt(opening, rigid, double):
     # the two lie 2.7 openings apart
-    atlas = map_linkage(loop_with_double_assembly(5, opening))
+    atlas = map_of(loop_with_double_assembly(5, opening))
     assert (len(atlas.rigid), len(atlas.points)) == (rigid, double)
     is_in_doubt = "in doubt" in atlas.completeness.statement
     assert is_in_doubt is bool(double)
@@ -64,7 +64,7 @@ def test_two_assemblies_are_told_apart_or_said_to_be_in_doubt(opening, rigid, do
 @pytest.mark.parametrize("missing", [1e-6, 1e-9, 1e-12])
 def test_a_motion_however_small_is_a_form(missing):
     # joint 1 swings by acos of the law of cosines about the stretched configuration
-    atlas = map_linkage(Loop((1.0, 1.0, 1.0, 3.0 - missing), (0.0,) * 4, (0.0,) * 4))
+    atlas = map_of(Loop((1.0, 1.0, 1.0, 3.0 - missing), (0.0,) * 4, (0.0,) * 4))
     assert not len(atlas.rigid)
     (form,) = atlas.forms
     assert form.branch.closed
@@ -85,7 +85,7 @@ def loop_with_triple_assembly(error):
 @pytest.mark.parametrize("error", [1.6e-6, 1e-6, 3e-7])
 def test_assemblies_that_rounding_hides_count_as_one_and_are_in_doubt(error, seed):
     # starts stop up to 1.6e-4 from them, where F is below 1e-12 already
-    atlas = map_linkage(loop_with_triple_assembly(error), seed=seed)
+    atlas = map_of(loop_with_triple_assembly(error), seed=seed)
     assert len(atlas.forms) == 1
     assert len(atlas.rigid) == 6
     place = np.array([math.pi, math.pi, math.pi, 0.0, math.pi, 0.0])

@@ -11,8 +11,7 @@ from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from linkages.catalogue import entry
 from linkages.labels import FormLabels, NoLinkageError, Symmetry, loop_of, subject_of
-from linkages.linkage import load
-from linkages.mapping import map_linkage
+from tests.maps import map_of
 
 
 def circle(u):
@@ -26,7 +25,7 @@ def map_of_a_circle():
 
 @pytest.fixture(scope="module")
 def parallelogram():
-    return map_linkage(load("parallelogram"))
+    return map_of("parallelogram")
 
 
 def with_subject(atlas: Atlas, **changes):

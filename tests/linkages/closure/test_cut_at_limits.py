@@ -23,6 +23,7 @@ from linkages.mechanisms.of_loop import mechanism_of_loop
 from linkages.readout.readout import Readout
 from linkages.statements import LinkageClaim
 from tests.linkages.closure.test_within_limits import line_symmetric_loop, rccc
+from tests.maps import map_of
 
 PLAIN = SearchSettings(certify=False, near_motions=False)
 SAMPLES = 20_000  # of a form
@@ -40,7 +41,7 @@ def limited_loop(name, limits, seed=0):
     """A loop of the catalogue, its configuration drawn from its forms, and with
     limits."""
     loop = linkages.load(name).loop
-    atlas = linkages.map_linkage(loop, settings=PLAIN)
+    atlas = map_of(loop, settings=PLAIN)
     rng = np.random.default_rng(seed)
     branch = atlas.forms[rng.integers(len(atlas.forms))].branch
     free = mechanism_of_loop(loop, branch(rng.uniform() * branch.length))
@@ -55,7 +56,7 @@ def parts_of_samples(free, limits):
     long they are together, by dense samples."""
     count, length = 0, 0.0
     readout = Readout(free)
-    for form in linkages.map_linkage(free, settings=PLAIN).forms:
+    for form in map_of(free, settings=PLAIN).forms:
         branch = form.branch
         places = np.linspace(0.0, branch.length, SAMPLES, endpoint=not branch.closed)
         values = readout.values(branch(places))
@@ -74,7 +75,7 @@ def parts_of_samples(free, limits):
 def test_forms_within_limits_are_those_without_cut_there(name):
     free, mechanism = limited_loop(name, LOOPS[name])
     count, length = parts_of_samples(free, LOOPS[name])
-    atlas = linkages.map_linkage(mechanism)
+    atlas = map_of(mechanism)
     assert len(atlas.forms) == count
     total = sum(form.branch.length for form in atlas.forms)
     # a part begins and ends within a sample of where it is said to
@@ -84,7 +85,7 @@ def test_forms_within_limits_are_those_without_cut_there(name):
 
 
 def test_that_nothing_is_within_limits_is_certified():
-    atlas = linkages.map_linkage(line_symmetric_loop(R0=(-1.0, -0.95)))
+    atlas = map_of(line_symmetric_loop(R0=(-1.0, -0.95)))
     assert not atlas.forms
     assert atlas.completeness.level is Level.CERTIFIED
 
@@ -109,7 +110,7 @@ def test_parts_that_are_not_listed_are_starts_and_take_the_level():
 
 def test_a_map_without_limits_that_ended_early_certifies_nothing():
     mechanism = line_symmetric_loop(R0=(-2.5, -2.45))
-    branches = [form.branch for form in linkages.map_linkage(mechanism).forms]
+    branches = [form.branch for form in map_of(mechanism).forms]
     assert cut_of(mechanism)(branches, 60.0).level is Level.CERTIFIED
     assert cut_of(mechanism)(branches, 1e-6).level is Level.ESTIMATED
 
@@ -119,7 +120,7 @@ def test_each_combination_of_whole_turns_has_its_stretches():
     counts = []
     for high in (low + 0.05, low + 0.05 + turn, low + 0.05 + 3 * turn):
         cut = cut_of(line_symmetric_loop(R0=(low, high)))
-        atlas = linkages.map_linkage(cut.single.loop, settings=PLAIN)
+        atlas = map_of(cut.single.loop, settings=PLAIN)
         parts = [cut_motions(cut.structure, cut.single, f.branch) for f in atlas.forms]
         values = np.concatenate([part.points[:, 0] for part in parts])
         assert np.all((values >= low) & (values <= high))
@@ -138,7 +139,7 @@ def kite_within_limits():
     """A kite but for the last bits of its lengths, as files give it, in a configuration
     in which it is not flat, its joints turned by less than 2.9 rad from there."""
     loop = four_bar(1.0, 2.0, 2.0 + 2e-15, 1.0)
-    atlas = linkages.map_linkage(loop, settings=PLAIN)
+    atlas = map_of(loop, settings=PLAIN)
     branches = [form.branch for form in atlas.forms]
     branch = max(branches, key=lambda branch: np.ptp(branch.sample(50)[:, 0]))
     joints = mechanism_of_loop(loop, branch(0.3 * branch.length)).joints
@@ -151,7 +152,7 @@ DISTANCES = np.geomspace(1e-4, 0.3, 12)
 
 def test_a_form_is_followed_through_a_bifurcation_from_however_near_it():
     mechanism = kite_within_limits()
-    atlas = linkages.map_linkage(mechanism, settings=PLAIN)
+    atlas = map_of(mechanism, settings=PLAIN)
     assert {form.branch.outcome for form in atlas.forms} == {Outcome.LEFT_REGION}
     assert len(atlas.bifurcations) == 2
     problem = MechanismClosure(mechanism)

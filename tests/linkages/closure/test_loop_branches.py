@@ -14,6 +14,7 @@ from bifurc.settings import TraceSettings
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
+from tests.maps import curves_of
 
 
 @pytest.mark.parametrize(
@@ -88,7 +89,7 @@ def test_forms_begin_at_one_place_and_run_one_way_whatever_the_seed(name):
 
 
 def test_a_form_winds_forwards_and_begins_within_half_a_turn():
-    atlas = explore(LoopClosure(entry("special-double-subtractive-goldberg").build()))
+    atlas = curves_of(entry("special-double-subtractive-goldberg").build())
     for form in atlas.forms:
         turning = form.branch.winding[form.branch.winding != 0]
         assert turning[0] > 0

@@ -13,6 +13,7 @@ from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.families.bricard import bricard_line_symmetric_zero_offset
 from linkages.loop import Loop
+from tests.maps import curves_of
 
 
 @pytest.mark.parametrize(
@@ -81,7 +82,7 @@ def test_a_right_map_near_a_surface_is_certified(error):
     loop = entry("special-double-subtractive-goldberg").build(
         alpha=2.0, beta=1.0, delta=1.0 + error
     )
-    atlas = explore(LoopClosure(loop), settings=SETTINGS)
+    atlas = curves_of(loop, settings=SETTINGS)
     assert counts(atlas) == (4, 4)
     assert all(form.certificate.holds for form in atlas.forms)
     assert atlas.completeness.level is Level.PROVED
@@ -92,7 +93,7 @@ def test_a_right_map_of_a_bricard_linkage_near_a_surface_is_certified(error):
     loop = bricard_line_symmetric_zero_offset(
         1.0, 1.0 + error, 1.3, 1.0, 1.0 + error, 1.9
     )
-    atlas = explore(LoopClosure(loop), settings=SETTINGS)
+    atlas = curves_of(loop, settings=SETTINGS)
     assert counts(atlas) == (4, 4)
     assert all(form.certificate.holds for form in atlas.forms)
     assert atlas.completeness.level is Level.PROVED

@@ -13,14 +13,13 @@ from bifurc.singular.point import Kind
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.families.four_bar import four_bar, kite
-from linkages.linkage import load
 from linkages.loop import Loop
-from linkages.mapping import map_linkage
+from tests.maps import curves_of, map_of
 
 
 def test_an_isolated_real_point_of_a_curve_is_no_form():
     stretched = Loop((1.0, 1.0, 1.0, 3.0), (0.0,) * 4, (0.0,) * 4)
-    atlas = explore(LoopClosure(stretched))
+    atlas = curves_of(stretched)
     assert not atlas.forms
     assert [p.kind for p in atlas.points] == [Kind.ISOLATED]
     assert np.abs(np.sin(atlas.points[0].point.u)).max() < 1e-9
@@ -40,7 +39,7 @@ def test_an_isolated_real_point_of_a_curve_is_no_form():
     ],
 )
 def test_a_loop_that_cannot_be_closed_has_nothing_but_a_large_gap(loop):
-    atlas = explore(LoopClosure(loop))
+    atlas = curves_of(loop)
     assert not atlas.forms
     assert not len(atlas.rigid)
     assert not atlas.points
@@ -59,7 +58,7 @@ def test_geometry_that_misses_its_condition_has_no_form_and_a_gap_of_that_size(
     # characteristic length the factor is 0.02 to 2
     loop = entry(name).build()
     lengths = (loop.lengths[0] * (1 + relative), *loop.lengths[1:])
-    atlas = explore(LoopClosure(Loop(lengths, loop.twists, loop.offsets)))
+    atlas = curves_of(Loop(lengths, loop.twists, loop.offsets))
     assert not atlas.forms
     assert not atlas.bifurcations
     assert 0.02 * relative < atlas.closure_gap < 2 * relative
@@ -110,7 +109,7 @@ def test_joints_that_spin_on_coincident_axes_make_a_surface():
         nothing = (0.0,) * spare
         lengths, twists = bennett.lengths + nothing, bennett.twists + nothing
         loop = Loop(lengths, twists, (0.0,) * (4 + spare))
-        atlas = explore(LoopClosure(loop), settings=SearchSettings(starts=20))
+        atlas = curves_of(loop, settings=SearchSettings(starts=20))
         assert atlas.surfaces
         assert not atlas.forms
         assert not any(p.kind is Kind.ISOLATED for p in atlas.points)
@@ -154,7 +153,7 @@ def test_a_seed_that_only_looks_as_on_a_surface_is_taken_for_what_it_is():
         "delta": 0.5790264703154796,
     }
     loop = entry("double-subtractive-goldberg-type-iii").build(**parameters)
-    atlas = explore(LoopClosure(loop))
+    atlas = curves_of(loop)
     assert not atlas.surfaces
     assert len(atlas.forms) == 1
     assert atlas.completeness.level == "proved"
@@ -163,7 +162,7 @@ def test_a_seed_that_only_looks_as_on_a_surface_is_taken_for_what_it_is():
 def test_nothing_is_proved_of_an_atlas_with_a_form_that_was_cut_off():
     tracing = TraceSettings(longest=0.5, max_length=0.6)
     loop = entry("bennett").build()
-    atlas = explore(LoopClosure(loop), settings=SearchSettings(tracing=tracing))
+    atlas = curves_of(loop, settings=SearchSettings(tracing=tracing))
     assert atlas.forms[0].branch.outcome is Outcome.STEP_LIMIT
     assert atlas.completeness.level == "estimated"
     assert "is longer than it was traced" in atlas.completeness.statement
@@ -184,7 +183,7 @@ def test_where_near_motions_are_not_asked_for_their_points_are_isolated():
     "name", ["double-subtractive-goldberg", "double-subtractive-goldberg-type-i"]
 )
 def test_tangents_at_a_bifurcation_are_as_exact_as_the_point(name):
-    atlas = map_linkage(load(name))
+    atlas = map_of(name)
     assert len(atlas.bifurcations) == 4
     for bifurcation in atlas.bifurcations:
         exact = bifurcation.point.tangents
@@ -203,7 +202,7 @@ def test_tangents_at_a_bifurcation_are_as_exact_as_the_point(name):
 def test_mirror_images_and_events_of_a_loop_keep_their_places(seed):
     # spherical, with right angles: four forms of equal length, many dead points
     loop = Loop((0.0,) * 4, (np.pi / 2,) * 4, (0.0,) * 4)
-    one, other = (explore(LoopClosure(loop), seed=k) for k in (0, seed))
+    one, other = (curves_of(loop, seed=k) for k in (0, seed))
     for left, right in zip(one.forms, other.forms, strict=True):
         assert right.branch.nearest(left.branch.sample(9))[0].max() < 1e-9
     for left, right in zip(one.points, other.points, strict=True):
@@ -220,16 +219,16 @@ def test_a_point_is_in_doubt_for_what_it_misses_in_many_digits():
     # a kite but for e: where it is flat it misses closure by 2/3 e
     for error, is_doubtful in ((1e-14, True), (0.0, False)):
         loop = four_bar(1.0, 2.0, 2.0 + error, 1.0)
-        atlas = explore(LoopClosure(loop), settings=FEW)
+        atlas = curves_of(loop, settings=FEW)
         assert atlas.completeness.is_in_doubt is is_doubtful
 
 
 def test_an_unknown_that_rounding_may_move_is_in_doubt():
-    atlas = map_linkage(kite(1.0, 1e-7))
+    atlas = map_of(kite(1.0, 1e-7))
     statement = atlas.completeness.statement
     assert statement.startswith("in doubt: ")
     assert "rounding hides whether these unknowns stand still" in statement
-    plain = map_linkage(kite(1.0, 1e-2))
+    plain = map_of(kite(1.0, 1e-2))
     assert not plain.completeness.is_in_doubt
 
 

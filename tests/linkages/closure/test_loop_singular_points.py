@@ -13,7 +13,7 @@ from bifurc.singular.point import Kind
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
-from linkages.mapping import map_linkage
+from tests.maps import curves_of, map_of
 
 
 @pytest.mark.parametrize("longest", [0.1, 0.5])
@@ -124,9 +124,7 @@ def test_a_second_tangent_that_misses_one_equation_by_a_part_in_1e8_is_none(name
         "gamma": 1.5921695469201371,
         "delta": 0.5790264703154796,
     }
-    atlas = explore(
-        LoopClosure(entry(name).build(**values)), settings=SearchSettings(starts=20)
-    )
+    atlas = curves_of(entry(name).build(**values), settings=SearchSettings(starts=20))
     assert [(p.kind, len(p.point.half_branches), p.note) for p in atlas.points] == 2 * [
         (Kind.RANK_DROP, 2, "")
     ]
@@ -138,7 +136,7 @@ def test_a_near_miss_that_doubles_resolve_is_no_rank_drop(power):
     base = entry("bricard-line-symmetric-zero-offset").build()
     offset = 10.0**-power
     loop = Loop(base.lengths, base.twists, (offset, 0.0, 0.0, offset, 0.0, 0.0))
-    atlas = map_linkage(loop)
+    atlas = map_of(loop)
     assert not atlas.points
     assert len(atlas.forms) == 2
     ratios = sorted(event.value / offset for event in atlas.near_misses)
@@ -152,7 +150,7 @@ def test_small_near_misses_are_found_in_many_digits():
     ratios = []
     for offset in (1e-4, 1e-5, 1e-6):
         loop = Loop(base.lengths, base.twists, (offset, 0.0, 0.0, offset, 0.0, 0.0))
-        near_misses = map_linkage(loop).near_misses
+        near_misses = map_of(loop).near_misses
         assert all(event.error < 1e-9 * event.value for event in near_misses)
         ratios.append(np.sort([event.value / offset for event in near_misses]))
     # the ratios change in proportion to the offset; doubles miss the last by 2e-9

@@ -13,6 +13,7 @@ from linkages.closure.within_limits import brought_within_limits
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.readout.readout import Readout
+from tests.maps import map_of
 
 FEW = SearchSettings(starts=60, prove=False, certify=False, near_motions=False)
 # a 6R loop whose opposite axes are images in a half turn about the z axis (Bricard
@@ -63,24 +64,24 @@ def rccc(limits):
 @pytest.mark.parametrize("low", [-2.5, 1.0])
 def test_both_forms_of_a_loop_are_found_within_narrow_limits(low, seed):
     mechanism = line_symmetric_loop(R0=(low, low + 0.05))
-    atlas = linkages.map_linkage(mechanism, settings=FEW, seed=seed)
+    atlas = map_of(mechanism, settings=FEW, seed=seed)
     assert len(atlas.forms) == 2
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_both_forms_of_a_loop_with_slides_are_found_within_narrow_limits(seed):
     mechanism = rccc((-2.2365, -2.2165))
-    atlas = linkages.map_linkage(mechanism, settings=FEW, seed=seed)
+    atlas = map_of(mechanism, settings=FEW, seed=seed)
     assert len(atlas.forms) == 2
 
 
 def test_a_form_is_found_within_narrow_limits_of_three_joints():
     free = line_symmetric_loop()
-    branch = linkages.map_linkage(free, settings=FEW).forms[0].branch
+    branch = map_of(free, settings=FEW).forms[0].branch
     (place,) = Readout(free).values(branch(0.3 * branch.length)[None])
     limits = {f"R{k}": (place[k] - 0.02, place[k] + 0.03) for k in (0, 2, 4)}
     mechanism = line_symmetric_loop(**limits)
-    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    atlas = map_of(mechanism, settings=FEW)
     assert len(atlas.forms) == 1
 
 
@@ -140,6 +141,6 @@ def test_the_form_through_the_reference_is_listed_whatever_the_limits_are(width)
         sides = rng.uniform(0.001, 1.0, (6, 2)) * width
         limits = {f"R{k}": (-a, b) for k, (a, b) in enumerate(sides)}
         mechanism = line_symmetric_loop(**limits)
-        atlas = linkages.map_linkage(mechanism, settings=FEW)
+        atlas = map_of(mechanism, settings=FEW)
         distances = [form.branch.nearest(np.zeros(6))[0][0] for form in atlas.forms]
         assert min(distances) < 1e-9

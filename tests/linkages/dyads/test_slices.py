@@ -22,6 +22,7 @@ from tests.linkages.mechanisms.known_mechanisms import (
 )
 from tests.linkages.mechanisms.test_maps import slider_crank
 from tests.linkages.turns.test_translates import revolutes
+from tests.maps import map_of
 
 
 def six_bar_on_sphere():
@@ -94,13 +95,13 @@ def test_a_slice_holds_what_random_starts_find_with_the_driver_locked(name):
     for turn in (0, 7, 15):
         value = float(column[0]) + turn * slices.steps[0]
         locked = mechanism.with_locks({label: value})
-        atlas = linkages.map_linkage(locked, settings=FEW)
+        atlas = map_of(locked, settings=FEW)
         assert len(atlas.rigid) == np.count_nonzero(np.abs(column - value) < 1e-9)
 
 
 @pytest.mark.parametrize("name", BUILT)
 def test_a_mechanism_of_dyads_is_certified(name):
-    atlas = linkages.map_linkage(BUILT[name], settings=FEW)
+    atlas = map_of(BUILT[name], settings=FEW)
     assert atlas.completeness.level is Level.CERTIFIED
     assert "turns by more than 10 degrees" in atlas.completeness.statement
 
@@ -121,7 +122,7 @@ def test_a_rhombus_that_folds_leaves_motions_on_which_the_driver_stands_still():
 
 def test_one_start_is_enough_to_find_every_form():
     settings = SearchSettings(starts=1, certify=False)
-    atlas = linkages.map_linkage(BUILT["Dixon I"], settings=settings)
+    atlas = map_of(BUILT["Dixon I"], settings=settings)
     assert len(atlas.forms) == 8
 
 
@@ -132,7 +133,7 @@ def test_without_a_freedom_all_assemblies_are_built():
     assert slices.drivers == ()
     settings = SearchSettings(starts=1)
     locked = mechanism.with_locks({label: 0.1})
-    atlas = linkages.map_linkage(locked, settings=settings)
+    atlas = map_of(locked, settings=settings)
     assert len(atlas.rigid) == len(slices.starts)
     assert "no assembly is missing" in atlas.completeness.statement
 
@@ -208,7 +209,7 @@ def test_a_body_that_turns_freely_is_not_certified_away():
         Joint("B", "revolute", ("link", "arm"), (0, 0, 0.1), Z),
         Joint("C", "revolute", ("arm", "ground"), (1, 0, 0), Z),
     )
-    atlas = linkages.map_linkage(Mechanism(joints), settings=FEW)
+    atlas = map_of(Mechanism(joints), settings=FEW)
     assert len(atlas.forms) == 1
     assert atlas.completeness.level is Level.ESTIMATED
 

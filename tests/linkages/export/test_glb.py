@@ -11,8 +11,8 @@ from linkages.export.motion import Motion, link_poses, motion_of_form
 from linkages.linkage import load
 from linkages.links.rods import place_links
 from linkages.loop import Loop
-from linkages.mapping import map_linkage
 from linkages.values import GeometryError
+from tests.maps import map_of
 
 DSG = "special-double-subtractive-goldberg"
 FRAMES = 100
@@ -20,7 +20,7 @@ FRAMES = 100
 
 @pytest.fixture(scope="module")
 def atlas():
-    return map_linkage(load(DSG))
+    return map_of(DSG)
 
 
 @pytest.fixture(scope="module")
@@ -140,7 +140,7 @@ def merged(mesh):
 
 def test_lengths_beyond_the_floats_of_a_model_are_refused():
     loop = load("bennett").loop
-    motion = motion_of_form(map_linkage(loop).forms[0], 5)
+    motion = motion_of_form(map_of(loop).forms[0], 5)
     with pytest.raises(GeometryError, match="characteristic length"):
         make_glb(model_of_loop(loop.scaled(1e30), [motion]), "a test")
 

@@ -13,6 +13,7 @@ from linkages.file import LinkageFileError
 from linkages.readout.poses import Poses
 from studies.miura import SECTOR, miura
 from tests.linkages.mechanisms.test_maps import counts
+from tests.maps import map_of
 
 
 def read(tmp_path, content, name="pattern.fold"):
@@ -29,7 +30,7 @@ def test_a_vertex_folds_two_ways_from_flat(tmp_path):
     assert mechanism.name == "Miura-ori 2 x 2"
     assert [joint.name for joint in mechanism.joints] == ["1-4", "3-4", "4-5", "4-7"]
     assert mechanism.bodies == ("f0", "f1", "f2", "f3")
-    atlas = linkages.map_linkage(mechanism, settings=SearchSettings(starts=60))
+    atlas = map_of(mechanism, settings=SearchSettings(starts=60))
     assert counts(atlas) == (3, [Kind.BIFURCATION] * 3, [], 0)
 
 
@@ -210,7 +211,7 @@ def heights(signs, ratio=RATIO):
 @pytest.mark.parametrize("signs", [(1, 1, -1, -1), (1, -1, -1, 1)])
 def test_a_thick_vertex_moves_as_a_bennett_linkage(signs, tmp_path):
     content = vertex(**{"bifurc:edges_height": heights(signs)})
-    atlas = linkages.map_linkage(read(tmp_path, content))
+    atlas = map_of(read(tmp_path, content))
     assert len(atlas.forms) == 1
     assert atlas.forms[0].branch.closed
 
@@ -223,7 +224,7 @@ def test_a_thick_vertex_moves_as_a_bennett_linkage(signs, tmp_path):
     ],
 )
 def test_another_thick_vertex_does_not_move(values, tmp_path):
-    atlas = linkages.map_linkage(read(tmp_path, vertex(**values)))
+    atlas = map_of(read(tmp_path, vertex(**values)))
     assert not atlas.forms
 
 

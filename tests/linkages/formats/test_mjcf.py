@@ -5,7 +5,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from linkages import load, map_linkage
+from linkages import load
 from linkages.file import LinkageFileError
 from linkages.formats.mjcf_writing import mechanism_mjcf
 from linkages.mechanisms.couplings import Coupling
@@ -14,6 +14,7 @@ from linkages.mechanisms.mechanism import Mechanism
 from linkages.readout.readout import Readout
 from tests.linkages.formats.examples import EXAMPLES, assert_same_geometry
 from tests.linkages.mechanisms.test_couplings import five_bar
+from tests.maps import map_of
 
 CONFIGURATIONS = 50
 
@@ -84,7 +85,7 @@ def equality(data):
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_forms_close_in_mujoco_and_its_jacobian_has_the_mobility(name):
     mechanism = EXAMPLES[name]
-    atlas = map_linkage(mechanism)
+    atlas = map_of(mechanism)
     readout = Readout(mechanism)
     model, data = simulated(mechanism)
     assert atlas.forms
@@ -147,7 +148,7 @@ def test_couplings_are_written_and_read_again(name, tmp_path, caplog):
 
 def test_coupled_joints_have_their_values_in_mujoco():
     mechanism = GEARED["gears"]
-    atlas = map_linkage(mechanism)
+    atlas = map_of(mechanism)
     readout = Readout(mechanism)
     model, data = simulated(mechanism)
     assert atlas.forms

@@ -12,12 +12,12 @@ from linkages.catalogue import entry
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.identification.identify import identify
 from linkages.identification.locked_networks import locked_state, locked_states
-from linkages.mapping import map_linkage
 from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.four_joints import bennett_gap, bennett_twist
 from linkages.networks.mechanism import lock_network
 from linkages.values import GeometryError
 from tests.linkages.networks.known_networks import facts, in_radians, kinks_of, network
+from tests.maps import map_of
 
 LOOPS = facts()["reduced_loops"]
 LINKAGES = {
@@ -160,10 +160,10 @@ def test_another_number_of_kinks_is_refused():
 def test_loop_and_locked_network_have_the_forms_of_the_reference(name):
     case = LOOPS[name]
     mechanism = lock_network(network(), kinks_of(case))
-    atlas = map_linkage(mechanism, settings=FEW)
+    atlas = map_of(mechanism, settings=FEW)
     assert len(atlas.forms) == case["network_forms"]
     assert not atlas.bifurcations
-    alone = map_linkage(mechanism.without_centre(), settings=FEW)
+    alone = map_of(mechanism.without_centre(), settings=FEW)
     assert len(alone.forms) == case["single_loop_forms"]
     assert not alone.bifurcations
     lengths = [form.branch.length for form in alone.forms]
@@ -174,9 +174,9 @@ def test_loop_and_locked_network_have_the_forms_of_the_reference(name):
 
 def test_removing_the_centre_adds_two_forms_and_four_bifurcations():
     mechanism = lock_network(network(), in_radians(p2=0, p6=0))
-    atlas = map_linkage(mechanism, settings=FEW)
+    atlas = map_of(mechanism, settings=FEW)
     assert (len(atlas.forms), len(atlas.bifurcations)) == (2, 0)
-    alone = map_linkage(mechanism.without_centre(), settings=FEW)
+    alone = map_of(mechanism.without_centre(), settings=FEW)
     assert (len(alone.forms), len(alone.bifurcations)) == (4, 4)
     names = identify(
         mechanism.without_centre(),
@@ -200,7 +200,7 @@ def four_locks(degrees):
 @pytest.mark.parametrize("kink", [0, 180])
 def test_four_straight_or_folded_joints_move_under_the_condition(kink):
     mechanism = lock_network(network(**FITTING), four_locks([kink] * 4))
-    atlas = map_linkage(mechanism, settings=FEW)
+    atlas = map_of(mechanism, settings=FEW)
     assert [form.branch.closed for form in atlas.forms] == [True]
     loop = mechanism.without_centre()
     assert loop.n == 4

@@ -3,12 +3,12 @@
 import pytest
 
 from linkages.links.clearance import TOLERANCE, Bodies, approaches_of_bodies
-from linkages.mapping import map_linkage
 from linkages.readout.poses import Poses
 from linkages.structure.structure import Structure
 from tests.linkages.links.test_clearance import nearest_by_optimisation
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 from tests.linkages.mechanisms.spatial_mechanisms import rods
+from tests.maps import map_of
 
 MECHANISMS = {
     "CRCR": lambda: mechanism_of_case(cases()["Bennett geometry with joints CRCR"]),
@@ -20,7 +20,7 @@ MECHANISMS = {
 def test_no_place_of_a_form_has_bodies_nearer_than_is_said(name):
     mechanism = MECHANISMS[name]()
     structure = Structure(mechanism)
-    form = map_linkage(mechanism).forms[0]
+    form = map_of(mechanism).forms[0]
     bodies = Bodies(structure, form.branch)
     approaches = approaches_of_bodies(structure, form.branch)
     assert [one.links for one in approaches]
@@ -39,7 +39,7 @@ def test_no_place_of_a_form_has_bodies_nearer_than_is_said(name):
 def test_distances_are_those_of_the_nearest_points_of_two_bodies():
     mechanism = MECHANISMS["CRCR"]()
     structure = Structure(mechanism)
-    form = map_linkage(mechanism).forms[0]
+    form = map_of(mechanism).forms[0]
     bodies = Bodies(structure, form.branch)
     pair = bodies.pairs_apart()[0]
     points = form.branch.sample(3)

@@ -15,7 +15,7 @@ from linkages.links.clearance import (
 )
 from linkages.links.rods import place_links
 from linkages.loop import Loop
-from linkages.mapping import map_linkage
+from tests.maps import map_of
 
 
 def test_links_that_share_a_joint_are_left_out():
@@ -54,7 +54,7 @@ def nearest_by_optimisation(first, second, rods=3):
 
 @pytest.mark.parametrize("name", ["bennett", "special-double-subtractive-goldberg"])
 def test_no_place_of_a_form_has_links_nearer_than_is_said(name):
-    atlas = map_linkage(load(name))
+    atlas = map_of(name)
     loop = load(name).loop
     pairs = pairs_apart(loop.n)
     for form in atlas.forms[:2]:
@@ -74,7 +74,7 @@ def test_no_place_of_a_form_has_links_nearer_than_is_said(name):
 
 def test_the_unit_of_length_does_not_matter():
     loop = load("bennett").loop
-    form = map_linkage(loop).forms[0]
+    form = map_of(loop).forms[0]
     one = approaches_along(loop, form.branch)
     other = approaches_along(loop.scaled(1e6), form.branch)
     assert [a.links for a in one] == [a.links for a in other]
@@ -85,7 +85,7 @@ def test_links_that_keep_their_distance_take_no_search():
     """A parallelogram with legs beside each other: its coupler stays away from the
     base, by the length of the legs where they stand upright."""
     loop = Loop([2.0, 1.0, 2.0, 1.0], [0, 0, 0, 0], [0, 0.25, 0, -0.25])
-    for form in map_linkage(loop).forms:
+    for form in map_of(loop).forms:
         for approach in approaches_along(loop, form.branch):
             assert approach.distance >= 0
             assert approach.error <= 2 * TOLERANCE * loop.characteristic_length

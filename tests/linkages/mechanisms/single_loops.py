@@ -6,11 +6,11 @@ import numpy as np
 
 from bifurc.settings import SearchSettings
 from linkages.linkage import load_linkage
-from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.of_loop import mechanism_of_loop
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
+from tests.maps import map_of
 
 __all__ = ["FEW", "SINGLE_LOOPS", "catalogue_loop", "single_loop", "with_a_held_joint"]
 
@@ -43,7 +43,7 @@ def catalogue_loop(name):
     """A loop of the catalogue as a mechanism: its joints in another order than round
     the loop, every third one turned round, called by letters."""
     loop = load_linkage(name).loop
-    reference = map_linkage(loop, settings=FEW).forms[0].branch(ALONG)
+    reference = map_of(loop, settings=FEW).forms[0].branch(ALONG)
     joints = []
     for number, joint in enumerate(mechanism_of_loop(loop, reference).joints):
         step = -1 if number % 3 == 1 else 1

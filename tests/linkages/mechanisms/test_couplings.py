@@ -22,6 +22,7 @@ from linkages.structure.structure import Structure
 from linkages.values import GeometryError
 from tests.linkages.mechanisms.known_mechanisms import cases
 from tests.linkages.mechanisms.test_maps import counts, lengths, slider_crank
+from tests.maps import map_of
 
 FEW = SearchSettings(starts=60)
 Z = (0.0, 0.0, 1.0)
@@ -52,7 +53,7 @@ def with_coupling(mechanism, name, *coupled):
 def test_cranks_geared_one_to_minus_one_keep_a_five_bar_symmetric():
     mechanism = five_bar(E=Coupling("A", -1.0))
     assert mechanism.gruebler == 1
-    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    atlas = map_of(mechanism, settings=FEW)
     assert len(atlas.forms) == 2
     assert all(form.certificate.status.value == "certified" for form in atlas.forms)
     readout = Readout(mechanism)
@@ -72,7 +73,7 @@ def test_cranks_geared_one_to_minus_one_keep_a_five_bar_symmetric():
 def test_a_form_closes_when_all_gears_are_back():
     mechanism = five_bar(E=Coupling("A", 0.5, 0.3))
     assert MechanismClosure(mechanism).periods[0] == pytest.approx(4 * np.pi)
-    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    atlas = map_of(mechanism, settings=FEW)
     assert len(atlas.forms) == 2
     for number, form in enumerate(atlas.forms):
         assert form.branch.closed
@@ -102,7 +103,7 @@ def test_a_slide_coupled_to_its_turn_is_a_screw():
     for joint in (screw, nut):
         mechanism = Mechanism((*joints[:number], joint, *joints[number + 1 :]))
         assert mechanism.gruebler == -1
-        atlases.append(linkages.map_linkage(mechanism, settings=FEW))
+        atlases.append(map_of(mechanism, settings=FEW))
     assert counts(atlases[0]) == counts(atlases[1])
     assert np.allclose(lengths(atlases[0]), lengths(atlases[1]), rtol=1e-9)
 

@@ -6,7 +6,6 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-import linkages
 from bifurc.atlas import Atlas
 from bifurc.branch import Outcome
 from bifurc.completeness import Level
@@ -19,6 +18,7 @@ from linkages.readout.readout import Readout
 from studies.known_mechanisms import WAYS
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 from tests.linkages.mechanisms.spatial_mechanisms import platform
+from tests.maps import map_of
 
 FEW = SearchSettings(starts=60)
 Z = (0, 0, 1)
@@ -61,7 +61,7 @@ def lengths(atlas: Atlas):
 
 # Norton, Design of Machinery (2012): the change point of an in-line slider-crank
 def test_an_in_line_slider_crank_with_equal_links_has_a_change_point():
-    atlas = linkages.map_linkage(slider_crank(), settings=FEW)
+    atlas = map_of(slider_crank(), settings=FEW)
     assert counts(atlas) == (2, [Kind.BIFURCATION] * 2, [], 0)
     readout = Readout(slider_crank())
     for point in atlas.bifurcations:
@@ -72,7 +72,7 @@ def test_an_in_line_slider_crank_with_equal_links_has_a_change_point():
     ("rod", "height", "forms"), [(1.0, 0.05, 1), (1.1, 0.0, 2), (0.9, 0.0, 2)]
 )
 def test_beside_the_change_point_nothing_meets(rod, height, forms):
-    atlas = linkages.map_linkage(slider_crank(rod, height), settings=FEW)
+    atlas = map_of(slider_crank(rod, height), settings=FEW)
     assert counts(atlas) == (forms, [], [], 0)
     assert all(form.branch.closed for form in atlas.forms)
     assert all(form.certificate.status.value == "certified" for form in atlas.forms)
@@ -94,7 +94,7 @@ KNOWN = {
 @pytest.mark.parametrize("name", KNOWN)
 def test_the_map_of_a_known_mechanism(name):
     mechanism = mechanism_of_case(cases()[name])
-    atlas = linkages.map_linkage(mechanism, settings=replace(FEW, starts=120))
+    atlas = map_of(mechanism, settings=replace(FEW, starts=120))
     assert counts(atlas) == KNOWN[name]
 
 
@@ -110,7 +110,7 @@ MOBILE = [
 def test_more_freedoms_are_counted(name):
     case = cases()[name]
     settings = SearchSettings(starts=10, charts=0)
-    atlas = linkages.map_linkage(mechanism_of_case(case), settings=settings)
+    atlas = map_of(mechanism_of_case(case), settings=settings)
     assert {surface.dimension for surface in atlas.surfaces} == {case["mobility"]}
     assert not atlas.forms
 
@@ -127,7 +127,7 @@ MEETING_A_SURFACE = {
 def test_forms_meet_a_surface_where_links_fold(name):
     mechanism = mechanism_of_case(cases()[name])
     settings = SearchSettings(starts=60, charts=0, certify=False)
-    atlas = linkages.map_linkage(mechanism, settings=settings)
+    atlas = map_of(mechanism, settings=settings)
     kinds = [point.kind for point in atlas.points]
     forms, bifurcations, changes = MEETING_A_SURFACE[name]
     assert len(atlas.forms) == forms
@@ -139,7 +139,7 @@ def test_forms_meet_a_surface_where_links_fold(name):
 def test_the_inversor_draws_a_straight_line():
     mechanism = mechanism_of_case(cases()["Peaucellier-Lipkin inversor"])
     settings = SearchSettings(starts=60, charts=0, certify=False)
-    atlas = linkages.map_linkage(mechanism, settings=settings)
+    atlas = map_of(mechanism, settings=settings)
     readout = Readout(mechanism)
     end = np.append(mechanism.joint("D").point, 1.0)
     spreads = []
@@ -155,7 +155,7 @@ def test_a_form_that_reaches_the_limit_of_a_slide_ends_there():
     mechanism = mechanism_of_case(
         cases()["spatial RPRP, equal distances and opposite slopes"]
     )
-    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    atlas = map_of(mechanism, settings=FEW)
     (form,) = atlas.forms
     assert form.branch.outcome is Outcome.LEFT_REGION
     ends = Readout(mechanism).values(form.branch(np.array([0.0, form.branch.length])))
@@ -164,12 +164,12 @@ def test_a_form_that_reaches_the_limit_of_a_slide_ends_there():
 
 
 def test_a_platform_has_assemblies_with_its_legs_locked_and_forms_with_one_free():
-    locked = linkages.map_linkage(platform(), settings=FEW)
+    locked = map_of(platform(), settings=FEW)
     assert not locked.forms
     assert len(locked.rigid) % 2 == 0
     assert len(locked.rigid)
     one_free = platform((None, *(0.0,) * 5))
-    atlas = linkages.map_linkage(one_free, settings=FEW)
+    atlas = map_of(one_free, settings=FEW)
     assert {form.rank for form in atlas.forms} == {9}
     assert one_free.gruebler == 7  # of them 6 idle
 
@@ -196,7 +196,7 @@ def test_bifurcations_next_to_each_other_are_all_located(longer, seed):
     """A folded chain turns by itself: four forms, which the two on which the plate moves
     meet where that chain folds. The other one folds next to it, as the chains are nearly
     alike, closer than the singular value is sampled."""
-    atlas = linkages.map_linkage(sarrus(0.7, 0.7 + longer), seed=seed)
+    atlas = map_of(sarrus(0.7, 0.7 + longer), seed=seed)
     assert len(atlas.forms) == 6
     assert len(atlas.bifurcations) == 8
     assert all(len(point.passes) == 2 for point in atlas.bifurcations)
@@ -208,10 +208,10 @@ def test_what_a_platform_has_does_not_depend_on_the_seed(seed):
     """The first 20 random starts meet 4 to 6 of the six assemblies, 5 or 6 of the
     forms."""
     settings = SearchSettings(starts=20, certify=False)
-    locked = linkages.map_linkage(platform(), settings=settings, seed=seed)
+    locked = map_of(platform(), settings=settings, seed=seed)
     assert len(locked.rigid) == 6
     one_free = platform((None, *(0.0,) * 5))
-    atlas = linkages.map_linkage(one_free, settings=settings, seed=seed)
+    atlas = map_of(one_free, settings=settings, seed=seed)
     assert len(atlas.forms) == 6
 
 
@@ -219,7 +219,7 @@ def test_the_smallest_reconfigurable_linkage_with_slides():
     """The Bennett form, another one, and two lines of pure sliding that meet both."""
     mechanism = Mechanism(tuple(rccc()))
     settings = SearchSettings(starts=60, certify=False)
-    atlas = linkages.map_linkage(mechanism, settings=settings)
+    atlas = map_of(mechanism, settings=settings)
     assert len(atlas.forms) == 4
     closed = [form for form in atlas.forms if form.branch.closed]
     assert len(closed) == 2
@@ -256,8 +256,8 @@ SAME = {
 @pytest.mark.parametrize("way", WAYS)
 def test_the_atlas_is_the_same_however_the_mechanism_is_given(name, way):
     settings = SearchSettings(starts=60, certify=False)
-    expected = linkages.map_linkage(SAME[name], settings=settings)
-    atlas = linkages.map_linkage(WAYS[way](SAME[name]), settings=settings, seed=1)
+    expected = map_of(SAME[name], settings=settings)
+    atlas = map_of(WAYS[way](SAME[name]), settings=settings, seed=1)
     assert counts(atlas) == counts(expected)
     # a rotation that is embedded is measured in the frame, and angles of a joint of
     # several bodies from the first of these
@@ -267,7 +267,7 @@ def test_the_atlas_is_the_same_however_the_mechanism_is_given(name, way):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_the_seed_does_not_matter(seed):
-    atlas = linkages.map_linkage(SAME["CRCR"], settings=FEW, seed=seed)
+    atlas = map_of(SAME["CRCR"], settings=FEW, seed=seed)
     assert counts(atlas) == (2, [Kind.BIFURCATION] * 2, [], 0)
     assert np.allclose(lengths(atlas), [12.861517, 20.497342], atol=1e-5)
 
@@ -281,7 +281,7 @@ def test_a_body_on_a_line_through_two_joints_turns_about_it(kind):
         Joint("b", kind, ("s", "frame"), (0, 0, 1), **of_kind),
     )
     mechanism = Mechanism(joints)
-    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    atlas = map_of(mechanism, settings=FEW)
     assert counts(atlas) == (1, [], [], 0)
     sample = atlas.forms[0].branch.sample(3)
     assert set(Readout(mechanism).variables(sample[1])) >= {"a", "b"}
@@ -294,14 +294,14 @@ def test_a_leg_between_two_fixed_points_is_rigid_with_its_slide_at_a_limit(limit
         Joint("b", "prismatic", ("x", "y"), direction=Z, limits=limits),
         Joint("c", "spherical", ("y", "frame"), (0, 0, 1)),
     )
-    atlas = linkages.map_linkage(Mechanism(joints), settings=FEW)
+    atlas = map_of(Mechanism(joints), settings=FEW)
     assert counts(atlas) == (0, [], [], 1)
 
 
 def test_a_form_that_ends_at_limits_makes_no_turns():
     first = replace(slider_crank(2.0).joints[0], limits=((-3.0, 3.2),))
     mechanism = Mechanism((first, *slider_crank(2.0).joints[1:]))
-    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    atlas = map_of(mechanism, settings=FEW)
     readout = Readout(mechanism)
     for index, form in enumerate(atlas.forms):
         assert not form.branch.closed
@@ -315,7 +315,7 @@ def test_a_slide_that_passes_its_limit_for_a_moment_ends_the_form(beyond):
     joints = slider_crank(2.0).joints
     begin = joints[2].point[0]
     last = replace(joints[3], limits=((0.5 - begin, 3.0 - beyond - begin),))
-    atlas = linkages.map_linkage(Mechanism((*joints[:3], last)), settings=FEW)
+    atlas = map_of(Mechanism((*joints[:3], last)), settings=FEW)
     for form in atlas.forms:
         assert form.branch.closed == (beyond < 0)
 
@@ -326,7 +326,7 @@ def test_a_slide_that_passes_its_limit_for_a_moment_ends_the_form(beyond):
 def test_pure_slides_of_four_cylindrical_joints_are_a_surface(seed):
     mechanism = mechanism_of_case(cases()["Bennett geometry with joints CCCC"])
     settings = SearchSettings(starts=60, charts=0)
-    atlas = linkages.map_linkage(mechanism, settings=settings, seed=seed)
+    atlas = map_of(mechanism, settings=settings, seed=seed)
     assert counts(atlas) == (0, [], [2], 0)
     notes = [surface.note for surface in atlas.surfaces]
     assert sorted(notes) == ["", "F' has a lower rank all over it"]
@@ -368,7 +368,7 @@ def chains_of_sarrus(links):
 )
 def test_sarrus_linkages_of_two_three_and_four_chains(links, forms):
     mechanism = chains_of_sarrus(links)
-    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    atlas = map_of(mechanism, settings=FEW)
     assert counts(atlas) == (forms, [], [], 0)
     assert all(form.branch.closed for form in atlas.forms)
     plate = mechanism.bodies.index("plate")
@@ -436,7 +436,7 @@ def test_a_planar_platform_has_the_assemblies_of_its_sextic(seed):
         [[np.cos(pose[2]), -np.sin(pose[2])], [np.sin(pose[2]), np.cos(pose[2])]]
     )
     legs = np.linalg.norm(top @ turn.T + pose[:2] - base, axis=1)
-    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    atlas = map_of(mechanism, settings=FEW)
     assert not atlas.forms
     assert len(atlas.rigid) == poses_of_platform(base, top, legs) >= 2
 
@@ -448,6 +448,6 @@ def test_a_planar_platform_has_the_assemblies_of_its_sextic(seed):
 def test_every_form_of_the_cube_of_bars_is_met(seed):
     mechanism = mechanism_of_case(cases()["Wunderlich linkage, faces PPPPPP"])
     settings = SearchSettings(certify=False)
-    atlas = linkages.map_linkage(mechanism, settings=settings, seed=seed)
+    atlas = map_of(mechanism, settings=settings, seed=seed)
     assert len(atlas.forms) == 20
     assert {surface.dimension for surface in atlas.surfaces} == {2}

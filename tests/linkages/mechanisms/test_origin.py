@@ -5,7 +5,6 @@ from decimal import Decimal
 
 import pytest
 
-import linkages
 from bifurc.completeness import Level
 from bifurc.files.dataset import load_atlas, save_atlas
 from linkages.app.texts.summary import make_summary
@@ -17,6 +16,7 @@ from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.origin import WrittenNumber, counted_from_near
 from linkages.mechanisms.subject import mechanism_of
 from tests.linkages.mechanisms.test_maps import slider_crank
+from tests.maps import map_of
 
 UPWARDS = (0.0, 0.0, 1.0)
 SLIDER_CRANK = """
@@ -76,7 +76,7 @@ def test_the_decimals_of_a_file_are_counted_from_the_mechanism(offset, tmp_path)
 
 @pytest.mark.parametrize("offset", ["30000.0", "100000.0"])
 def test_bifurcations_far_from_the_origin_are_found(offset, tmp_path):
-    atlas = linkages.map_linkage(read_file(slider_crank_file(tmp_path, offset)))
+    atlas = map_of(read_file(slider_crank_file(tmp_path, offset)))
     assert len(atlas.forms) == 2
     assert len(atlas.bifurcations) == 2
     assert atlas.completeness.level == Level.CERTIFIED
@@ -86,7 +86,7 @@ def test_bifurcations_far_from_the_origin_are_found(offset, tmp_path):
 
 @pytest.mark.parametrize("offset", [3e4, 1e5])
 def test_near_misses_that_rounding_of_coordinates_explains_are_in_doubt(offset):
-    atlas = linkages.map_linkage(far_slider_crank(offset))
+    atlas = map_of(far_slider_crank(offset))
     assert len(atlas.near_misses) == 4
     assert atlas.completeness.level == Level.ESTIMATED
     assert "4 near misses may be at bifurcations" in atlas.completeness.statement
@@ -96,7 +96,7 @@ def test_near_misses_that_rounding_of_coordinates_explains_are_in_doubt(offset):
 def test_near_misses_that_rounding_does_not_explain_are_certain():
     joints = list(far_slider_crank(0.0).joints)
     joints[1] = replace(joints[1], point=(0.6 + 1e-9, 0.8, 0))
-    atlas = linkages.map_linkage(Mechanism(tuple(joints), "near"))
+    atlas = map_of(Mechanism(tuple(joints), "near"))
     assert len(atlas.near_misses) == 4
     assert atlas.completeness.level == Level.CERTIFIED
 
@@ -108,7 +108,7 @@ def test_a_far_loop_of_revolute_joints_says_how_well_it_is_known():
         Joint(f"J{k}", "revolute", (bodies[k], bodies[k + 1]), (x + 1e5, y, z), UPWARDS)
         for k, (x, y, z) in enumerate(points)
     ]
-    atlas = linkages.map_linkage(Mechanism(tuple(joints), "far four-bar"))
+    atlas = map_of(Mechanism(tuple(joints), "far four-bar"))
     assert len(atlas.forms) == 2
     assert "known to 7.3e-12 only" in make_summary(atlas)
 
@@ -142,7 +142,7 @@ def test_rounded_axes_of_a_single_loop_leave_bifurcations_in_doubt(tmp_path):
     loop = read_file(path)
     assert loop.rounding == pytest.approx(1.8e-12, rel=0.02)
     assert loop.scaled(1e3).rounding == 1e3 * loop.rounding
-    atlas = linkages.map_linkage(loop)
+    atlas = map_of(loop)
     assert len(atlas.near_misses) == 4
     assert atlas.completeness.level == Level.ESTIMATED
     assert "4 near misses may be at bifurcations" in atlas.completeness.statement
@@ -170,7 +170,7 @@ def test_the_origin_is_kept_in_files_and_datasets(tmp_path):
     copy.write_text(mechanism_toml(mechanism))
     assert read_file(copy).origin == mechanism.origin
     assert read_file(copy) == mechanism
-    path = save_atlas(linkages.map_linkage(mechanism), tmp_path / "atlas.nc")
+    path = save_atlas(map_of(mechanism), tmp_path / "atlas.nc")
     assert mechanism_of(load_atlas(path)).origin == mechanism.origin
 
 
@@ -196,7 +196,7 @@ def test_the_rounding_is_kept_in_files(tmp_path):
     copy.write_text(mechanism_toml(mechanism))
     again = read_file(copy)
     assert again.rounding == mechanism.rounding == pytest.approx(1.8e-12, rel=0.02)
-    atlas = linkages.map_linkage(again)
+    atlas = map_of(again)
     assert "4 near misses may be at bifurcations" in atlas.completeness.statement
 
 
@@ -259,7 +259,7 @@ def test_a_spherical_loop_far_from_the_origin_moves_as_one_that_is_near(tmp_path
     path.write_text(text)
     mechanism = read_file(path)
     assert mechanism.rounding == pytest.approx(1.1e-16, rel=0.01)
-    atlas = linkages.map_linkage(mechanism)
+    atlas = map_of(mechanism)
     assert len(atlas.forms) == 1
     assert "Coordinates of points are known to 1.1e-16" in make_summary(atlas)
 
@@ -319,7 +319,7 @@ def test_poses_far_from_the_origin_lose_no_digits(name, offset, slide, tmp_path)
 def test_bifurcations_of_a_far_model_are_found(name, tmp_path):
     path = tmp_path / name
     path.write_text(FILES[name]("30000"))
-    atlas = linkages.map_linkage(read_file(path))
+    atlas = map_of(read_file(path))
     assert len(atlas.bifurcations) == 2
     assert "Points are counted from 30000 0 0 of the file." in make_summary(atlas)
 
@@ -346,7 +346,7 @@ def test_decimals_of_a_far_model_that_were_doubles_are_known_no_better(tmp_path)
     path = tmp_path / "far.sdf"
     path.write_text(sdf_slider_crank("30000.599999999998"))
     assert read_file(path).rounding == pytest.approx(1.8e-12, rel=0.02)
-    text = make_summary(linkages.map_linkage(read_file(path)))
+    text = make_summary(map_of(read_file(path)))
     assert "Coordinates of points are known to 1.8e-12 only" in text
 
 

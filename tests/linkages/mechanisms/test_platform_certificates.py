@@ -7,7 +7,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-import linkages
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import Certificate, certify_branch
 from bifurc.curves.monitor import profile_branch
@@ -18,6 +17,7 @@ from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from tests.linkages.mechanisms.frameworks import flexible_octahedron
 from tests.linkages.mechanisms.spatial_mechanisms import platform, ring_with_rods
+from tests.maps import map_of
 
 FEW = SearchSettings(starts=30)
 LOCKED = 0.0
@@ -68,7 +68,7 @@ PLATFORMS = {
 
 @pytest.mark.parametrize("name", PLATFORMS)
 def test_forms_of_platforms_are_certified_all_along(name):
-    atlas = linkages.map_linkage(PLATFORMS[name], settings=FEW)
+    atlas = map_of(PLATFORMS[name], settings=FEW)
     assert len(atlas.forms)
     assert {form.certificate.status.value for form in atlas.forms} == {"certified"}
     assert "certified" not in atlas.completeness.statement
@@ -87,7 +87,7 @@ def test_the_bound_is_the_same_in_other_units_and_frames():
 @cache
 def crossed_forms() -> tuple[Branch, list[float]]:
     """A form through the crossing, and the arclengths at which it is there."""
-    atlas = linkages.map_linkage(crossing_platform(0.0), settings=FEW)
+    atlas = map_of(crossing_platform(0.0), settings=FEW)
     (point,) = (one for one in atlas.bifurcations if one.passes[0][0] == 0)
     form = atlas.forms[0]
     assert form.certificate.status.value == "certified up to the singular points"
@@ -114,7 +114,7 @@ def sheets_beside_the_crossing(gap: float) -> tuple[MechanismClosure, Branch, Br
     """The problem with a ``gap``, and two arcs whose middles are where they pass each
     other, in the same direction."""
     problem = MechanismClosure(crossing_platform(gap))
-    forms = linkages.map_linkage(crossing_platform(gap), settings=FEW).forms
+    forms = map_of(crossing_platform(gap), settings=FEW).forms
     assert all(form.certificate.holds for form in forms)
     branch, passes = crossed_forms()
     crossing = branch(passes[0])

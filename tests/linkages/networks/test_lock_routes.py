@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from bifurc.settings import SearchSettings
-from linkages.mapping import map_linkage
 from linkages.networks.lock_routes import (
     NetworkPlace,
     Switch,
@@ -14,6 +13,7 @@ from linkages.networks.lock_routes import (
 from linkages.networks.mechanism import lock_network
 from linkages.values import GeometryError
 from tests.linkages.networks.known_networks import facts, in_radians, network
+from tests.maps import map_of
 
 FEW = SearchSettings(starts=20, certify=False)
 CASE_4 = in_radians(p2=40, p6=-75)
@@ -21,7 +21,7 @@ CASE_3 = in_radians(p2=40, p4=90)
 
 
 def explore(mechanism):
-    return map_linkage(mechanism, settings=FEW)
+    return map_of(mechanism, settings=FEW)
 
 
 def route(start, goal):

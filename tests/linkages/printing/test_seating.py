@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from linkages.linkage import load
-from linkages.mapping import map_linkage
 from linkages.printing import seating
 from linkages.printing.assembly import Dimensions
 from linkages.printing.seating import choose_seats
+from tests.maps import map_of
 
 
 def seat(name, diameter, offsets=None, seed=0):
-    forms = map_linkage(load(name)).forms[:1]
+    forms = map_of(name).forms[:1]
     loop = load(name).loop
     scaled = loop.scaled(100 / loop.characteristic_length)
     dimensions = Dimensions(diameter, 0.3, 1.2)

@@ -10,7 +10,6 @@ import pytest
 
 from linkages.linkage import load
 from linkages.links.clearance import pairs_apart
-from linkages.mapping import map_linkage
 from linkages.printing.assembly import Assembly, Dimensions, Kind, Part, Seats
 from linkages.printing.seating import choose_seats
 
@@ -24,6 +23,7 @@ from linkages.printing.solids import (  # noqa: E402  # noqa: E402
     write_step,
     write_stl,
 )
+from tests.maps import map_of  # noqa: E402
 
 DSG = "special-double-subtractive-goldberg"
 FORMS = {"bennett": "Bennett form", DSG: "Form I (constructive 6R)"}
@@ -34,7 +34,7 @@ class Printed:
     """A linkage, the form along which its parts keep apart, and the parts."""
 
     def __init__(self, name):
-        atlas = map_linkage(load(name))
+        atlas = map_of(load(name))
         self.form = atlas.forms[atlas.form(FORMS[name])]
         loop = load(name).loop
         self.loop = loop.scaled(100 / loop.characteristic_length)
@@ -207,7 +207,7 @@ def test_the_assembly_is_read_again_with_its_names_in_the_first_configuration(
 
 def test_solids_of_parts_that_are_said_to_meet_do():
     linkage = load("bennett")
-    form = map_linkage(linkage).forms[0]
+    form = map_of(linkage).forms[0]
     loop = linkage.loop.scaled(100 / linkage.loop.characteristic_length)
     seats = Seats(np.zeros(4), np.ones(4))
     assembly = Assembly(loop, Dimensions(6.0, 0.3, 1.2), seats)

@@ -10,7 +10,7 @@ from bifurc.isometry import Isometry, recount_atlas
 from bifurc.torus import difference
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
-from linkages.mapping import map_linkage
+from tests.maps import map_of
 
 TURN = 2 * np.pi
 ROUNDING = 1e-14
@@ -25,7 +25,7 @@ def isometry():
 
 @pytest.fixture(scope="module")
 def crossing_forms():
-    return map_linkage(entry("special-double-subtractive-goldberg").build())
+    return map_of(entry("special-double-subtractive-goldberg").build())
 
 
 def arrays_of(value, path=""):

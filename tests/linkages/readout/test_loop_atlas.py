@@ -21,6 +21,7 @@ from tests.linkages.mechanisms.single_loops import (
     single_loop,
     with_a_held_joint,
 )
+from tests.maps import map_of
 
 DSG = "special-double-subtractive-goldberg"
 MIURA = "Miura-ori, one vertex (spherical 4R)"
@@ -32,7 +33,7 @@ CLOSED_AT_POINTS = 10 * 2 * np.pi * SEAM
 @cache
 def mapped(name):
     mechanism = single_loop(name)
-    return mechanism, linkages.map_linkage(mechanism, settings=FEW)
+    return mechanism, map_of(mechanism, settings=FEW)
 
 
 def along_forms(atlas):
@@ -111,7 +112,7 @@ def test_labels_name_the_joints_that_stand_still(name):
 def test_a_joint_that_is_held_is_no_unknown():
     mechanism = with_a_held_joint(single_loop("goldberg-5r"))
     assert Readout(mechanism).single_loop is not None
-    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    atlas = map_of(mechanism, settings=FEW)
     assert "held" not in atlas.names
     assert MechanismClosure(mechanism).gaps(along_forms(atlas)).max() < CLOSED
     values = Readout(mechanism).values(along_forms(atlas))

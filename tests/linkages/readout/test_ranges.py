@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import linkages
 from bifurc.settings import SearchSettings
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.readout.ranges import variable_ranges
 from linkages.readout.readout import Readout
+from tests.maps import map_of
 
 FEW = SearchSettings(starts=40)
 UPWARDS = (0.0, 0.0, 1.0)
@@ -48,7 +48,7 @@ def four_bar(limits=None):
 
 def ranges_of(mechanism):
     """The ranges in degrees of every form, by label."""
-    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    atlas = map_of(mechanism, settings=FEW)
     readout = Readout(mechanism)
     forms = []
     for form in atlas.forms:
@@ -93,7 +93,7 @@ def test_ranges_of_a_loop_do_not_hang_on_its_unit():
 @pytest.mark.parametrize("width", [3e-4, 1e-5, 1e-8])
 def test_both_forms_of_a_four_bar_are_found_between_narrow_limits(width):
     mechanism = four_bar((0.3, 0.3 + width))
-    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    atlas = map_of(mechanism, settings=FEW)
     assert len(atlas.forms) == 2
     assert len(atlas.points) + len(atlas.rigid) == 0
     assert atlas.completeness.level.value == "certified"

@@ -13,6 +13,7 @@ from linkages.loop import Loop
 from linkages.slices import completeness
 from linkages.slices.assemblies import isolated_assemblies
 from linkages.statements import LinkageClaim
+from tests.maps import curves_of
 
 # near this twist of a plane-symmetric Bricard linkage a second, small motion appears
 # beside the large one
@@ -49,7 +50,7 @@ def extents(atlas):
     ],
 )
 def test_numbers_alone_prove_many_linkages_complete(name):
-    atlas = explore(LoopClosure(entry(name).build()), settings=NUMBERS_ALONE)
+    atlas = curves_of(entry(name).build(), settings=NUMBERS_ALONE)
     assert atlas.completeness.level == "proved"
     assert atlas.completeness.statement.startswith("no motion is missing")
 
@@ -126,7 +127,7 @@ def test_a_four_bar_that_hardly_closes_is_found_and_proved(missing):
     # an oval of its square root
     loop = entry("four-bar").build(a=1.0, b=1.1, c=1.2, d=3.3 - missing)
     settings = SearchSettings(starts=1, prove=True)
-    atlas = explore(LoopClosure(loop), settings=settings)
+    atlas = curves_of(loop, settings=settings)
     assert len(atlas.forms) == 1
     assert 3 * np.sqrt(missing) < extents(atlas)[0] < 5 * np.sqrt(missing)
     assert atlas.completeness.level == "proved"
@@ -137,7 +138,7 @@ def test_a_loop_that_cannot_move_is_proved_not_to():
     lengths = rng.uniform(0.5, 1, 6)
     twists = rng.uniform(0.5, 2.5, 6)
     offsets = rng.uniform(-0.3, 0.3, 6)
-    atlas = explore(LoopClosure(Loop(lengths, twists, offsets, "general 6R")))
+    atlas = curves_of(Loop(lengths, twists, offsets, "general 6R"))
     assert not atlas.forms
     assert atlas.completeness.level == "proved"
     assert atlas.completeness.statement.startswith("there is no motion")
@@ -146,7 +147,7 @@ def test_a_loop_that_cannot_move_is_proved_not_to():
 def test_surfaces_and_long_loops_are_estimated():
     planar = Loop((1.0, 1.2, 0.9, 1.1, 0.8), (0.0,) * 5, (0.0,) * 5, "planar 5R")
     settings = SearchSettings(starts=20, charts=50, prove=True)
-    atlas = explore(LoopClosure(planar), settings=settings)
+    atlas = curves_of(planar, settings=settings)
     assert atlas.completeness.level == "estimated"
     assert "could not be made complete" in atlas.completeness.statement
 
@@ -195,7 +196,7 @@ ONE_START = SearchSettings(starts=1)
     ("loop", "count"), [(SIXTEEN, 16), (entry("yu-baker-two-ratios").build(), 6)]
 )
 def test_every_isolated_assembly_is_in_the_atlas_whatever_the_seed(loop, count, seed):
-    atlas = explore(LoopClosure(loop), settings=ONE_START, seed=seed)
+    atlas = curves_of(loop, settings=ONE_START, seed=seed)
     assert len(atlas.rigid) == count
     assert atlas.completeness.level == "proved"
     assert "no isolated assembly of full rank is missing" in (
@@ -206,7 +207,7 @@ def test_every_isolated_assembly_is_in_the_atlas_whatever_the_seed(loop, count, 
 @pytest.mark.parametrize("budget", np.geomspace(0.01, 0.3, 12))
 def test_a_budget_that_ends_at_any_moment_leaves_no_proof_of_half_a_list(budget):
     settings = SearchSettings(starts=1, budget=float(budget))
-    atlas = explore(LoopClosure(SIXTEEN), settings=settings)
+    atlas = curves_of(SIXTEEN, settings=settings)
     assert len(atlas.rigid) == 16 or atlas.completeness.level == "out of time"
 
 

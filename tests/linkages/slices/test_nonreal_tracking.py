@@ -5,14 +5,13 @@ import numpy as np
 import pytest
 
 from bifurc.curves.monitor import dead_points
-from bifurc.search.explore import explore
 from linkages import _core
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop
 from linkages.slices.elimination import slice_configurations
 from linkages.slices.nonreal_tracking import find_fold, follow_sheets
 from linkages.values import GeometryError
+from tests.maps import curves_of
 
 FAMILIES = [
     "spherical-four-bar",
@@ -136,7 +135,7 @@ def test_a_sheet_that_becomes_real_halts_there_and_only_a_known_fold_lets_it_pas
     # crank 1, coupler 2, rocker 2.5, frame 3: the rocker of the motion that is found
     # swings between dead points
     loop = entry("four-bar").build(a=1.0, b=2.0, c=2.5, d=3.0)
-    branch = explore(LoopClosure(loop)).forms[0].branch
+    branch = curves_of(loop).forms[0].branch
     joint = next(j for j, dead in enumerate(dead_points(branch)) if len(dead))
     turned = branch(dead_points(branch)[joint])
     fold = find_fold(loop, joint, turned[0])
@@ -168,7 +167,7 @@ def test_a_sheet_that_becomes_real_halts_there_and_only_a_known_fold_lets_it_pas
 def test_within_the_neighbourhood_of_a_fold_every_angle_has_one_pair():
     loop = entry("special-double-subtractive-goldberg").build()
     checked = 0
-    for form in explore(LoopClosure(loop)).forms:
+    for form in curves_of(loop).forms:
         for joint, dead in enumerate(dead_points(form.branch)):
             for turned in form.branch(dead):
                 fold = find_fold(loop, joint, turned)

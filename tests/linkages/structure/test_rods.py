@@ -6,7 +6,6 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-import linkages
 from bifurc import SearchSettings
 from linkages.app.answer.mechanism_document import describe_mechanism
 from linkages.closure.mechanism_closure import MechanismClosure
@@ -22,6 +21,7 @@ from tests.linkages.mechanisms.frameworks import (
     places_of,
 )
 from tests.linkages.mechanisms.spatial_mechanisms import ring_with_rods
+from tests.maps import map_of
 
 FEW = SearchSettings(starts=40)
 UP = np.array([0.0, 0.0, 2.0])
@@ -226,7 +226,7 @@ def test_a_plate_on_a_point_of_rods_moves_wherever_the_point_is_named(place):
         joints.append(Joint(f"F{k}", "spherical", (f"q{k}", "base"), foot))
     mechanism = Mechanism(tuple(joints))
     assert mobility_at_reference(mechanism) == 1
-    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    atlas = map_of(mechanism, settings=FEW)
     assert len(atlas.forms) == 2
     assert {form.certificate.status.value for form in atlas.forms} == {"certified"}
 
@@ -253,7 +253,7 @@ def test_bodies_of_a_figure_are_where_their_joints_are():
 def test_a_flexible_octahedron_of_bars_moves_whichever_bar_remains_a_body(bars):
     places = {joint.name: joint.place for joint in flexible_octahedron().joints}
     mechanism = framework(places, bars)
-    atlas = linkages.map_linkage(mechanism, settings=FEW)
+    atlas = map_of(mechanism, settings=FEW)
     (form,) = atlas.forms
     assert form.branch.closed
     assert (len(atlas.points), len(atlas.rigid), len(atlas.surfaces)) == (0, 2, 0)
@@ -265,7 +265,7 @@ def test_a_tetrahedron_has_itself_and_its_mirror_image():
     names, bars, _ = FIGURES["tetrahedron"]
     mechanism = framework(places_of(names, 1), bars)
     for other in (mechanism, mechanism.mirrored(), mechanism.scaled(1e3)):
-        atlas = linkages.map_linkage(other, settings=FEW)
+        atlas = map_of(other, settings=FEW)
         assert (len(atlas.forms), len(atlas.rigid), len(atlas.surfaces)) == (0, 2, 0)
 
 

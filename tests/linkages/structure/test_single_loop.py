@@ -10,6 +10,7 @@ from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.readout.readout import Readout
+from tests.maps import map_of
 
 NAMES = [
     "bennett",
@@ -37,9 +38,9 @@ def mechanism_of(loop, theta, is_turned=False):
 @pytest.mark.parametrize("name", NAMES)
 def test_the_atlas_is_that_of_the_loop(name):
     loop = linkages.load_linkage(name).loop
-    expected = linkages.map_linkage(loop, settings=SEARCH)
+    expected = map_of(loop, settings=SEARCH)
     reference = expected.forms[0].branch(0.7)
-    atlas = linkages.map_linkage(mechanism_of(loop, reference), settings=SEARCH)
+    atlas = map_of(mechanism_of(loop, reference), settings=SEARCH)
     lengths = [form.branch.length for form in atlas.forms]
     assert np.allclose(lengths, [form.branch.length for form in expected.forms])
     assert [p.kind for p in atlas.points] == [p.kind for p in expected.points]

@@ -5,13 +5,13 @@ import itertools
 import numpy as np
 import pytest
 
-import linkages
 from bifurc.settings import SearchSettings
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.turns.translates import translates_of
 from linkages.turns.turn_lattice import Count, TurnLattice
+from tests.maps import map_of
 
 Z = (0, 0, 1)
 # of four bars none of which turns fully: the first swings over less than a turn
@@ -51,7 +51,7 @@ def screws(limits):
 
 
 def mapped(mechanism):
-    atlas = linkages.map_linkage(mechanism, settings=SETTINGS)
+    atlas = map_of(mechanism, settings=SETTINGS)
     return atlas, translates_of(atlas)
 
 

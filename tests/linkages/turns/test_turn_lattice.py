@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import linkages
 from bifurc.settings import SearchSettings
 from linkages.app.answer.mechanism_document import describe_mechanism
 from linkages.app.answer.verdict import judge
@@ -15,6 +14,7 @@ from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.turns.translates import translates_of
+from tests.maps import map_of
 
 X, Z = (1, 0, 0), (0, 0, 1)
 TURN = 2 * np.pi
@@ -106,7 +106,7 @@ def test_a_turn_with_a_rack_on_it_is_not_free():
 def test_parallel_screws_have_a_form_for_each_assembly_mode(seed):
     settings = SearchSettings(starts=60, certify=False)
     mechanism = screws(FOUR_BAR, (1.0, 1.0, 1.0, 1.0))
-    atlas = linkages.map_linkage(mechanism, settings=settings, seed=seed)
+    atlas = map_of(mechanism, settings=settings, seed=seed)
     assert len(atlas.forms) == 2
     translates = translates_of(atlas)
     # two joints of four turn to and fro, each at one of these places
@@ -118,7 +118,7 @@ def test_parallel_screws_have_a_form_for_each_assembly_mode(seed):
 def test_assemblies_of_screws_are_those_of_the_triangle(seed):
     settings = SearchSettings(starts=120, certify=False)
     mechanism = screws(TRIANGLE, (1.0, 1.0, 1.0))
-    atlas = linkages.map_linkage(mechanism, settings=settings, seed=seed)
+    atlas = map_of(mechanism, settings=settings, seed=seed)
     assert len(atlas.rigid) == 2
     problem = MechanismClosure(mechanism)
     most = int(problem.bounds[0, 1] / TURN)
@@ -136,7 +136,7 @@ def test_assemblies_of_screws_are_those_of_the_triangle(seed):
 def test_assemblies_of_random_starts_are_said_to_be_the_fewest():
     settings = SearchSettings(starts=40, certify=False)
     mechanism = screws(TRIANGLE, (1.0, 1.0, 1.0))
-    atlas = linkages.map_linkage(mechanism, settings=settings)
+    atlas = map_of(mechanism, settings=settings)
     assert "closes in at least" in judge(atlas).sentence
 
 
@@ -154,7 +154,7 @@ def test_what_closes_only_whole_turns_beside_its_reference_is_found():
     mechanism = screws(TRIANGLE, (1.0, 0.5, np.sqrt(2.0)))
     limits = [(-3.0, 3.0), (0.8, 6.1), (-6.1, 6.1)]
     settings = SearchSettings(starts=4, certify=False)
-    atlas = linkages.map_linkage(with_limits(mechanism, limits), settings=settings)
+    atlas = map_of(with_limits(mechanism, limits), settings=settings)
     assert len(atlas.rigid) >= 1
     problem = MechanismClosure(with_limits(mechanism, limits))
     assert np.all(problem.are_inside(atlas.rigid))
@@ -166,7 +166,7 @@ def test_starts_are_drawn_where_advances_cancel_within_the_limits(low):
     mechanism = screws(FOUR_BAR, (1.0, 1.0, np.sqrt(2.0), np.sqrt(2.0)))
     limits = [(low, low + 0.25)] + [(-30.0, 30.0)] * 3
     settings = SearchSettings(starts=200, certify=False)
-    atlas = linkages.map_linkage(with_limits(mechanism, limits), settings=settings)
+    atlas = map_of(with_limits(mechanism, limits), settings=settings)
     (assembly,) = atlas.rigid
     assert TURN * low - 1e-9 <= assembly[0] <= TURN * (low + 0.25) + 1e-9
 
@@ -187,7 +187,7 @@ def test_forms_that_bifurcations_join_are_counted_once():
     kite = ((0, 0, 0), (0.6, 0.8, 0), (0.6, 1.8, 0), (3, 0, 0))
     wide = np.deg2rad(800.0)
     settings = SearchSettings(starts=60, certify=False)
-    atlas = linkages.map_linkage(four_bar(kite, {1: (-wide, wide)}), settings=settings)
+    atlas = map_of(four_bar(kite, {1: (-wide, wide)}), settings=settings)
     assert len(atlas.forms) == 6
     # two go on to the limits, a turn apart, and four with the rod on the frame close
     assert translates_of(atlas).forms == 6
@@ -214,7 +214,7 @@ def test_shaky_assemblies_are_counted_with_their_turns():
     ]
     joints[0] = replace(joints[0], limits=((-wide, wide),))
     settings = SearchSettings(starts=40, certify=False)
-    atlas = linkages.map_linkage(Mechanism(tuple(joints)), settings=settings)
+    atlas = map_of(Mechanism(tuple(joints)), settings=settings)
     assert translates_of(atlas).assemblies == 3
     assert "with them 3" in judge(atlas).sentence
 
@@ -225,7 +225,7 @@ def test_nothing_is_said_of_turns_where_no_other_fits(limit):
     narrow = np.deg2rad(limit)
     mechanism = four_bar(crank_rocker, {3: (-narrow, narrow)})
     settings = SearchSettings(starts=60, certify=False)
-    atlas = linkages.map_linkage(mechanism, settings=settings)
+    atlas = map_of(mechanism, settings=settings)
     assert len(MechanismClosure(mechanism).lattice) == 1
     assert atlas.forms
     assert translates_of(atlas) is None

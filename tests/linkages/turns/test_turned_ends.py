@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-import linkages
 from bifurc.settings import SearchSettings
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.turns.turn_classes import passes_but_for_turns
@@ -13,6 +12,7 @@ from tests.linkages.turns.test_translates import (
     screw_and_slide,
     screws,
 )
+from tests.maps import map_of
 
 SETTINGS = SearchSettings(starts=100, certify=False, near_motions=False)
 LIMITS_OF_SCREWS = [
@@ -29,7 +29,7 @@ CUT_OFF = [
 
 @pytest.mark.parametrize("mechanism", CUT_OFF)
 def test_all_that_is_within_limits_is_listed_but_for_whole_turns(mechanism):
-    atlas = linkages.map_linkage(mechanism, settings=SETTINGS)
+    atlas = map_of(mechanism, settings=SETTINGS)
     problem = MechanismClosure(mechanism)
     rng = np.random.default_rng(1)
     reach = np.where(np.isfinite(problem.bounds[:, 1]), problem.bounds[:, 1], np.pi)
@@ -53,7 +53,7 @@ def test_the_inmost_translate_is_the_farthest_from_all_limits(high, place):
 
 def test_a_place_beside_the_end_of_a_form_is_on_it_whichever_end_is_next():
     mechanism = revolutes((-6.2, 0.4))
-    atlas = linkages.map_linkage(mechanism, settings=SETTINGS)
+    atlas = map_of(mechanism, settings=SETTINGS)
     problem = MechanismClosure(mechanism)
     for form in atlas.forms:
         length = form.branch.length

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-import linkages
 from bifurc.completeness import Level
 from bifurc.curves.continuation import trace_branch
 from bifurc.settings import SearchSettings
@@ -13,6 +12,7 @@ from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.turns import whole_turns
 from linkages.turns.translates import translates_of
+from tests.maps import map_of
 
 Z = (0, 0, 1)
 
@@ -38,7 +38,7 @@ def nut_on_a_rocker(turns):
 @pytest.mark.parametrize("seed", range(3))
 def test_a_form_is_listed_once_with_all_whole_turns(seed):
     settings = SearchSettings(starts=4, certify=False)
-    atlas = linkages.map_linkage(nut_on_a_rocker(2.5), settings=settings, seed=seed)
+    atlas = map_of(nut_on_a_rocker(2.5), settings=settings, seed=seed)
     (form,) = atlas.forms
     assert form.branch.closed
     screw = form.branch.sample(100)[:, atlas.names.index("H")]
@@ -107,6 +107,6 @@ def test_a_rigid_mechanism_has_its_assemblies_at_every_turn(ratio, seed):
     expected = assemblies_of_rack(ratio, *problem.bounds[column])
     assert len(expected) >= 5
     settings = SearchSettings(starts=20, near_motions=False)
-    atlas = linkages.map_linkage(mechanism, settings=settings, seed=seed)
+    atlas = map_of(mechanism, settings=settings, seed=seed)
     angles = np.sort([assembly[column] for assembly in atlas.rigid])
     assert angles == pytest.approx(expected, abs=1e-3)

@@ -14,7 +14,6 @@ from bifurc.atlas import Atlas
 from linkages.app.answer.verdict import judge
 from linkages.linkage import load
 from linkages.loop import Loop
-from linkages.mapping import map_linkage
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
@@ -30,6 +29,7 @@ from tests.linkages.mechanisms.spatial_mechanisms import (
     rsrs,
 )
 from tests.linkages.mechanisms.test_couplings import five_bar
+from tests.maps import map_of
 
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
 FLAGS = (
@@ -144,7 +144,7 @@ MECHANISMS = {
 def mapped(name):
     """The atlas of a linkage of the catalogue, or of one of those above."""
     made = (LOOPS | MECHANISMS).get(name)
-    return map_linkage(made() if made else load(name))
+    return map_of(made() if made else load(name))
 
 
 @pytest.fixture(scope="session")

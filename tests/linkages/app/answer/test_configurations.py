@@ -7,9 +7,9 @@ from bifurc.settings import SearchSettings
 from linkages.app.answer.configurations import numbers_at
 from linkages.app.subject import subject_at
 from linkages.app.texts.summary import make_summary
-from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from tests.maps import map_of
 
 FEW_STARTS = SearchSettings(starts=20, certify=False)
 ON_BASE = np.array([0.0, 20.0, 120.0, 140.0, 240.0, 260.0])
@@ -35,7 +35,7 @@ def platform(size):
 @pytest.mark.parametrize("size", [0.1, 1.0, 10.0])
 def test_coordinates_of_a_plate_are_in_the_unit_of_the_file(size):
     mechanism = platform(size)
-    atlas = map_linkage(mechanism, settings=FEW_STARTS)
+    atlas = map_of(mechanism, settings=FEW_STARTS)
     plate = mechanism.bodies.index("plate")
     readout = subject_at(atlas).readout
     (pair,) = readout.structure.free_pairs.values()
@@ -50,7 +50,7 @@ def test_coordinates_of_a_plate_are_in_the_unit_of_the_file(size):
 
 
 def test_the_heading_names_what_has_no_unit():
-    atlas = map_linkage(platform(1.0), settings=FEW_STARTS)
+    atlas = map_of(platform(1.0), settings=FEW_STARTS)
     words = "plate.z (lengths, entries ax to bz of rotation matrices)"
     assert subject_at(atlas).heading(atlas).endswith(words)
     assert words in make_summary(atlas)

@@ -7,10 +7,10 @@ from bifurc.settings import SearchSettings
 from linkages.app.answer.verdict import judge
 from linkages.app.exit_codes import ExitCode
 from linkages.app.reports.beyond_limits import LimitedRange
-from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.readout.ranges import VariableRange
+from tests.maps import map_of
 
 FEW = SearchSettings(starts=40)
 UPWARDS = (0.0, 0.0, 1.0)
@@ -30,7 +30,7 @@ def slider_crank(crank=None, slide=None, height=2.5):
 
 
 def verdict_of(mechanism):
-    return judge(map_linkage(mechanism, settings=FEW))
+    return judge(map_of(mechanism, settings=FEW))
 
 
 def test_limits_of_a_turn_that_keep_everything_out_are_said():
