@@ -9,6 +9,7 @@ import pytest
 from bifurc import FunctionProblem, explore
 from bifurc.errors import ProblemError
 from bifurc.numerics.singular_values import factors_of, singular_values
+from tests.samples import one_in
 
 # name: equations, bounds, number of forms
 CURVES = {
@@ -43,7 +44,7 @@ CURVES = {
 }
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("seed", one_in(3, range(3)))
 @pytest.mark.parametrize("name", CURVES)
 def test_a_curve_is_followed_up_to_a_rim(name: str, seed: int) -> None:
     function, bounds, forms = CURVES[name]
@@ -62,7 +63,7 @@ def test_the_statement_says_that_the_derivative_is_not_finite(is_recorded) -> No
     assert "F' is not finite beside 1 of them" in statement
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2])
+@pytest.mark.parametrize("seed", one_in(3, range(3)))
 @pytest.mark.parametrize("width", [1.0, 1e-3])
 def test_a_sigmoid_is_smooth_where_exp_overflows(width: float, seed: int) -> None:
     bound = 1000 * width
