@@ -23,16 +23,18 @@ from typing import TypedDict
 import click
 import numpy as np
 
-from bifurc.branch import Branch
-from bifurc.curves.continuation import DEFAULT_SETTINGS, trace_branch
-from bifurc.problem import MarchSettings
-from bifurc.search.explore import explore
-from bifurc.settings import SearchSettings, TraceSettings
+from bifurc import (
+    Branch,
+    MarchSettings,
+    SearchSettings,
+    TraceSettings,
+    explore,
+    trace_branch,
+)
+from bifurc.curves.continuation import DEFAULT_SETTINGS
+from linkages import LoopClosure, load_linkage, map_linkage
 from linkages.app.options import FILE
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
-from linkages.linkage import load_linkage
-from linkages.mapping import map_linkage
 from linkages.slices.elimination import slice_configurations
 from studies.methods.cases import bratu
 

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from linkages import Mechanism
 from linkages.construction.link import Link
-from linkages.mechanisms.mechanism import Mechanism
 from linkages.networks.assembly import assemble
 from linkages.networks.network import Network
 from linkages.networks.placement import PlacedNetwork

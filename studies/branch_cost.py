@@ -23,15 +23,12 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bifurc.branch import Branch
-from bifurc.curves.continuation import DEFAULT_SETTINGS, trace_branch
+from bifurc import Branch, MarchSettings, trace_branch
+from bifurc.curves.continuation import DEFAULT_SETTINGS
 from bifurc.curves.monitor import profile_branch
-from bifurc.problem import MarchSettings
+from linkages import GeometryError, Loop, LoopClosure
 from linkages.app.options import FOLDER
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import Loop
-from linkages.values import GeometryError
 from studies.bench import median_time
 
 MOST_JOINTS = 7  # of a loop that moves along curves

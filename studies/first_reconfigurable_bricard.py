@@ -15,9 +15,8 @@ import math
 
 import numpy as np
 
-from bifurc.atlas import Atlas
-from linkages.linkage import load
-from linkages.mapping import map_linkage
+from bifurc import Atlas
+from linkages import load, map_linkage
 from studies.redrawing import Claim, Redrawing, angles_along, largest
 
 BENNETT, KINK = "Bennett 4R form", math.radians(-70)

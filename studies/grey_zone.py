@@ -22,13 +22,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from bifurc.atlas import Atlas, NearMotion
+from bifurc import Atlas
+from bifurc.atlas import NearMotion
 from bifurc.decisions import closes_to_rounding, is_solution
 from bifurc.tables import table
+from linkages import Loop, map_linkage
 from linkages.app.options import FOLDER
 from linkages.catalogue import entry
-from linkages.loop import Loop
-from linkages.mapping import map_linkage
 
 # Powers of ten of the errors, in half decades.
 ERRORS = 10.0 ** -np.arange(3.0, 16.25, 0.5)

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from bifurc.branch import Branch
-from linkages.loop import Loop
+from bifurc import Branch
+from linkages import Loop
 
 Floats: TypeAlias = NDArray[np.float64]
 Quaternion: TypeAlias = list[mpmath.mpf]

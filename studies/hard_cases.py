@@ -10,12 +10,9 @@ from math import sqrt
 import numpy as np
 from scipy.optimize import brentq
 
-from bifurc.curves.continuation import trace_branch
-from bifurc.function_problem import FunctionProblem
-from bifurc.problem import Problem
+from bifurc import FunctionProblem, Problem, trace_branch
+from linkages import Loop, LoopClosure
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import Loop
 
 Test = Callable[[np.ndarray], bool]
 

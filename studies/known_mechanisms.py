@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 
+from linkages import Joint, JointKind, Mechanism
 from linkages.files.bars import read_bars
-from linkages.mechanisms.joint import Joint, JointKind
-from linkages.mechanisms.mechanism import FRAMES, Mechanism
+from linkages.mechanisms.mechanism import FRAMES
 
 DATA = Path(__file__).parents[1] / "data" / "mechanisms.json"
 SCALES = (1e-3, 1e3)

@@ -26,10 +26,9 @@ import click
 import numpy as np
 from matplotlib.figure import Figure
 
-from bifurc.curves.continuation import trace_branch
-from linkages.closure.mechanism_closure import MechanismClosure
+from bifurc import trace_branch
+from linkages import Mechanism, MechanismClosure
 from linkages.files.fold import read_fold
-from linkages.mechanisms.mechanism import Mechanism
 from studies.bennett_lattice import locked_lattice
 from studies.miura import miura
 

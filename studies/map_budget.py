@@ -24,12 +24,10 @@ from typing import Any, NamedTuple, TypeAlias
 import click
 import numpy as np
 
-from bifurc.curves.continuation import DEFAULT_SETTINGS, trace_branch
-from bifurc.problem import MarchSettings
+from bifurc import MarchSettings, trace_branch
+from bifurc.curves.continuation import DEFAULT_SETTINGS
+from linkages import Linkage, LoopClosure, load_linkage, map_linkage
 from linkages.app.options import FOLDER
-from linkages.closure.loop_closure import LoopClosure
-from linkages.linkage import Linkage, load_linkage
-from linkages.mapping import map_linkage
 
 LINKAGE = "special-double-subtractive-goldberg"
 MAPS = 20

@@ -28,26 +28,24 @@ from numpy.typing import NDArray
 
 import bifurc.decisions
 import linkages.decisions
+from bifurc import FunctionProblem, Problem, SearchSettings, Seeds, explore
 from bifurc.decisions import Decision, Margins, Role, record_margins
-from bifurc.function_problem import FunctionProblem
-from bifurc.problem import Problem
-from bifurc.search.explore import explore
-from bifurc.seeds import Seeds
-from bifurc.settings import SearchSettings
+from linkages import (
+    GeometryError,
+    Joint,
+    Loop,
+    LoopClosure,
+    Mechanism,
+    load,
+    map_linkage,
+)
 from linkages.app.answer.document import make_document
 from linkages.catalogue import catalogue
-from linkages.closure.loop_closure import LoopClosure
 from linkages.files.bars import read_bars
-from linkages.linkage import load
-from linkages.loop import Loop
-from linkages.mapping import map_linkage
-from linkages.mechanisms.joint import Joint
-from linkages.mechanisms.mechanism import Mechanism
 from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.entries import NETWORKS
 from linkages.networks.lock_routes import NetworkPlace, find_lock_route
 from linkages.networks.network import Network
-from linkages.values import GeometryError
 from studies.hard_cases import crossings
 from studies.near_misses import near_misses
 from studies.near_something_larger import FAMILIES

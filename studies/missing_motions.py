@@ -20,15 +20,10 @@ from itertools import islice
 import click
 import numpy as np
 
-from bifurc.atlas import Atlas
-from bifurc.completeness import Level
-from bifurc.search.explore import explore
-from bifurc.settings import SearchSettings
+from bifurc import Atlas, Level, SearchSettings, explore
 from bifurc.tables import table
+from linkages import GeometryError, Loop, LoopClosure
 from linkages.catalogue import catalogue, entry
-from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import Loop
-from linkages.values import GeometryError
 
 FIRST = SearchSettings(starts=1, prove=True)
 SECOND = SearchSettings(starts=1500)

@@ -21,11 +21,9 @@ from dataclasses import dataclass, replace
 import click
 import numpy as np
 
-from bifurc.branch import Branch
+from bifurc import Branch, TraceSettings, trace_branch
 from bifurc.curves.certificate import CertificateStatus, certify_branch
-from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
-from bifurc.settings import TraceSettings
 from bifurc.singular.locate import locate_singular_point
 from bifurc.tables import table
 from studies.near_misses import NearMiss, near_misses

@@ -28,11 +28,9 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from bifurc.branch import Branch
+from bifurc import Branch
+from linkages import GeometryError, Loop, LoopClosure
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import Loop
-from linkages.values import GeometryError
 from studies.half_turn import HalfTurn, never_at, samples
 
 Floats: TypeAlias = NDArray[np.float64]

@@ -23,16 +23,13 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from bifurc.atlas import Atlas
-from bifurc.settings import SearchSettings
+from bifurc import Atlas, SearchSettings
 from bifurc.tables import table
+from linkages import Linkage, Loop, load_linkage, map_linkage
 from linkages.app.options import NamedPath
 from linkages.catalogue import entry
 from linkages.families.bennett import bennett
 from linkages.families.four_bar import four_bar, kite, parallelogram
-from linkages.linkage import Linkage, load_linkage
-from linkages.loop import Loop
-from linkages.mapping import map_linkage
 
 HALF_DECADES = tuple(0.5 * k for k in range(2, 29))  # -log10 e, from 1 to 14
 BUDGET = 60.0  # s for one map

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linkages import Loop
 from linkages.catalogue import catalogue
-from linkages.loop import Loop
 from linkages.mobility import survey
 
 SAME = 1e-9  # difference below which two entries are of equal size

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from bifurc.noisy_problem import NoisyMethods, RoundingNoise
-from linkages.closure.loop_closure import LoopClosure
+from linkages import Loop, LoopClosure
 from linkages.kinematics import LinkTable, link_geometry
-from linkages.loop import Loop
 
 
 class NoisyLoop(Loop):

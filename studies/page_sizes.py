@@ -18,11 +18,10 @@ from typing import NamedTuple
 import click
 
 from bifurc.tables import table
+from linkages import load, map_linkage
 from linkages.app.answer.verdict import judge
 from linkages.app.options import FOLDER
 from linkages.catalogue import catalogue
-from linkages.linkage import load
-from linkages.mapping import map_linkage
 from linkages.viewing.document import make_view_document
 from linkages.viewing.page import LARGEST, make_page, viewer_script
 

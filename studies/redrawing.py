@@ -10,8 +10,7 @@ from pathlib import Path
 import click
 import numpy as np
 
-from bifurc.atlas import Atlas
-from bifurc.figures.plotting import plot_transition_map
+from bifurc import Atlas, plot_transition_map
 from bifurc.files.atomic import replace_files
 from linkages.app.files import write_data, write_figures
 from linkages.app.options import FOLDER

@@ -16,12 +16,12 @@ from pathlib import Path
 
 import click
 
-from bifurc.search.explore import explore
+from bifurc import explore
+from linkages import load_linkage, map_linkage
 from linkages.app.answer.document import Document, make_document
 from linkages.app.options import NamedPath
 from linkages.catalogue import catalogue
-from linkages.linkage import load_linkage
-from linkages.mapping import map_linkage, name_atlas
+from linkages.mapping import name_atlas
 from studies.document_differences import differences
 from studies.noisy_loop import noisy_closure
 

@@ -25,14 +25,11 @@ from typing import TextIO
 import click
 import numpy as np
 
-from bifurc.atlas import Atlas
-from bifurc.settings import SearchSettings
+from bifurc import Atlas, SearchSettings
 from bifurc.singular.dimension import local_dimensions
 from bifurc.tables import count_of, section
+from linkages import Mechanism, MechanismClosure, map_linkage
 from linkages.app.options import FOLDER
-from linkages.closure.mechanism_closure import MechanismClosure
-from linkages.mapping import map_linkage
-from linkages.mechanisms.mechanism import Mechanism
 from studies.known_mechanisms import WAYS, KnownMechanism, known_mechanisms
 
 CLOSE = 1e-6  # of lengths of forms, over 1 or their size

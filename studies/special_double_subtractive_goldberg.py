@@ -14,9 +14,8 @@ import math
 
 import numpy as np
 
-from bifurc.atlas import Atlas
-from linkages.linkage import load
-from linkages.mapping import map_linkage
+from bifurc import Atlas
+from linkages import load, map_linkage
 from studies.redrawing import Claim, Redrawing, angles_along, largest
 
 ALPHA, BETA, DELTA = math.radians(125), math.radians(60), math.radians(45)

@@ -13,12 +13,9 @@ from typing import Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from bifurc.branch import Branch
+from bifurc import Branch, Problem, TraceSettings, trace_branch
 from bifurc.curves.certificate import certify_branch
-from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
-from bifurc.problem import Problem
-from bifurc.settings import TraceSettings
 from studies.hard_cases import Ladder
 from studies.methods import natural, null_field, peers, point_by_point
 from studies.methods.counted import Counted

@@ -11,9 +11,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from bifurc.problem import Problem
-from bifurc.search.explore import explore
-from bifurc.seeds import Seeds
+from bifurc import Problem, Seeds, explore
 from studies.hard_cases import CENTER, Crossing
 from studies.methods import peers, point_by_point
 from studies.methods.counted import Counted

@@ -16,9 +16,7 @@ from collections.abc import Sequence
 
 import click
 
-from bifurc import SymbolicProblem
-from bifurc.curves.continuation import trace_branch
-from bifurc.settings import TraceSettings
+from bifurc import SymbolicProblem, TraceSettings, trace_branch
 from studies.methods import auto07p
 from studies.methods.cases import Case
 from studies.methods.roster import Method, orders_of_this_project

@@ -11,9 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from bifurc.atlas import Atlas
-from linkages.linkage import load
-from linkages.mapping import map_linkage
+from bifurc import Atlas
+from linkages import load, map_linkage
 from studies.redrawing import Claim, Redrawing, largest
 
 ORIGINAL, REVISED = "theta_i = theta_{i+3}", "theta_i = -theta_{i+3}"

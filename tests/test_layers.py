@@ -10,6 +10,9 @@ from pathlib import Path
 import networkx as nx
 import pytest
 
+import bifurc
+import linkages
+
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("bifurc", "linkages", "studies")
 FORBIDDEN = {"bifurc": {"linkages", "studies"}, "linkages": {"studies"}}
@@ -126,6 +129,19 @@ def test_no_module_leads_back_to_itself_by_any_kind_of_import():
 def test_the_front_doors_import_no_module_before_it_is_used():
     for package in ("bifurc", "linkages"):
         assert not set(imported_modules(MODULES[package])) & set(MODULES)
+
+
+STUDIES = [name for name in MODULES if name.startswith("studies.")]
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_a_study_takes_public_names_from_the_front_doors(name):
+    doors = {"bifurc": set(bifurc.__all__), "linkages": set(linkages.__all__)}
+    for node in ast.walk(source(MODULES[name])):
+        if isinstance(node, ast.ImportFrom):
+            package, _, inner = node.module.partition(".")
+            names = {alias.name for alias in node.names}
+            assert not inner or not names & doors.get(package, set()), node.lineno
 
 
 @pytest.mark.parametrize("package", FORBIDDEN)

@@ -16,7 +16,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from linkages.closure.loop_closure import LoopClosure
+from linkages import LoopClosure
 from studies.methods.cases import Case
 from studies.methods.curve import Curve, MethodFailure, through_points
 from studies.methods.linear import mixtures

@@ -12,16 +12,11 @@ import mpmath
 import numpy as np
 from scipy.sparse import csc_array, diags_array, hstack, issparse
 
-from bifurc.branch import Branch
-from bifurc.curves.continuation import trace_branch
+from bifurc import Branch, FunctionProblem, Problem, TraceSettings, trace_branch
 from bifurc.curves.monitor import dead_points
-from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.null_spaces import null_vector
-from bifurc.problem import Problem
-from bifurc.settings import TraceSettings
+from linkages import Loop, LoopClosure
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
-from linkages.loop import Loop
 
 Numbers: TypeAlias = list[mpmath.mpf]
 

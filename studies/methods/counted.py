@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from bifurc.function_problem import NumericalProblem
-from bifurc.problem import March, MarchSettings, Problem
+from bifurc import March, MarchSettings, NumericalProblem, Problem
 from studies.methods.curve import MethodFailure
 
 # evaluations of F and F' that a compiled Taylor piece costs: corrections, checks, and

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from bifurc.problem import Problem
+from bifurc import Problem
 from studies.methods.linear import mixtures
 
 SMALL = 0.02  # of the median: a singular value below this is read as zero

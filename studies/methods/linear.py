@@ -8,8 +8,8 @@ import numpy as np
 from scipy.linalg import lapack
 from scipy.sparse import csc_array, issparse
 
+from bifurc import Problem
 from bifurc.numerics.bordered import SparseBordered
-from bifurc.problem import Problem
 
 Jacobian: TypeAlias = np.ndarray | csc_array
 

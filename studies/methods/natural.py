@@ -7,7 +7,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import least_squares, root
 
-from bifurc.problem import Problem
+from bifurc import Problem
 from studies.methods.curve import Curve, MethodFailure
 from studies.methods.point_by_point import turn_per_step
 

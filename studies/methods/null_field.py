@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.integrate import DOP853, LSODA, RK45, OdeSolution, OdeSolver
 
-from bifurc.problem import Problem
+from bifurc import Problem
 from studies.methods.curve import Curve, MethodFailure
 from studies.methods.linear import evaluate, solve_bordered
 

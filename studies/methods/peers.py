@@ -6,7 +6,7 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from bifurc.problem import Problem
+from bifurc import Problem
 from studies.methods.curve import Curve, MethodFailure, through_points
 from studies.methods.linear import mixtures
 from studies.methods.point_by_point import turn_per_step

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.problem import Problem
+from bifurc import Problem
 from studies.methods.curve import (
     Curve,
     MethodFailure,

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from bifurc.branch import Branch
-from bifurc.curves.continuation import trace_branch
-from bifurc.problem import Problem
-from bifurc.settings import TraceSettings, lowest_order
+from bifurc import Branch, Problem, TraceSettings, trace_branch
+from bifurc.settings import lowest_order
 from studies.methods.curve import Curve, MethodFailure
 
 

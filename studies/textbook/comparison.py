@@ -7,8 +7,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from bifurc import Atlas, Kind, diagram_of
-from bifurc.completeness import Level
+from bifurc import Atlas, Kind, Level, diagram_of
 from studies.textbook.problems import PointKind, PrintedPoint, TextbookProblem
 
 UNITS = 1.0  # of the last digit: some sources round, and some cut off

@@ -18,9 +18,15 @@ from typing import Any
 
 import numpy as np
 
-from bifurc import Atlas, FunctionProblem, SearchSettings, explore
-from bifurc.seeds import Seeds
-from bifurc.systems.equation_file import EquationSystem, read_equations
+from bifurc import (
+    Atlas,
+    EquationSystem,
+    FunctionProblem,
+    SearchSettings,
+    Seeds,
+    explore,
+    read_equations,
+)
 from studies.textbook.discretised import DISCRETISED
 
 DATA = Path(__file__).parents[2] / "data"
