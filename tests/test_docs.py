@@ -9,6 +9,7 @@ comment "NAME.toml" are written to that file first.
 
 import re
 import shlex
+import tomllib
 from pathlib import Path
 
 import matplotlib
@@ -99,3 +100,21 @@ def test_the_picture_in_the_readme_is_the_graph_of_forms():
 def test_links_between_pages_lead_somewhere(page):
     for target in re.findall(r"\]\(([^)#:]+)\)", page.read_text(encoding="utf-8")):
         assert (page.parent / target).exists(), target
+
+
+def test_the_citation_is_of_this_version():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"\nversion: {project['version']}\n" in citation
+    assert f"\nlicense: {project['license']}\n" in citation
+    assert f'\ntitle: "{project["name"]}: ' in citation
+
+
+def test_what_contributing_names_is_there():
+    page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    names = re.findall(
+        r"`((?:bifurc|linkages|tests|studies|docs|viewer)/[\w./]+)`", page
+    )
+    assert len(names) > 20
+    missing = [name for name in names if not (ROOT / name).exists()]
+    assert missing == []
