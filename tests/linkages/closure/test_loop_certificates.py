@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
+from bifurc import certify_atlas
 from bifurc.completeness import Level
 from bifurc.curves.certificate import CertificateStatus, certify_branch
 from bifurc.curves.monitor import profile_branch
-from bifurc.search.certify_atlas import certify_atlas
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
-from linkages.families.bricard import bricard_line_symmetric_zero_offset
+from linkages.families.bricard import bricard_line_symmetric
 from linkages.loop import Loop
 from tests.maps import curves_of
 
@@ -90,9 +90,8 @@ def test_a_right_map_near_a_surface_is_certified(error):
 
 @pytest.mark.parametrize("error", [1e-2, 1e-3])
 def test_a_right_map_of_a_bricard_linkage_near_a_surface_is_certified(error):
-    loop = bricard_line_symmetric_zero_offset(
-        1.0, 1.0 + error, 1.3, 1.0, 1.0 + error, 1.9
-    )
+    lengths = twists = (1.0, 1.0 + error)
+    loop = bricard_line_symmetric(*lengths, 1.3, *twists, 1.9, 0, 0, 0)
     atlas = curves_of(loop, settings=SETTINGS)
     assert counts(atlas) == (4, 4)
     assert all(form.certificate.holds for form in atlas.forms)
