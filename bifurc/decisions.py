@@ -20,7 +20,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
 from enum import Enum
-from importlib import resources
+from pathlib import Path
 from typing import TypeAlias, overload
 
 import numpy as np
@@ -96,14 +96,13 @@ class Decision:
         return bool(value < self.threshold * unit)
 
 
-def read_decisions(package: str) -> dict[str, Decision]:
-    """The decisions of the table of a package, by their names in code.
+def read_decisions(table: Path) -> dict[str, Decision]:
+    """The decisions of a table in TOML, by their names in code.
 
     Where a threshold is the name of an earlier decision it is that one's. Raises
     `ValueError` for two decisions of one name, and `TypeError` for a decision that
     lacks a text.
     """
-    table = resources.files(package) / "decisions.toml"
     decisions: dict[str, Decision] = {}
     for name, entry in tomllib.loads(table.read_text(encoding="utf-8")).items():
         if isinstance(entry["threshold"], str):
@@ -111,7 +110,7 @@ def read_decisions(package: str) -> dict[str, Decision]:
         entry["role"] = Role(entry.get("role", Role.VERDICT))
         decisions[name] = Decision(**entry)
     if len({decision.name for decision in decisions.values()}) < len(decisions):
-        raise ValueError(f"two decisions of {package} have one name")
+        raise ValueError(f"{table}: two decisions have one name")
     return decisions
 
 
@@ -121,7 +120,7 @@ def unit_over_rounding(decision: Decision, by_rounding: float) -> float:
     return max(1.0, by_rounding / decision.threshold)
 
 
-TABLE = read_decisions("bifurc")
+TABLE = read_decisions(Path(__file__).with_name("decisions.toml"))
 
 
 def __getattr__(name: str) -> Decision:

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from bifurc.decisions import Decision, read_decisions
 
-TABLE = read_decisions("linkages")
+TABLE = read_decisions(Path(__file__).with_name("decisions.toml"))
 
 
 def __getattr__(name: str) -> Decision:

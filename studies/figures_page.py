@@ -62,7 +62,7 @@ make gallery                              # all of them, into out/gallery
 ```
 
 Each is written as PNG and SVG, with its caption. What a figure shows stands in a table
-(`linkages/source_figures/data/`), how it is drawn in one module a kind. A linkage is
+(`linkages/source_figures/data/`), how it is drawn in one function a kind. A linkage is
 taken from the catalogue, mapped, and set in a configuration; links that a construction
 removes are the common normals of the axes that they join, and a fourth joint of a
 Bennett linkage is the image of another one under the half turn about its line of

@@ -1,4 +1,4 @@
-"""A figure of a source, drawn by the module of its kind."""
+"""A figure of a source, drawn by the function of its kind."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ NEAREST = 3  # figures that are named where there is none of that name
 
 
 class Kind(StrEnum):
-    """How a figure is drawn: the module of the same name does it."""
+    """How a figure is drawn; `draw.DRAWINGS` has the function that does it."""
 
     # Joint axes and links in space, as a graph and as a drawing.
     ASSEMBLY = "assembly"
