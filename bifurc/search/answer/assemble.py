@@ -38,7 +38,7 @@ from bifurc.search.canonical_order import (
     order_surfaces,
     order_values,
 )
-from bifurc.search.certification import certificate_of
+from bifurc.search.branches.certification import certificate_of
 from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.near_motion_search import closure_gap
 from bifurc.singular.point import Kind, SingularPoint

@@ -16,7 +16,7 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.chebyshev import NODE_COUNT
-from bifurc.search.certification import certify_atlas
+from bifurc.search.branches.certification import certify_atlas
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from linkages.catalogue import entry

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bifurc.curves.continuation import trace_branch
-from bifurc.search.certification import certify_atlas
+from bifurc.search.branches.certification import certify_atlas
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from linkages.axes import loop_from_axes
