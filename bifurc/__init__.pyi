@@ -48,7 +48,7 @@ from .problem import SphereProjection as SphereProjection
 from .routes.route import Leg as Leg
 from .routes.route import Route as Route
 from .routes.route import find_route as find_route
-from .search.certification import certify_atlas as certify_atlas
+from .search.branches.certification import certify_atlas as certify_atlas
 from .search.explore import explore as explore
 from .seeds import Audit as Audit
 from .seeds import Seeds as Seeds

@@ -14,7 +14,7 @@ from bifurc.limits import Deadline
 from bifurc.numerics.corrector import limited
 from bifurc.numerics.singular_values import factors_of, singular_values
 from bifurc.problem import Problem
-from bifurc.search.canonical_course import canonical_course
+from bifurc.search.branches.canonical_course import canonical_course
 from bifurc.search.findings import Run
 from bifurc.search.seed_book import SeedFate
 from bifurc.seeding import random_seeds

@@ -20,8 +20,8 @@ from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.answer.meeting_points import ends_at
-from bifurc.search.branch_examination import BranchExaminer
-from bifurc.search.branch_parts import joined_through
+from bifurc.search.branches.branch_examination import BranchExaminer
+from bifurc.search.branches.branch_parts import joined_through
 from bifurc.search.components import (
     components_of_seeds,
     singular_curve_through,
@@ -318,7 +318,7 @@ class Search:
         """Trace the branches again that do not follow the germs of singular points."""
         if self.findings.germs and not self.run.is_over:
             # what it needs takes long to import
-            from bifurc.search.germ_mending import GermMender
+            from bifurc.search.branches.germ_mending import GermMender
 
             yield GermMender(self.run, self.examiner).mend()
 

@@ -22,8 +22,8 @@ from bifurc.decisions import (
 from bifurc.numerics.blur import blur_along
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
-from bifurc.search.branch_examination import BranchExaminer, ExaminedBranch
-from bifurc.search.certification import finer_settings, may_be_mended
+from bifurc.search.branches.branch_examination import BranchExaminer, ExaminedBranch
+from bifurc.search.branches.certification import finer_settings, may_be_mended
 from bifurc.search.findings import NO_DOUBT, Run
 from bifurc.search.near_motion_search import NearMotionSearch
 from bifurc.search.seed_book import Fate, SeedFate

@@ -32,13 +32,13 @@ from bifurc.search.answer.doubts import (
     doubts_of_near_misses,
 )
 from bifurc.search.answer.meeting_points import meeting_points
+from bifurc.search.branches.certification import certificate_of
 from bifurc.search.canonical_order import (
     order_branches,
     order_points,
     order_surfaces,
     order_values,
 )
-from bifurc.search.certification import certificate_of
 from bifurc.search.findings import Findings, TracedBranch
 from bifurc.search.near_motion_search import closure_gap
 from bifurc.singular.point import Kind, SingularPoint

@@ -8,7 +8,7 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.jumps import changes_of_course, kinks
 from bifurc.curves.misclosure import largest_misclosure
 from bifurc.function_problem import NumericalProblem
-from bifurc.search.canonical_course import canonical_course
+from bifurc.search.branches.canonical_course import canonical_course
 from bifurc.search.explore import explore
 from bifurc.settings import TraceSettings
 from linkages.catalogue import entry

@@ -10,7 +10,7 @@ import pytest
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import Certificate, certify_branch
 from bifurc.curves.monitor import profile_branch
-from bifurc.search.branch_parts import followed_by, part_of
+from bifurc.search.branches.branch_parts import followed_by, part_of
 from bifurc.settings import SearchSettings
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.joint import Joint

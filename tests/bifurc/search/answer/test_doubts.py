@@ -15,7 +15,7 @@ from bifurc.numerics.blur import blur_along
 from bifurc.search.answer.completeness import judge_completeness
 from bifurc.search.answer.doubts import doubts_of
 from bifurc.search.answer.meeting_points import meeting_points
-from bifurc.search.branch_parts import part_of
+from bifurc.search.branches.branch_parts import part_of
 from bifurc.search.explore import explore
 from bifurc.search.findings import Findings, TracedBranch
 from bifurc.seeds import Audit

@@ -7,7 +7,8 @@ import pytest
 from bifurc.completeness import Claim, Level
 from bifurc.curves.certificate import CertificateStatus
 from bifurc.function_problem import FunctionProblem
-from bifurc.search import branch_examination, tracing
+from bifurc.search import tracing
+from bifurc.search.branches import branch_examination
 from bifurc.search.explore import explore
 from bifurc.seeds import Audit, Seeds
 from bifurc.settings import SearchSettings

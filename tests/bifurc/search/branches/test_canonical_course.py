@@ -5,7 +5,7 @@ import numpy as np
 from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.function_problem import FunctionProblem
-from bifurc.search.canonical_course import canonical_course
+from bifurc.search.branches.canonical_course import canonical_course
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 

@@ -28,8 +28,8 @@ from bifurc.decisions import (
 )
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
-from bifurc.search.branch_examination import BranchExaminer
-from bifurc.search.branch_parts import (
+from bifurc.search.branches.branch_examination import BranchExaminer
+from bifurc.search.branches.branch_parts import (
     curve_through,
     followed_by,
     half_curve,

@@ -8,7 +8,7 @@ import pytest
 from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.function_problem import FunctionProblem
-from bifurc.search.branch_parts import followed_by, part_of, with_piece_between
+from bifurc.search.branches.branch_parts import followed_by, part_of, with_piece_between
 from bifurc.settings import TraceSettings
 
 CIRCLE = FunctionProblem(lambda u: [u @ u - 1], [(-2, 2)] * 2)

@@ -22,8 +22,8 @@ from bifurc.decisions import (
 )
 from bifurc.numerics.blur import blur_along
 from bifurc.numerics.singular_values import singular_values
-from bifurc.search.canonical_course import canonical_course
-from bifurc.search.certification import certificate_of
+from bifurc.search.branches.canonical_course import canonical_course
+from bifurc.search.branches.certification import certificate_of
 from bifurc.search.findings import PointSighting, Run, TracedBranch
 from bifurc.search.point_search import BRANCH_REACH, PointSearch
 from bifurc.search.starts import Start, half_branch_starts
