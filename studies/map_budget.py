@@ -41,11 +41,11 @@ STEPS = (
     ("search.components", "components_of_seeds", "components of seeds"),
     ("curves.continuation", "trace_branch", "tracing"),
     ("curves.misclosure", "largest_misclosure", "misclosure of forms"),
-    ("search.canonical_course", "canonical_course", "starts of forms"),
+    ("search.branches.canonical_course", "canonical_course", "starts of forms"),
     ("numerics.blur", "blur_along", "how well forms are known"),
     ("curves.monitor", "profile_branch", "singular values"),
     ("curves.minima", "singular_value_minima", "minima of singular values"),
-    ("search.certification", "certificate_of", "certificates"),
+    ("search.branches.certification", "certificate_of", "certificates"),
     ("singular.locate", "locate_singular_point", "locating singular points"),
     ("singular.sphere", "is_on_surface", "surfaces through singular points"),
     ("singular.classify", "classify_singular_point", "classifying singular points"),
@@ -54,7 +54,7 @@ STEPS = (
     ("search.findings", "match_seeds", "matching seeds to forms"),
     ("slices.completeness", "__call__", "audit by slices"),
     ("slices.assemblies", "isolated_assemblies", "isolated assemblies"),
-    ("search.assemble", "assemble_atlas", "the atlas"),
+    ("search.answer.assemble", "assemble_atlas", "the atlas"),
     ("mapping", "name_atlas", "names of forms"),
 )
 
