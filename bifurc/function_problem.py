@@ -18,10 +18,9 @@ from bifurc.decisions import (
     is_solved_from_afar,
     is_whole_circle,
 )
-from bifurc.equations.constants import rounding_of_constants
 from bifurc.equations.recording import Recording, record
 from bifurc.equations.system import LARGEST_DENSE, ScaledTape
-from bifurc.equations.tape import Operation
+from bifurc.equations.tape import Operation, rounding_of_constants
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.bordered import as_dense

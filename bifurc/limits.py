@@ -1,5 +1,5 @@
 """Where a search has to stop: a limit on its time, and Ctrl-C at points where it does
-no harm.
+no harm; and how many threads linear algebra may take.
 
 Python turns the signal of Ctrl-C into `KeyboardInterrupt` between any two instructions.
 On the way out of a compiled kernel that is a crash of the whole process, and between
@@ -11,9 +11,16 @@ from __future__ import annotations
 import signal
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from functools import cache
 from types import FrameType, TracebackType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from threadpoolctl import ThreadpoolController
+
 
 SignalHandler = Callable[[int, FrameType | None], object] | int | None
 
@@ -96,3 +103,29 @@ class Deadline:
     def passed(self) -> bool:
         """Whether the time is over."""
         return self.left == 0.0
+
+
+# Unknowns up to which no matrix is shared between threads. Those that locate a singular
+# point have several times as many columns: of 16 unknowns 112 at a nullity of 6.
+SMALL = 8
+
+
+@contextmanager
+def one_thread(n: int) -> Iterator[None]:
+    """Within it BLAS works on one thread, where ``n`` unknowns would take more.
+
+    The limit holds for the whole process; what was set before comes back.
+    """
+    if n <= SMALL:
+        yield
+        return
+    with _controller().limit(limits=1, user_api="blas"):
+        yield
+
+
+@cache
+def _controller() -> ThreadpoolController:
+    # of use to few searches only
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from linkages.networks.network import Network, build_network
-from linkages.networks.plans import FOUR_BENNETT
+from linkages.networks.plan import FOUR_BENNETT
 from linkages.source_figures.table import Agreement, Kind, SourceFigure, source_figures
 
 PAGE = Path(__file__).parents[1] / "docs" / "figures.md"

@@ -1,4 +1,4 @@
-// A branch as a piecewise polynomial of its arclength, evaluated as in bifurc/pieces.py.
+// A branch as a piecewise polynomial of its arclength, evaluated as in bifurc/branch.py.
 
 import { unpack } from "./arrays.js";
 

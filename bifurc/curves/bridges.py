@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from bifurc.branch import points_on_piece
 from bifurc.curves.misclosure import visible_misclosure
 from bifurc.curves.track import Bridge, BridgeRule, Place, Track
 from bifurc.decisions import is_solution
 from bifurc.numerics.collocation import bridge_by_collocation
 from bifurc.numerics.null_spaces import decompose
 from bifurc.numerics.singular_values import singular_values
-from bifurc.pieces import points_on_piece
 from bifurc.problem import Piece, Problem
 from bifurc.singular.locate import locate_singular_point
 

@@ -7,12 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc import _core
-from bifurc.branch import Outcome
+from bifurc.branch import Outcome, points_on_piece, points_on_pieces
 from bifurc.curves.track import End, Track
 from bifurc.decisions import is_back, is_nearly_back, is_other_way, is_solution
 from bifurc.numerics.blur import same_reach
 from bifurc.numerics.roots import bracketed_roots
-from bifurc.pieces import points_on_piece, points_on_pieces
 from bifurc.problem import Problem
 
 GRID = np.linspace(0.0, 1.0, 33)  # of a piece, where it is held against its region

@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.branch import Branch, Outcome
-from bifurc.pieces import point_and_slope
+from bifurc.branch import Branch, Outcome, point_and_slope
 from bifurc.problem import March, Piece
 
 

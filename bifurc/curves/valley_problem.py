@@ -32,12 +32,12 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from bifurc import _core
+from bifurc.branch import points_on_piece
 from bifurc.decisions import has_one_form, has_valley, is_beside_drop, nearly_closes
 from bifurc.function_problem import AT_ONCE, NumericalProblem
 from bifurc.numerics.collocation import march_by_collocation, reparametrised
 from bifurc.numerics.corrector import correct_across
 from bifurc.numerics.null_spaces import Decomposition, decompose
-from bifurc.pieces import points_on_piece
 from bifurc.problem import March, MarchSettings, NodeCorrector, Piece, Problem
 
 TINY = 1e-30  # keeps a difference of squared singular values from being zero

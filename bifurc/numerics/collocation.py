@@ -16,10 +16,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from bifurc.branch import points_on_piece
 from bifurc.numerics.blur import ROUNDING, known_to
 from bifurc.numerics.bordered import Bordered, bordered_at
 from bifurc.numerics.corrector import correct_across, last_step
-from bifurc.pieces import points_on_piece
 from bifurc.problem import (
     CurveNodes,
     March,

@@ -15,8 +15,7 @@ from bifurc.checks import check_callable, check_type
 from bifurc.diagrams.events import EventRequests, events_of
 from bifurc.diagrams.make_diagram import diagram_of, parameter_index
 from bifurc.errors import ProblemError
-from bifurc.limits import Deadline
-from bifurc.numerics.threads import one_thread
+from bifurc.limits import Deadline, one_thread
 from bifurc.problem import Problem
 from bifurc.search.answer.assemble import assemble_atlas
 from bifurc.search.own_units.restated import restated

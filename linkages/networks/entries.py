@@ -12,8 +12,7 @@ from linkages.construction.numbers import Number
 from linkages.entry import Condition, Parameter, UnknownParameterError
 from linkages.entry_table import read_records
 from linkages.networks.network import Network, build_network
-from linkages.networks.plan import Plan
-from linkages.networks.plans import FOUR_BENNETT, L_SHAPE, SERIAL
+from linkages.networks.plan import FOUR_BENNETT, L_SHAPE, SERIAL, Plan
 
 PLANS = (FOUR_BENNETT, L_SHAPE, SERIAL)
 LENGTHS = ("b", "c", "d")  # that follow from the other parameters

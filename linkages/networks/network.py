@@ -25,7 +25,7 @@ from linkages.construction.link import (
     closed_chain,
     half_angle_ratio,
 )
-from linkages.construction.numbers import Number
+from linkages.construction.numbers import Number, atan, tan
 from linkages.loop import Loop
 from linkages.networks.plan import Plan
 from linkages.values import GeometryError, quoted
@@ -182,3 +182,19 @@ def build_network(
     network = Network(plan, named, parameters)
     assert len(network.factors) == len(plan.cells)  # computed, and so checked
     return network
+
+
+def bennett_gap(alpha: Number, beta: Number, gamma: Number, delta: Number) -> Number:
+    """tan(alpha/2) tan(beta/2) - tan(gamma/2) tan(delta/2), twists in rad: 0 where the
+    outer loop moves.
+
+    Equivalent to (5.4.1) of Song (2013), that the pairs a, b and c, d in line have one
+    Bennett ratio; it makes pairs that are folded fit as well, of which nothing is said
+    there.
+    """
+    return tan(alpha / 2) * tan(beta / 2) - tan(gamma / 2) * tan(delta / 2)
+
+
+def bennett_twist(alpha: Number, gamma: Number, delta: Number) -> Number:
+    """The twist beta (rad) for which the outer loop moves."""
+    return 2 * atan(tan(gamma / 2) * tan(delta / 2) / tan(alpha / 2))

@@ -19,7 +19,7 @@ import numpy as np
 from linkages.catalogue import entry
 from linkages.loop import Loop
 from linkages.networks.network import Network, build_network, other_angle
-from linkages.networks.plans import FOUR_BENNETT
+from linkages.networks.plan import FOUR_BENNETT
 from linkages.source_figures.assembly import (
     Assembly,
     Axis,

@@ -33,8 +33,7 @@ from linkages.structure.cycles import (
     cycle_basis,
 )
 from linkages.structure.free_points import FreePoint, free_points
-from linkages.structure.groups import SPHERICAL, Groups, JointPoint
-from linkages.structure.idle_turns import find_idle_turn
+from linkages.structure.groups import SPHERICAL, Groups, JointPoint, find_idle_turn
 from linkages.structure.placement import Placement
 from linkages.structure.rods import Rod, RodNet, find_rods
 from linkages.values import GeometryError

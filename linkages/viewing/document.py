@@ -17,7 +17,7 @@ import numpy as np
 from bifurc.atlas import Atlas, Form, MeetingPoint, Surface
 from bifurc.checks import check_type
 from bifurc.decisions import closes_to_rounding
-from bifurc.figures.graph_layout import lay_out_graph
+from bifurc.figures.form_graph import lay_out_graph
 from bifurc.figures.planes import choose_plane
 from bifurc.figures.style import color_on_dark, form_style
 from bifurc.torus import difference

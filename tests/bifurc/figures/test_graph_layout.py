@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bifurc.figures.graph_layout import CLEARANCE, lay_out_graph
+from bifurc.figures.form_graph import CLEARANCE, lay_out_graph
 
 
 def test_lines_join_the_forms_that_meet_and_names_stand_apart(parallelogram):

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from bifurc.branch import points_on_piece
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.collocation import bridge_by_collocation, march_by_collocation
-from bifurc.pieces import points_on_piece
 from bifurc.problem import MarchSettings, MarchStatus
 
 

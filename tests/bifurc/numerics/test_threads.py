@@ -4,7 +4,7 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import bifurc
-from bifurc.numerics.threads import SMALL, one_thread
+from bifurc.limits import SMALL, one_thread
 
 
 def threads():

@@ -13,8 +13,8 @@ from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.identification.identify import identify
 from linkages.identification.locked_networks import locked_state, locked_states
 from linkages.networks.assembly import assemble, motion_at
-from linkages.networks.four_joints import bennett_gap, bennett_twist
 from linkages.networks.mechanism import lock_network
+from linkages.networks.network import bennett_gap, bennett_twist
 from linkages.values import GeometryError
 from tests.linkages.networks.known_networks import facts, in_radians, kinks_of, network
 from tests.maps import map_of
