@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
 from linkages.app.answer.verdict import judge
-from linkages.app.choice import require_table
+from linkages.app.choice import choose_held, require_table
 from linkages.app.exit_codes import CommandError, ExitCode
-from linkages.app.inputs import choose_held
 from linkages.app.options import HoldOptions, SearchOptions
-from linkages.app.status import StatusLine
+from linkages.app.output import StatusLine
 from linkages.app.subject import as_subject, subject_at
 from linkages.labels import NoLinkageError
 from linkages.linkage import Linkage

@@ -61,13 +61,12 @@ def clearance_command(
     """
     from linkages.app.answer.verdict import exit_by, judge
     from linkages.app.atlas_source import atlas_of
-    from linkages.app.output import say, say_json
+    from linkages.app.output import say, say_json, say_more
     from linkages.app.reports.clearance import (
         clearance_document,
         clearance_of,
         describe_clearance,
     )
-    from linkages.app.status import say_more
     from linkages.app.texts.form_names import choose_forms, require_forms
 
     if verbose:

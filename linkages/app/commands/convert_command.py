@@ -58,8 +58,7 @@ def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
 def _mechanism(source: str, hold: HoldOptions) -> Mechanism:
     """The mechanism of a file; raises `CommandError` for a single loop that is given as
     a table or as axes."""
-    from linkages.app.choice import require_kind
-    from linkages.app.inputs import choose_held
+    from linkages.app.choice import choose_held, require_kind
     from linkages.mechanisms.mechanism import Mechanism
 
     refusal = (

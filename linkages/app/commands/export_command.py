@@ -13,14 +13,15 @@ from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.options import (
     FILE,
     HoldOptions,
+    PrintOptions,
     SearchOptions,
     form_option,
     hold_options,
     param_option,
+    print_options,
     search_options,
     verbose_option,
 )
-from linkages.app.reports.print_options import PrintOptions, print_options
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
@@ -107,8 +108,7 @@ def export_command(
       bifurc export bennett --to bennett.mjcf
     """
     from linkages.app.answer.verdict import exit_by, judge
-    from linkages.app.output import require_ending, require_writable
-    from linkages.app.status import say_more
+    from linkages.app.output import require_ending, require_writable, say_more
     from linkages.app.texts.form_names import require_forms
 
     if verbose:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import click
 
 from linkages.app.exit_codes import ExitCode, exit_code_table
@@ -14,9 +12,6 @@ from linkages.app.options import (
     json_option,
     param_option,
 )
-
-if TYPE_CHECKING:
-    pass
 
 LARGEST_TOLERANCE = 1  # as large as the linkage itself
 
@@ -51,7 +46,7 @@ def identify_command(
       bifurc identify my_linkage.toml
       bifurc identify four-bennett-network --lock 2=40 --lock 6=-75 --without-centre
     """
-    from linkages.app.inputs import choose_held
+    from linkages.app.choice import choose_held
     from linkages.app.output import say, say_json
     from linkages.app.reports.identify import (
         describe_identification,

@@ -24,7 +24,7 @@ from linkages.app.options import (
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
-    from linkages.app.figure_axes import FigureAxes
+    from linkages.app.files import FigureAxes
 
 
 @click.command("map", epilog=exit_code_table())
@@ -92,10 +92,9 @@ def map_command(
     """
     from linkages.app.answer.verdict import judge
     from linkages.app.atlas_source import explore_linkage
-    from linkages.app.figure_axes import figure_axes
-    from linkages.app.inputs import choose_held
-    from linkages.app.output import require_folder, say
-    from linkages.app.status import say_more
+    from linkages.app.choice import choose_held
+    from linkages.app.files import figure_axes
+    from linkages.app.output import require_folder, say, say_more
 
     if as_json and digits:
         raise CommandError(

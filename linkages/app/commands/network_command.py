@@ -52,8 +52,7 @@ def network_command(
     """
     from linkages.app.choice import choose_linkage, require_kind
     from linkages.app.output import require_folder, say
-    from linkages.app.texts.lock_tables import make_page
-    from linkages.app.texts.network_text import describe_network
+    from linkages.app.texts.network_text import describe_network, make_page
     from linkages.networks.entries import NETWORKS
     from linkages.networks.mechanism import NetworkMechanism
 
@@ -82,7 +81,7 @@ def _lock_all(
 ) -> dict[str, list[LockedState]]:
     """What every pair of locks, at ``kinks`` (rad) if there are some, and every triple
     make of a network."""
-    from linkages.app.status import StatusLine
+    from linkages.app.output import StatusLine
     from linkages.identification.locked_networks import locked_states
 
     status = StatusLine()
@@ -102,7 +101,7 @@ def _write(out: Path, page: str, tables: dict[str, list[LockedState]]) -> list[P
     """The paths of the files just written to ``out``, all or none."""
     from bifurc.files.atomic import replace_files
     from linkages.app.output import writing_to
-    from linkages.app.texts.lock_tables import as_csv
+    from linkages.app.texts.network_text import as_csv
 
     def write(stage: Path) -> None:
         (stage / "locks.md").write_text(page + "\n", encoding="utf-8")

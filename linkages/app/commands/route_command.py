@@ -69,8 +69,7 @@ def route_command(
     """
     from linkages.app.answer.verdict import judge
     from linkages.app.atlas_source import atlas_of
-    from linkages.app.output import say
-    from linkages.app.status import say_more
+    from linkages.app.output import say, say_more
     from linkages.app.texts.route_text import describe_route
 
     if verbose:
@@ -110,7 +109,7 @@ def _route_over_locks(
     from linkages.app.atlas_source import explore_linkage, require_uninterrupted
     from linkages.app.choice import choose_linkage, require_kind
     from linkages.app.output import say
-    from linkages.app.texts.lock_route_text import describe_lock_route, read_place
+    from linkages.app.texts.route_text import describe_lock_route, read_place
     from linkages.networks.entries import NETWORKS
     from linkages.networks.lock_routes import find_lock_route
     from linkages.networks.mechanism import NetworkMechanism, lock_network

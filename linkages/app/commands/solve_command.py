@@ -71,8 +71,7 @@ def solve_command(
     from bifurc.systems.equation_file import read_equations
     from bifurc.systems.summary import make_summary
     from bifurc.systems.verdict import verdict_of
-    from linkages.app.output import require_folder, say, say_json
-    from linkages.app.status import say_more
+    from linkages.app.output import require_folder, say, say_json, say_more
 
     if verbose:
         say_more()
@@ -106,7 +105,7 @@ def solve_command(
 
 def explore_system(system: EquationSystem, search: SearchOptions) -> Atlas:
     """The atlas of a system; progress is shown on standard error."""
-    from linkages.app.status import StatusLine
+    from linkages.app.output import StatusLine
 
     settings = search.settings()
     status = StatusLine()

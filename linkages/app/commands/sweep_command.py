@@ -146,7 +146,7 @@ def sweep_command(
 def _report(out: Path, counts: dict[str, int]) -> None:
     """Say how many members have which status; a failure has its own exit code."""
     from linkages.app.output import say
-    from linkages.app.sweep.fields import Status
+    from linkages.app.sweep.member import Status
 
     shown = ", ".join(f"{count} {name.lower()}" for name, count in counts.items())
     say(f"{out}: {shown}")

@@ -74,11 +74,10 @@ def tolerance_command(
       bifurc tolerance four-bennett-network --lock 2=40 --lock 6=-75
     """
     from linkages.app.atlas_source import explore_linkage
-    from linkages.app.inputs import choose_held
+    from linkages.app.choice import choose_held
     from linkages.app.output import require_folder, say
-    from linkages.app.reports.tolerance import climb, measure
+    from linkages.app.reports.tolerance import climb, describe_tolerance, measure
     from linkages.app.subject import as_subject
-    from linkages.app.texts.tolerance_text import describe_tolerance
 
     if out is not None:
         require_folder(out)

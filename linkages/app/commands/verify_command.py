@@ -10,8 +10,7 @@ from linkages.app.exit_codes import ExitCode, exit_code_table
 from linkages.app.options import SEED, json_option
 
 if TYPE_CHECKING:
-    from linkages.app.reports.verify import Verification
-    from linkages.app.reports.verify_network import NetworkVerification
+    from linkages.app.reports.verify import NetworkVerification, Verification
 
 MOST_MEMBERS = 1_000_000
 MOST_POINTS = 1_000_000
@@ -84,6 +83,7 @@ def _verify(
     name: str, members: int, points: int, seed: int
 ) -> tuple[Verification | NetworkVerification, str]:
     """What was checked of a linkage or a network, and as text."""
+    from linkages.app.reports.verify import verify, verify_network
     from linkages.app.texts.verify_text import (
         describe_network_verification,
         describe_verification,
@@ -91,11 +91,7 @@ def _verify(
     from linkages.networks.entries import NETWORKS
 
     if name in NETWORKS:
-        from linkages.app.reports.verify_network import verify_network
-
         of_network = verify_network(name, members, seed)
         return of_network, describe_network_verification(of_network)
-    from linkages.app.reports.verify import verify
-
     of_linkage = verify(name, members, points, seed)
     return of_linkage, describe_verification(of_linkage)

@@ -54,8 +54,12 @@ def view_command(
     """
     from linkages.app.answer.verdict import exit_by, judge
     from linkages.app.atlas_source import atlas_of
-    from linkages.app.output import require_ending, require_writable, writing_to
-    from linkages.app.status import say_more
+    from linkages.app.output import (
+        require_ending,
+        require_writable,
+        say_more,
+        writing_to,
+    )
     from linkages.viewing.document import make_view_document
     from linkages.viewing.page import write_page
 

@@ -7,12 +7,12 @@ from typing import Any
 
 from bifurc.atlas import Atlas, Form
 from bifurc.tables import table
-from linkages.app.answer.configurations import (
+from linkages.app.subject import (
     arclength_unit,
     numbers_at,
     show_configuration,
+    subject_at,
 )
-from linkages.app.subject import subject_at
 from linkages.links.clearance import Approach
 
 

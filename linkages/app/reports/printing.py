@@ -11,9 +11,9 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Form
 from bifurc.tables import table
-from linkages.app.answer.configurations import show_configuration
 from linkages.app.exit_codes import CommandError, ExitCode
-from linkages.app.reports.print_options import PrintOptions
+from linkages.app.options import PrintOptions
+from linkages.app.subject import show_configuration
 from linkages.app.texts.numbers import link_name
 from linkages.labels import loop_of
 from linkages.loop import Loop

@@ -11,8 +11,8 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.tables import section
 from bifurc.torus import wrap
-from linkages.app.answer.configurations import SHOWN_SHARE
 from linkages.app.answer.mechanism_document import describe_mechanism
+from linkages.app.subject import SHOWN_SHARE
 from linkages.app.texts.form_names import listed_numbers
 from linkages.app.texts.numbers import in_degrees, in_lengths, known_to
 from linkages.mechanisms.joint import Joint

@@ -11,13 +11,15 @@ from bifurc.atlas import Atlas, MeetingPoint, Surface
 from bifurc.branch import Branch, Outcome
 from bifurc.singular.point import Kind
 from bifurc.tables import section
-from linkages.app.answer.configurations import (
+from linkages.app.answer.verdict import judge
+from linkages.app.subject import (
+    MechanismSubject,
+    NetworkSubject,
     arclength_unit,
     show_configuration,
+    subject_at,
     unit_of_arclengths,
 )
-from linkages.app.answer.verdict import judge
-from linkages.app.subject import MechanismSubject, NetworkSubject, subject_at
 from linkages.app.texts.entry_text import describe_geometry
 from linkages.app.texts.form_names import listed_forms
 from linkages.labels import FormLabels, loop_of

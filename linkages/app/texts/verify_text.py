@@ -5,19 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from bifurc.tables import count_of
 from linkages.app.reports.verify import (
     ClosedFormCheck,
     ErratumCheck,
     MemberCheck,
+    NetworkVerification,
     Verification,
 )
-
-if TYPE_CHECKING:
-    # it imports networkx, which a loop does not need
-    from linkages.app.reports.verify_network import NetworkVerification
 
 Json: TypeAlias = (
     "bool | int | float | str | Sequence[Json] | Mapping[str, Json] | None"
