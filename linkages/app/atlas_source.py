@@ -27,16 +27,10 @@ def explore_linkage(linkage: Linkage | Mechanism, search: SearchOptions) -> Atla
     `bifurc.ProblemError` for settings out of their range.
     """
     settings = search.settings()
-    status = StatusLine()
-    try:
+    with StatusLine() as status:
         return map_linkage(
-            linkage,
-            settings=settings,
-            seed=search.seed,
-            progress=status,
+            linkage, settings=settings, seed=search.seed, progress=status
         )
-    finally:
-        status.wipe()
 
 
 def require_uninterrupted(atlas: Atlas) -> None:

@@ -48,10 +48,12 @@ def _discard_standard_output() -> None:
     os.close(nowhere)
 
 
-def require_folder(out: Path) -> None:
-    """Make sure, before anything is computed, that files can be written to ``out``;
-    raises `CommandError`. What is made for that and stays empty, as the command ends in
+def require_folder(out: Path | None) -> None:
+    """Make sure, before anything is computed, that files can be written to ``out``, if
+    there is one; raises `CommandError`. What is made for that and stays empty, as the command ends in
     an error, is removed again."""
+    if out is None:
+        return
     with writing_to(out):
         made = prepare_folder(out)
     click.get_current_context().call_on_close(lambda: remove_empty(made))
@@ -96,6 +98,22 @@ def require_writable(out: Path, option: str = "--out") -> None:
         require_replaceable(out)
 
 
+def write_content(out: Path, content: str | bytes, option: str) -> None:
+    """Write the file ``out`` behind an option, whole or not at all; raises
+    `CommandError`."""
+    from bifurc.files.atomic import replace_file
+
+    data = content.encode("utf-8") if isinstance(content, str) else content
+    with writing_to(out, option):
+        replace_file(out, lambda part: part.write_bytes(data))
+
+
+def say_written(paths: Iterable[Path], out: Path) -> None:
+    """Say on standard error which files were written to a folder."""
+    names = ", ".join(path.name for path in paths)
+    click.echo(f"wrote {names} to {out}", err=True)
+
+
 @contextmanager
 def writing_to(out: Path, option: str = "--out") -> Iterator[None]:
     """A block that writes to ``out``, the value of an option; raises `CommandError`
@@ -113,7 +131,7 @@ LIBRARIES = ("bifurc", "linkages")
 
 class StatusLine:
     """A line on a terminal that says what was found so far; it appears after a second
-    and is wiped at the end."""
+    and is wiped at the end of its block."""
 
     def __init__(self, patience: float = 1.0):
         self._start = time.monotonic()
@@ -129,8 +147,10 @@ class StatusLine:
         click.echo("\r" + text.ljust(self._width), nl=False, err=True)
         self._width = len(text)
 
-    def wipe(self) -> None:
-        """Remove the line."""
+    def __enter__(self) -> StatusLine:
+        return self
+
+    def __exit__(self, *error: object) -> None:
         if self._width:
             click.echo("\r" + " " * self._width + "\r", nl=False, err=True)
             self._width = 0

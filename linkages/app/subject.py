@@ -63,21 +63,16 @@ class Subject(ABC):
     to_angles: Isometry
     size: float
     name: str
+    # Grübler's count: the freedoms of the joints, less those that loops take
+    gruebler: int
+    # what the unknowns (n,) are multiplied with to be in rad and the user's unit of length
+    factors: np.ndarray
+    # what is made: the table, where there is one
+    geometry: Loop | Mechanism
     # what moves: "links" of a loop, "bodies" elsewhere
     parts: str
     # where errors of manufacturing are, in words
     places: str
-
-    @property
-    @abstractmethod
-    def factors(self) -> np.ndarray:
-        """What the unknowns (n,) are multiplied with to be in rad and the user's unit
-        of length."""
-
-    @property
-    @abstractmethod
-    def geometry(self) -> Loop | Mechanism:
-        """What is made: the table, where there is one."""
 
     @abstractmethod
     def as_loop(self) -> Loop:
@@ -93,44 +88,42 @@ class Subject(ABC):
     def heading(self, atlas: Atlas) -> str:
         """What stands above configurations."""
 
-    @property
-    @abstractmethod
-    def gruebler(self) -> int:
-        """Grübler's count: the freedoms of the joints, less those that loops take."""
-
     @abstractmethod
     def equations(self) -> Problem:
         """The closure equations of the atlas."""
 
-    @abstractmethod
     def in_loop_angles(self, atlas: Atlas) -> Atlas:
         """An atlas in the joint angles of the table; as it is, where there is none."""
+        return atlas
 
-    @abstractmethod
     def place(self, point: np.ndarray) -> dict[str, Any]:
-        """What a JSON document says of a configuration (n,) besides its numbers."""
+        """What a JSON document says of a configuration (n,) besides its numbers; nothing
+        where these are the joint angles of a table, as in all that follows."""
+        return {}
 
-    @abstractmethod
     def variable(self, index: int) -> dict[str, str]:
         """What it says of an unknown, by index, besides its number."""
+        return {}
 
     @abstractmethod
     def still(self, index: int, value: float) -> str:
         """A joint that stands still along a form, by the index of its unknown, as text;
         where it stands is said of a table."""
 
-    @abstractmethod
     def motion(self, atlas: Atlas, form: int) -> dict[str, Any]:
         """What it says of what joints and bodies do along a form, by index."""
+        return {}
 
-    @abstractmethod
     def document(self, atlas: Atlas) -> dict[str, Any]:
         """What it says of the subject besides its table."""
+        return {}
 
     @property
-    @abstractmethod
     def part_names(self) -> tuple[str, ...]:
-        """What the links or the bodies are called."""
+        """What the links, by the joints that they join, or the bodies are called."""
+        assert self.table is not None
+        n = self.table.n
+        return tuple(link_name(link, n) for link in range(n))
 
     def approaches(self, branch: Branch) -> tuple[Approach, ...]:
         """Where every two links or bodies that share no joint are nearest along a
@@ -144,22 +137,22 @@ class Subject(ABC):
             for approach in approaches_along(self.table, angles.branch(branch))
         )
 
-    @abstractmethod
     def ranges_beyond_limits(self) -> list[LimitedRange]:
         """What limited variables are without their limits, where these keep out all
         configurations."""
+        return []
 
     @abstractmethod
     def joint_values(self, points: np.ndarray) -> Values:
         """The values of all joint variables at configurations (k, n)."""
 
-    @abstractmethod
     def dataset_variables(self, atlas: Atlas) -> dict[str, Variable]:
         """What a dataset holds besides the atlas, by name."""
+        return {}
 
-    @abstractmethod
     def files(self) -> dict[str, Callable[[Path], object]]:
         """What writes files of the subject itself, by their names."""
+        return {}
 
 
 class LoopSubject(Subject):
@@ -175,16 +168,9 @@ class LoopSubject(Subject):
         self.to_angles = Isometry.identity(loop.n)
         self.size = loop.characteristic_length
         self.name = loop.name
-
-    @property
-    def factors(self) -> np.ndarray:
-        """1: all unknowns are angles."""
-        return np.ones(self.table.n)
-
-    @property
-    def geometry(self) -> Loop:
-        """The table."""
-        return self.table
+        self.gruebler = loop.n - FREEDOMS
+        self.factors = np.ones(loop.n)
+        self.geometry = loop
 
     def as_loop(self) -> Loop:
         """The table."""
@@ -198,61 +184,19 @@ class LoopSubject(Subject):
         """What stands above configurations."""
         return "joint angles (deg)"
 
-    @property
-    def gruebler(self) -> int:
-        """The number of joints less six."""
-        return self.table.n - FREEDOMS
-
     def equations(self) -> Problem:
         """The closure of the loop."""
         from linkages.closure.loop_closure import LoopClosure
 
         return LoopClosure(self.table)
 
-    def in_loop_angles(self, atlas: Atlas) -> Atlas:
-        """The atlas as it is."""
-        return atlas
-
-    def place(self, point: np.ndarray) -> dict[str, Any]:
-        """Nothing: the numbers are the joint angles."""
-        return {}
-
-    def variable(self, index: int) -> dict[str, str]:
-        """Nothing: joints have numbers."""
-        return {}
-
-    @property
-    def part_names(self) -> tuple[str, ...]:
-        """The links by the joints that they join."""
-        return names_of_links(self.table)
-
-    def ranges_beyond_limits(self) -> list[LimitedRange]:
-        """None: joints of a table have no limits."""
-        return []
-
     def still(self, index: int, value: float) -> str:
         """The number of the joint, and its angle."""
         return f"{index + 1} at {in_degrees(value)}"
 
-    def motion(self, atlas: Atlas, form: int) -> dict[str, Any]:
-        """Nothing besides the table."""
-        return {}
-
-    def document(self, atlas: Atlas) -> dict[str, Any]:
-        """Nothing besides the table."""
-        return {}
-
     def joint_values(self, points: np.ndarray) -> Values:
         """The joint angles."""
         return Values(self.unknowns, points)
-
-    def dataset_variables(self, atlas: Atlas) -> dict[str, Variable]:
-        """Nothing: the unknowns are the joint angles."""
-        return {}
-
-    def files(self) -> dict[str, Callable[[Path], object]]:
-        """None: the table stands in the dataset."""
-        return {}
 
 
 class MechanismSubject(Subject):
@@ -273,16 +217,9 @@ class MechanismSubject(Subject):
         self.unknowns = self.labels
         self.size = self.readout.structure.unit
         self.name = mechanism.name
-
-    @property
-    def factors(self) -> np.ndarray:
-        """1 of angles, the characteristic length of lengths."""
-        return self.readout.structure.scales
-
-    @property
-    def geometry(self) -> Loop | Mechanism:
-        """The table of a single loop, else the mechanism."""
-        return self.readout.mechanism if self.table is None else self.table
+        self.gruebler = mechanism.gruebler
+        self.factors = self.readout.structure.scales
+        self.geometry = mechanism if self.table is None else self.table
 
     def as_loop(self) -> Loop:
         """The loop through the axes of the joints."""
@@ -300,11 +237,6 @@ class MechanismSubject(Subject):
         """What stands above configurations."""
         units = [words for unit, words in UNITS.items() if unit in atlas.units]
         return f"{', '.join(self.labels)} ({', '.join(units)})"
-
-    @property
-    def gruebler(self) -> int:
-        """The count of the mechanism."""
-        return self.readout.mechanism.gruebler
 
     def equations(self) -> Problem:
         """The closure of the mechanism."""
@@ -329,7 +261,7 @@ class MechanismSubject(Subject):
         """The bodies by name; of a single loop the links."""
         if self.table is None:
             return self.readout.mechanism.bodies
-        return names_of_links(self.table)
+        return super().part_names
 
     def approaches(self, branch: Branch) -> tuple[Approach, ...]:
         """Those of bodies; of a single loop those of links."""
@@ -417,11 +349,6 @@ class NetworkSubject(MechanismSubject):
             "kinks": self.network.kinks,
         }
         return {**super().document(atlas), "network": values}
-
-
-def names_of_links(loop: Loop) -> tuple[str, ...]:
-    """What the links of a loop are called."""
-    return tuple(link_name(link, loop.n) for link in range(loop.n))
 
 
 def as_subject(linkage: Linkage | Mechanism) -> Subject:

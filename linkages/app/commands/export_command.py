@@ -17,6 +17,7 @@ from linkages.app.options import (
     SearchOptions,
     form_option,
     hold_options,
+    number_option,
     param_option,
     print_options,
     search_options,
@@ -68,12 +69,11 @@ TARGETS = {
     metavar="FROM TO",
     help="A route between two forms; may be given several times.",
 )
-@click.option(
+@number_option(
     "--count",
-    type=click.IntRange(FEWEST, MOST),
-    default=361,
-    show_default=True,
-    help="Configurations along each form or route, for .glb and .csv.",
+    click.IntRange(FEWEST, MOST),
+    361,
+    "Configurations along each form or route, for .glb and .csv.",
 )
 @print_options
 @hold_options
@@ -87,7 +87,6 @@ def export_command(
     routes: tuple[tuple[str, str], ...],
     count: int,
     parameters: tuple[str, ...],
-    verbose: bool,
     search: SearchOptions,
     hold: HoldOptions,
     printing: PrintOptions,
@@ -108,11 +107,9 @@ def export_command(
       bifurc export bennett --to bennett.mjcf
     """
     from linkages.app.answer.verdict import exit_by, judge
-    from linkages.app.output import require_ending, require_writable, say_more
+    from linkages.app.output import require_ending, require_writable
     from linkages.app.texts.form_names import require_forms
 
-    if verbose:
-        say_more()
     require_ending(TO, out, *MOTIONS, *PARTS, *MECHANISMS)
     check_options(out)
     check_count_of_forms(out, forms)
@@ -214,8 +211,7 @@ def export_parts(
 
 def export_mechanism(atlas: Atlas, texts: tuple[str, ...], out: Path) -> None:
     """Write the linkage where the first of the forms begins."""
-    from bifurc.files.atomic import replace_file
-    from linkages.app.output import writing_to
+    from linkages.app.output import write_content
     from linkages.app.texts.form_names import choose_forms
     from linkages.formats.table import mechanism_text
     from linkages.labels import loop_of
@@ -223,9 +219,7 @@ def export_mechanism(atlas: Atlas, texts: tuple[str, ...], out: Path) -> None:
 
     form = choose_forms(atlas, texts)[0]
     mechanism = mechanism_of_loop(loop_of(atlas), form.branch(0.0))
-    text = mechanism_text(mechanism, out)
-    with writing_to(out, TO):
-        replace_file(out, lambda part: part.write_text(text, encoding="utf-8"))
+    write_content(out, mechanism_text(mechanism, out), TO)
     click.echo(f"wrote {out}: {form.name}", err=True)
 
 
@@ -237,13 +231,10 @@ def export_motions(
     out: Path,
 ) -> None:
     """Write the motions along forms and routes."""
-    from bifurc.files.atomic import replace_file
-    from linkages.app.output import writing_to
+    from linkages.app.output import write_content
 
     motions = choose_motions(atlas, forms, routes, count)
-    content = make_content(atlas, motions, out)
-    with writing_to(out, TO):
-        replace_file(out, lambda part: part.write_bytes(content))
+    write_content(out, make_content(atlas, motions, out), TO)
     names = ", ".join(motion.name for motion in motions)
     click.echo(f"wrote {out}: {names}", err=True)
 

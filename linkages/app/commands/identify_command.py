@@ -10,6 +10,7 @@ from linkages.app.options import (
     NumberRange,
     hold_options,
     json_option,
+    number_option,
     param_option,
 )
 
@@ -18,12 +19,11 @@ LARGEST_TOLERANCE = 1  # as large as the linkage itself
 
 @click.command("identify", epilog=exit_code_table())
 @click.argument("linkage", metavar="FILE.toml|NAME")
-@click.option(
+@number_option(
     "--tolerance",
-    default=1e-8,
-    type=NumberRange(min=0, max=LARGEST_TOLERANCE, min_open=True),
-    show_default=True,
-    help="How far a table may be from the linkage it is.",
+    NumberRange(min=0, max=LARGEST_TOLERANCE, min_open=True),
+    1e-8,
+    "How far a table may be from the linkage it is.",
 )
 @json_option("; angles in radians")
 @hold_options

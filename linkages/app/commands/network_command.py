@@ -51,7 +51,7 @@ def network_command(
       bifurc network serial-bennett-network --locks --kinks 40 -75 --out out
     """
     from linkages.app.choice import choose_linkage, require_kind
-    from linkages.app.output import require_folder, say
+    from linkages.app.output import require_folder, say, say_written
     from linkages.app.texts.network_text import describe_network, make_page
     from linkages.networks.entries import NETWORKS
     from linkages.networks.mechanism import NetworkMechanism
@@ -65,15 +65,13 @@ def network_command(
         say(describe_network(NETWORKS[name]))
         return
     angles = () if kinks is None else _radians(kinks)
-    if out is not None:
-        require_folder(out)
+    require_folder(out)
     chosen = require_kind(choose_linkage(name, parameters), NetworkMechanism, refusal)
     tables = _lock_all(chosen.placed.network, angles)
     page = make_page(name, tables)
     say(page)
     if out is not None:
-        names = ", ".join(path.name for path in _write(out, page, tables))
-        click.echo(f"wrote {names} to {out}", err=True)
+        say_written(_write(out, page, tables), out)
 
 
 def _lock_all(
@@ -84,16 +82,13 @@ def _lock_all(
     from linkages.app.output import StatusLine
     from linkages.identification.locked_networks import locked_states
 
-    status = StatusLine()
     tables: dict[str, list[LockedState]] = {}
-    try:
+    with StatusLine() as status:
         for count, title in ((2, "pairs"), (3, "triples")):
             states = tables[title] = []
             for state in locked_states(network, count, kinks if count == 2 else ()):
                 states.append(state)
                 status(f"{title} of locks", len(states))
-    finally:
-        status.wipe()
     return tables
 
 

@@ -49,7 +49,6 @@ def route_command(
     start_locks: str | None,
     goal_locks: str | None,
     parameters: tuple[str, ...],
-    verbose: bool,
     search: SearchOptions,
     hold: HoldOptions,
 ) -> None:
@@ -69,11 +68,9 @@ def route_command(
     """
     from linkages.app.answer.verdict import judge
     from linkages.app.atlas_source import atlas_of
-    from linkages.app.output import say, say_more
+    from linkages.app.output import say
     from linkages.app.texts.route_text import describe_route
 
-    if verbose:
-        say_more()
     if start_locks is not None or goal_locks is not None:
         if start is not None:
             raise CommandError("--from, --to: they replace the names FROM and TO")

@@ -9,13 +9,14 @@ import click
 
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.options import (
-    SEED,
     HoldOptions,
     NumberRange,
     SearchOptions,
     hold_options,
+    number_option,
     out_option,
     param_option,
+    seed_option,
 )
 
 if TYPE_CHECKING:
@@ -29,27 +30,14 @@ MOST_COPIES = 10_000
 
 @click.command("tolerance", epilog=exit_code_table())
 @click.argument("linkage", metavar="NAME|FILE.toml")
-@click.option(
+@number_option(
     "--error",
-    default=1e-4,
-    type=NumberRange(min=0, max=LARGEST_ERROR),
-    show_default=True,
-    help="Standard deviation of the errors.",
+    NumberRange(min=0, max=LARGEST_ERROR),
+    1e-4,
+    "Standard deviation of the errors.",
 )
-@click.option(
-    "--samples",
-    default=4,
-    type=click.IntRange(1, MOST_COPIES),
-    show_default=True,
-    help="Copies that are made.",
-)
-@click.option(
-    "--seed",
-    default=0,
-    type=SEED,
-    show_default=True,
-    help="Number of the first copy.",
-)
+@number_option("--samples", click.IntRange(1, MOST_COPIES), 4, "Copies that are made.")
+@seed_option("Number of the first copy.")
 @hold_options
 @param_option
 @out_option("tolerance.txt and .png")
@@ -79,8 +67,7 @@ def tolerance_command(
     from linkages.app.reports.tolerance import climb, describe_tolerance, measure
     from linkages.app.subject import as_subject
 
-    if out is not None:
-        require_folder(out)
+    require_folder(out)
     chosen = choose_held(linkage, parameters, hold)
     atlas = explore_linkage(chosen, SearchOptions())
     _require_forms(atlas)

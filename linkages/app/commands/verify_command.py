@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from linkages.app.exit_codes import ExitCode, exit_code_table
-from linkages.app.options import SEED, json_option
+from linkages.app.options import json_option, number_option, seed_option
 
 if TYPE_CHECKING:
     from linkages.app.reports.verify import NetworkVerification, Verification
@@ -18,27 +18,13 @@ MOST_POINTS = 1_000_000
 
 @click.command("verify", epilog=exit_code_table())
 @click.argument("name", required=False)
-@click.option(
-    "--members",
-    default=1,
-    type=click.IntRange(1, MOST_MEMBERS),
-    show_default=True,
-    help="Members of each family.",
+@number_option(
+    "--members", click.IntRange(1, MOST_MEMBERS), 1, "Members of each family."
 )
-@click.option(
-    "--points",
-    default=6,
-    type=click.IntRange(1, MOST_POINTS),
-    show_default=True,
-    help="Points of an exact proof.",
+@number_option(
+    "--points", click.IntRange(1, MOST_POINTS), 6, "Points of an exact proof."
 )
-@click.option(
-    "--seed",
-    default=0,
-    type=SEED,
-    show_default=True,
-    help="Seed of what is drawn.",
-)
+@seed_option("Seed of what is drawn.")
 @json_option()
 def verify_command(
     name: str | None, members: int, points: int, seed: int, as_json: bool

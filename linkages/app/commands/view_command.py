@@ -38,7 +38,6 @@ def view_command(
     parameters: tuple[str, ...],
     out: Path | None,
     no_open: bool,
-    verbose: bool,
     search: SearchOptions,
     hold: HoldOptions,
 ) -> None:
@@ -57,14 +56,11 @@ def view_command(
     from linkages.app.output import (
         require_ending,
         require_writable,
-        say_more,
         writing_to,
     )
     from linkages.viewing.document import make_view_document
     from linkages.viewing.page import write_page
 
-    if verbose:
-        say_more()
     path = out or Path(Path(source).stem + PAGE)
     require_ending("--out", path, PAGE)
     require_writable(path)
