@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from bifurc.atlas import Atlas, MeetingPoint
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.valley import Unfolding, correct_to_valley, unfold_crossing
-from bifurc.tables import count_of, section
+from bifurc.tables import count_of, section, section_of
 from linkages.app.subject import subject_at, unit_of_arclengths
 from linkages.loop import Loop
 from linkages.mechanisms.mechanism import Mechanism
@@ -189,24 +189,17 @@ def _unfoldings(atlas: Atlas, copies: Sequence[Tolerance]) -> str:
             _, names = half_branches(atlas, point)
             width = f"{unfolding.distance:.3g}" if is_whole(unfolding) else "-"
             rows.append(
-                (
-                    point.name,
-                    str(number),
-                    _joined_half_branches(unfolding, names),
-                    width,
-                    f"{unfolding.weakest:.2e}",
-                    f"{unfolding.gap:.1e}",
-                )
+                {
+                    "name": point.name,
+                    "copy": str(number),
+                    "joined now": _joined_half_branches(unfolding, names),
+                    f"near miss ({unit_of_arclengths(atlas)})": width,
+                    "smallest s.v.": f"{unfolding.weakest:.2e}",
+                    "closure gap": f"{unfolding.gap:.1e}",
+                }
             )
-    heads = (
-        "name",
-        "copy",
-        "joined now",
-        f"near miss ({unit_of_arclengths(atlas)})",
-        "smallest s.v.",
-        "closure gap",
-    )
-    return section("What became of the bifurcations", heads, sorted(rows))
+    rows.sort(key=lambda row: tuple(row.values()))
+    return section_of("What became of the bifurcations", rows)
 
 
 def _joined_half_branches(unfolding: Unfolding, names: Sequence[str]) -> str:
@@ -226,14 +219,13 @@ def _powers(atlas: Atlas, ladder: Ladder) -> str:
         widths = ladder.widths[:, :, i]
         missing = int(np.isnan(widths).sum())
         rows.append(
-            (
-                point.name,
-                f"{slope(ladder.errors, widths):.3f}",
-                f"{slope(ladder.errors, ladder.weakest[:, :, i]):.3f}",
-                f"{missing} of {widths.size}",
-            )
+            {
+                "name": point.name,
+                "near miss": f"{slope(ladder.errors, widths):.3f}",
+                "smallest s.v.": f"{slope(ladder.errors, ladder.weakest[:, :, i]):.3f}",
+                "valley ends early": f"{missing} of {widths.size}",
+            }
         )
     smallest, largest = ladder.errors.min(), ladder.errors.max()
     title = f"Power of the error, from {smallest:.0e} to {largest:.0e}"
-    heads = ("name", "near miss", "smallest s.v.", "valley ends early")
-    return section(title, heads, rows)
+    return section_of(title, rows)
