@@ -17,6 +17,7 @@ from linkages.linkage import Linkage
 from linkages.mapping import map_linkage
 
 if TYPE_CHECKING:
+    from bifurc.routes.route import Route
     from linkages.mechanisms.mechanism import Mechanism
 
 
@@ -91,6 +92,18 @@ def atlas_of(
             )
         return open_linkage_atlas(source)
     return _explored(choose_held(source, parameters, hold), search)
+
+
+def route_between(atlas: Atlas, start: str, goal: str) -> Route:
+    """The shortest route between two forms or surfaces by their full names; raises
+    `CommandError` where there is none."""
+    from bifurc.errors import RouteError
+    from bifurc.routes.route import find_route
+
+    try:
+        return find_route(atlas, start, goal, problem=subject_at(atlas).equations())
+    except RouteError as error:
+        raise CommandError(str(error), ExitCode.NO_ROUTE) from None
 
 
 def loop_atlas_of(

@@ -4,7 +4,7 @@ file, with the joints that it locks or drives."""
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
@@ -113,16 +113,23 @@ def read_parameters(
 
     Whether a family has parameters of these names is for `Entry.complete` to say.
     """
-    kinds = {parameter.name: parameter.kind for parameter in known}
+    angles = {one.name for one in known if one.kind is ParameterKind.ANGLE}
+    return _read_values(texts, "--param", lambda name: name in angles)
+
+
+def _read_values(
+    texts: Sequence[str], option: str, is_angle: Callable[[str], bool]
+) -> dict[str, float]:
+    """The numbers of "key=value" behind an option, angles turned from degrees to rad;
+    raises `CommandError` and `GeometryError`."""
     values: dict[str, float] = {}
     for text in texts:
-        name, value = split_parameter(text)
+        name, value = split_parameter(text, option)
         if name in values:
-            raise CommandError(f"--param {name}: it is given twice")
-        number = read_number(name, value)
-        is_angle = kinds.get(name) is ParameterKind.ANGLE
-        if is_angle:
-            check_angle(f"--param {name}", number, in_degrees=True)
+            raise CommandError(f"{option} {name}: it is given twice")
+        number = read_number(name, value, option)
+        if is_angle(name):
+            check_angle(f"{option} {name}", number, in_degrees=True)
             number = math.radians(number)
         values[name] = number
     return values
@@ -226,15 +233,7 @@ def _with_locks(mechanism: Mechanism, texts: Sequence[str]) -> Mechanism:
 def read_kinks(texts: Sequence[str], option: str = "--lock") -> dict[str, float]:
     """The D-H angles, rad, by the names of joints, of "2=40", in degrees; raises
     `CommandError` and `GeometryError`."""
-    kinks: dict[str, float] = {}
-    for text in texts:
-        joint, value = split_parameter(text, option)
-        if joint in kinks:
-            raise CommandError(f"{option} {joint}: it is given twice")
-        number = read_number(joint, value, option)
-        check_angle(f"{option} {joint}", number, in_degrees=True)
-        kinks[joint] = math.radians(number)
-    return kinks
+    return _read_values(texts, option, lambda joint: True)
 
 
 def _require_network(text: str, linkage: Linkage | Mechanism) -> NetworkMechanism:
@@ -260,17 +259,8 @@ def _without_centre(network: NetworkMechanism) -> Inputs:
 
 def _read_locks(mechanism: Mechanism, texts: Sequence[str]) -> dict[str, float]:
     """The values of "J=40", in rad where the variable is an angle."""
-    is_turn = {one.label: one.motion.is_turn for one in mechanism.variables}
-    values: dict[str, float] = {}
-    for text in texts:
-        label, value = split_parameter(text, "--lock")
-        if label in values:
-            raise CommandError(f"--lock {label}: it is given twice")
-        number = read_number(label, value, "--lock")
-        if is_turn.get(label):
-            check_angle(f"--lock {label}", number, in_degrees=True)
-            number = math.radians(number)
-        values[label] = number
+    turns = {one.label for one in mechanism.variables if one.motion.is_turn}
+    values = _read_values(texts, "--lock", lambda label: label in turns)
     check_limits(mechanism, values)
     return values
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 from click.core import ParameterSource
 
-from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
+from linkages.app.exit_codes import CommandError, exit_code_table
 from linkages.app.options import (
     FILE,
     HoldOptions,
@@ -269,7 +269,7 @@ def make_route_motion(atlas: Atlas, start: str, goal: str, count: int) -> Motion
     without length.
     """
     from bifurc.errors import RouteError
-    from bifurc.routes.route import find_route
+    from linkages.app.atlas_source import route_between
     from linkages.app.subject import subject_at
     from linkages.export.motion import motion_of_route
 
@@ -278,16 +278,13 @@ def make_route_motion(atlas: Atlas, start: str, goal: str, count: int) -> Motion
         first, last = atlas.full_name(start), atlas.full_name(goal)
     except RouteError as error:
         raise CommandError(f"{option}: {error}") from None
-    problem = subject_at(atlas).equations()
-    try:
-        route = find_route(atlas, first, last, problem=problem)
-    except RouteError as error:
-        raise CommandError(str(error), ExitCode.NO_ROUTE) from None
+    route = route_between(atlas, first, last)
     if not route.legs:
         raise CommandError(
             f"{option}: it begins and ends in one configuration of {first!r}; name two "
             "different forms, or --form for all of one"
         )
+    problem = subject_at(atlas).equations()
     return motion_of_route(atlas, route, f"{first} to {last}", count, problem)
 
 

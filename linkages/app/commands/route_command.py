@@ -19,7 +19,6 @@ from linkages.app.options import (
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
-    from bifurc.routes.route import Route
 
 
 @click.command("route", epilog=exit_code_table())
@@ -67,7 +66,7 @@ def route_command(
       bifurc route four-bennett-network --from "2=40,6=-75@p4=90" --to "2=40,4=90"
     """
     from linkages.app.answer.verdict import judge
-    from linkages.app.atlas_source import atlas_of
+    from linkages.app.atlas_source import atlas_of, route_between
     from linkages.app.output import say
     from linkages.app.texts.route_text import describe_route
 
@@ -89,7 +88,7 @@ def route_command(
         raise CommandError(verdict.sentence, verdict.code)
     start_name = atlas.full_name(start)
     goal_name = atlas.full_name(goal)
-    route = _route_between(atlas, start_name, goal_name)
+    route = route_between(atlas, start_name, goal_name)
     say(describe_route(atlas, route, start_name, goal_name))
 
 
@@ -135,16 +134,3 @@ def _route_over_locks(
         raise CommandError(str(error), ExitCode.NO_ROUTE) from None
     last = explore(lock_network(network, places[1].locks))
     say(describe_lock_route(route, chosen, last))
-
-
-def _route_between(atlas: Atlas, start: str, goal: str) -> Route:
-    """The shortest route between two forms or surfaces; raises `CommandError` where
-    there is none."""
-    from bifurc.errors import RouteError
-    from bifurc.routes.route import find_route
-    from linkages.app.subject import subject_at
-
-    try:
-        return find_route(atlas, start, goal, problem=subject_at(atlas).equations())
-    except RouteError as error:
-        raise CommandError(str(error), ExitCode.NO_ROUTE) from None

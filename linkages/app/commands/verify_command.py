@@ -42,7 +42,7 @@ def verify_command(
       bifurc verify mixed-double-goldberg-type-i --members 50 --json
     """
     from linkages.app.output import say, say_json
-    from linkages.app.texts.verify_text import make_verification_document
+    from linkages.app.reports.verify import make_verification_document
     from linkages.catalogue import catalogue
 
     names = list(catalogue()) if name is None else [name]
@@ -69,10 +69,11 @@ def _verify(
     name: str, members: int, points: int, seed: int
 ) -> tuple[Verification | NetworkVerification, str]:
     """What was checked of a linkage or a network, and as text."""
-    from linkages.app.reports.verify import verify, verify_network
-    from linkages.app.texts.verify_text import (
+    from linkages.app.reports.verify import (
         describe_network_verification,
         describe_verification,
+        verify,
+        verify_network,
     )
     from linkages.networks.entries import NETWORKS
 
