@@ -177,11 +177,9 @@ class LoopSubject(Subject):
         return self.table
 
     def still_joints(self, atlas: Atlas, form: int) -> Sequence[int]:
-        """The numbers of the joints."""
         return FormLabels.of(atlas.forms[form]).inactive_joints
 
     def heading(self, atlas: Atlas) -> str:
-        """What stands above configurations."""
         return "joint angles (deg)"
 
     def equations(self) -> Problem:
@@ -191,11 +189,9 @@ class LoopSubject(Subject):
         return LoopClosure(self.table)
 
     def still(self, index: int, value: float) -> str:
-        """The number of the joint, and its angle."""
         return f"{index + 1} at {in_degrees(value)}"
 
     def joint_values(self, points: np.ndarray) -> Values:
-        """The joint angles."""
         return Values(self.unknowns, points)
 
 
@@ -228,22 +224,18 @@ class MechanismSubject(Subject):
         return loop_geometry(self.readout.mechanism)
 
     def still_joints(self, atlas: Atlas, form: int) -> Sequence[str]:
-        """The names of the joints."""
         from linkages.readout.facts import form_facts
 
         return tuple(form_facts(atlas, form, self.readout).still)
 
     def heading(self, atlas: Atlas) -> str:
-        """What stands above configurations."""
         units = [words for unit, words in UNITS.items() if unit in atlas.units]
         return f"{', '.join(self.labels)} ({', '.join(units)})"
 
     def equations(self) -> Problem:
-        """The closure of the mechanism."""
         return self.readout.closure
 
     def in_loop_angles(self, atlas: Atlas) -> Atlas:
-        """An atlas in the joint angles of a single loop."""
         from linkages.readout.loop_atlas import in_loop_angles
 
         return in_loop_angles(atlas, self.readout)
@@ -278,7 +270,6 @@ class MechanismSubject(Subject):
         return list(ranges_beyond_limits(self.readout.mechanism))
 
     def still(self, index: int, value: float) -> str:
-        """The name of the variable."""
         return self.labels[index]
 
     def motion(self, atlas: Atlas, form: int) -> dict[str, Any]:
@@ -295,7 +286,7 @@ class MechanismSubject(Subject):
 
     def joint_values(self, points: np.ndarray) -> Values:
         """All variables, and the unit quaternions of spherical joints."""
-        from linkages.export.motion import quaternions_without_jumps
+        from linkages.export.model import quaternions_without_jumps
 
         columns = [self.readout.values(points)]
         names = self.readout.labels()

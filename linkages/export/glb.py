@@ -10,11 +10,13 @@ import numpy as np
 
 from bifurc.figures.style import COLORS
 from linkages.export.gltf import BinaryGltf
-from linkages.export.model import LinkageModel, Symbol
-from linkages.export.motion import Motion, Poses
+from linkages.export.model import LinkageModel, Motion, Poses, Symbol
 from linkages.mechanisms.joint import Shape
 from linkages.values import GeometryError
 
+ROD_RADIUS = 0.03  # in characteristic lengths, as the next two and `SCALES`
+JOINT_RADIUS = 0.07
+JOINT_HEIGHT = 0.24
 SIDES = 24  # of the prism that stands for a cylinder
 RINGS = 12  # of a ball, from pole to pole
 FULL_TURN = 2 * np.pi
@@ -97,9 +99,6 @@ def ball() -> Mesh:
     return Mesh(positions, positions.copy(), np.array(triangles))
 
 
-ROD_RADIUS = 0.03  # in characteristic lengths, as all below
-JOINT_RADIUS = 0.07
-JOINT_HEIGHT = 0.24
 SCALES = {
     Shape.CYLINDER: (JOINT_RADIUS, JOINT_RADIUS, JOINT_HEIGHT),
     Shape.BOX: (0.16, 0.16, JOINT_HEIGHT),

@@ -26,8 +26,7 @@ from linkages.app.options import (
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
-    from linkages.export.model import LinkageModel
-    from linkages.export.motion import Motion
+    from linkages.export.model import LinkageModel, Motion
 
 TO = "--to"
 MODEL, TABLE = ".glb", ".csv"
@@ -247,7 +246,7 @@ def choose_motions(
 ) -> list[Motion]:
     """The motions along forms and routes, all forms where neither is named."""
     from linkages.app.texts.form_names import choose_forms
-    from linkages.export.motion import motion_of_form
+    from linkages.export.model import motion_of_form
 
     chosen = choose_forms(atlas, forms) if forms or not routes else []
     motions = [motion_of_form(form, count) for form in chosen]
@@ -271,7 +270,7 @@ def make_route_motion(atlas: Atlas, start: str, goal: str, count: int) -> Motion
     from bifurc.errors import RouteError
     from linkages.app.atlas_source import route_between
     from linkages.app.subject import subject_at
-    from linkages.export.motion import motion_of_route
+    from linkages.export.model import motion_of_route
 
     option = f"--route {start!r} {goal!r}"
     try:
@@ -308,7 +307,7 @@ def make_table(atlas: Atlas, motion: Motion) -> str:
     """The joint variables along a motion: angles of a loop, or all variables of a
     mechanism and the unit quaternions of its spherical joints."""
     from linkages.app.subject import subject_at
-    from linkages.export.motion import make_angle_table
+    from linkages.export.model import make_angle_table
 
     joints = subject_at(atlas).joint_values(motion.configurations)
     return make_angle_table(motion.arclength, joints.values, joints.names)

@@ -18,8 +18,13 @@ from linkages.app.texts.numbers import link_name
 from linkages.labels import loop_of
 from linkages.loop import Loop
 from linkages.printing.assembly import Dimensions, Kind, Part
-from linkages.printing.interference import PartApproach, find_meetings
-from linkages.printing.seating import REACHES, Seating, choose_seats
+from linkages.printing.seating import (
+    REACHES,
+    PartApproach,
+    Seating,
+    choose_seats,
+    find_meetings,
+)
 from linkages.values import GeometryError, told_apart
 
 DIAMETER, PLAY, WALL, SIZE = 6.0, 0.3, 1.2, 100.0  # mm

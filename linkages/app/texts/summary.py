@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -32,10 +30,10 @@ def make_summary(atlas: Atlas) -> str:
     and time."""
     completeness = atlas.completeness
     provenance = atlas.provenance
-    tables = _tables(atlas)
+    geometry, motions = _tables(atlas)
     parts = [
         f"{atlas.subject.get('name')}\n{judge(atlas).sentence}",
-        *tables.geometry,
+        *geometry,
         _forms(atlas),
         _surfaces(atlas),
         *(_points(atlas, title) for title in dict.fromkeys(one.title for one in Kind)),
@@ -43,24 +41,18 @@ def make_summary(atlas: Atlas) -> str:
         _rigid_assemblies(atlas),
         _near_motions(atlas),
         _certificates(atlas),
-        *tables.motions,
+        *motions,
         f"Completeness ({completeness.level}): {completeness.statement}.",
         f"Explored in {provenance.seconds:.3f} s, seed {provenance.seed}.",
     ]
     return "\n\n".join(part for part in parts if part)
 
 
-class _Tables(NamedTuple):
+def _tables(atlas: Atlas) -> tuple[list[str], list[str]]:
     """Tables of what was mapped, and of what it does along its forms."""
-
-    geometry: list[str]
-    motions: list[str]
-
-
-def _tables(atlas: Atlas) -> _Tables:
     subject = subject_at(atlas)
     if not isinstance(subject, MechanismSubject):
-        return _Tables([describe_geometry(loop_of(atlas))], [])
+        return [describe_geometry(loop_of(atlas))], []
     from linkages.app.texts import mechanism_text, network_text
 
     readout = subject.readout
@@ -70,14 +62,14 @@ def _tables(atlas: Atlas) -> _Tables:
         geometry.append(network_text.describe_kinks(network))
     geometry.append(mechanism_text.describe_loops(atlas, readout))
     if not atlas.forms:
-        return _Tables(geometry, [])
+        return geometry, []
     motions = [
         mechanism_text.describe_motions(atlas, readout),
         mechanism_text.describe_dead_points(atlas, readout),
     ]
     if network is not None:
         motions.append(network_text.describe_ring(atlas, readout, network))
-    return _Tables(geometry, motions)
+    return geometry, motions
 
 
 def _forms(atlas: Atlas) -> str:
