@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
 
@@ -32,6 +32,14 @@ def section(
     if most is not None and len(rows) > most:
         text += f"\n  and {len(rows) - most} more"
     return text
+
+
+def section_of(
+    title: str, records: Sequence[Mapping[str, str]], most: int | None = None
+) -> str:
+    """The `section` of records that have their cells by the heads of the columns."""
+    heads = list(records[0]) if records else []
+    return section(title, heads, [list(record.values()) for record in records], most)
 
 
 def count_of(number: int, noun: str) -> str:

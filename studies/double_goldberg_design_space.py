@@ -24,7 +24,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from linkages.app.options import FOLDER
-from linkages.app.sweep.fields import Status
+from linkages.app.sweep.member import Status
 from linkages.app.sweep.plan import Plan, read_plan
 from linkages.app.sweep.run import run_sweep
 from linkages.app.sweep.store import open_sweep

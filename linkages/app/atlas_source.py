@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
 from linkages.app.answer.verdict import judge
-from linkages.app.choice import require_table
+from linkages.app.choice import choose_held, require_table
 from linkages.app.exit_codes import CommandError, ExitCode
-from linkages.app.inputs import choose_held
 from linkages.app.options import HoldOptions, SearchOptions
-from linkages.app.status import StatusLine
+from linkages.app.output import StatusLine
 from linkages.app.subject import as_subject, subject_at
 from linkages.labels import NoLinkageError
 from linkages.linkage import Linkage
 from linkages.mapping import map_linkage
 
 if TYPE_CHECKING:
+    from bifurc.routes.route import Route
     from linkages.mechanisms.mechanism import Mechanism
 
 
@@ -28,16 +28,10 @@ def explore_linkage(linkage: Linkage | Mechanism, search: SearchOptions) -> Atla
     `bifurc.ProblemError` for settings out of their range.
     """
     settings = search.settings()
-    status = StatusLine()
-    try:
+    with StatusLine() as status:
         return map_linkage(
-            linkage,
-            settings=settings,
-            seed=search.seed,
-            progress=status,
+            linkage, settings=settings, seed=search.seed, progress=status
         )
-    finally:
-        status.wipe()
 
 
 def require_uninterrupted(atlas: Atlas) -> None:
@@ -98,6 +92,18 @@ def atlas_of(
             )
         return open_linkage_atlas(source)
     return _explored(choose_held(source, parameters, hold), search)
+
+
+def route_between(atlas: Atlas, start: str, goal: str) -> Route:
+    """The shortest route between two forms or surfaces by their full names; raises
+    `CommandError` where there is none."""
+    from bifurc.errors import RouteError
+    from bifurc.routes.route import find_route
+
+    try:
+        return find_route(atlas, start, goal, problem=subject_at(atlas).equations())
+    except RouteError as error:
+        raise CommandError(str(error), ExitCode.NO_ROUTE) from None
 
 
 def loop_atlas_of(

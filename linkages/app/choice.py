@@ -1,25 +1,30 @@
-"""The linkage that a command line names: an entry of the catalogue with parameters, or
-a file."""
+"""The linkage that a command line names, an entry of the catalogue with parameters or a
+file, with the joints that it locks or drives."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
+import click
 import numpy as np
 
 from linkages.app.exit_codes import CommandError
+from linkages.app.options import HoldOptions
 from linkages.catalogue import entry
 from linkages.entry import Entry, Parameter, ParameterKind
 from linkages.file import read_precisely
 from linkages.linkage import Linkage, is_linkage_file, load
 from linkages.loop import LARGEST, SMALLEST, Loop
 from linkages.networks.entries import NETWORKS, NetworkEntry
-from linkages.values import GeometryError, check_angle
+from linkages.values import GeometryError, check_angle, told_apart
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
+    from linkages.networks.mechanism import NetworkMechanism
+
 
 Kind = TypeVar("Kind")
 
@@ -108,16 +113,23 @@ def read_parameters(
 
     Whether a family has parameters of these names is for `Entry.complete` to say.
     """
-    kinds = {parameter.name: parameter.kind for parameter in known}
+    angles = {one.name for one in known if one.kind is ParameterKind.ANGLE}
+    return _read_values(texts, "--param", lambda name: name in angles)
+
+
+def _read_values(
+    texts: Sequence[str], option: str, is_angle: Callable[[str], bool]
+) -> dict[str, float]:
+    """The numbers of "key=value" behind an option, angles turned from degrees to rad;
+    raises `CommandError` and `GeometryError`."""
     values: dict[str, float] = {}
     for text in texts:
-        name, value = split_parameter(text)
+        name, value = split_parameter(text, option)
         if name in values:
-            raise CommandError(f"--param {name}: it is given twice")
-        number = read_number(name, value)
-        is_angle = kinds.get(name) is ParameterKind.ANGLE
-        if is_angle:
-            check_angle(f"--param {name}", number, in_degrees=True)
+            raise CommandError(f"{option} {name}: it is given twice")
+        number = read_number(name, value, option)
+        if is_angle(name):
+            check_angle(f"{option} {name}", number, in_degrees=True)
             number = math.radians(number)
         values[name] = number
     return values
@@ -141,3 +153,130 @@ def read_number(name: str, text: str, option: str = "--param") -> float:
     if not math.isfinite(number):
         raise GeometryError(f"{option} {name}", number, "a finite number")
     return number
+
+
+# why something has no centre to be left without
+NO_NETWORK = "--without-centre: it takes a network, and {} is none"
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """A mechanism with joints held for a command, and ``notes`` on those that nobody
+    asked for."""
+
+    mechanism: Linkage | Mechanism
+    notes: tuple[str, ...] = ()
+
+
+def choose_held(
+    text: str, parameters: Sequence[str], hold: HoldOptions
+) -> Linkage | Mechanism:
+    """What `choose_linkage` finds, with joints held; what nobody asked for is said on
+    standard error. Raises as `choose_linkage` and `hold_joints`."""
+    inputs = hold_joints(text, choose_linkage(text, parameters), hold)
+    for note in inputs.notes:
+        click.echo(note, err=True)
+    return inputs.mechanism
+
+
+def hold_joints(text: str, linkage: Linkage | Mechanism, hold: HoldOptions) -> Inputs:
+    """The mechanism called ``text`` with the locks, each "J=40", angles in degrees, and
+    slides in the file's unit of length, and what else has to be held for one joint to
+    drive it; of a network, where that is asked for, the loop without its centre.
+
+    Raises `CommandError` for a linkage that takes none, `GeometryError` for a joint
+    that it does not have.
+    """
+    if hold == HoldOptions():
+        return Inputs(linkage)
+    if hold.is_without_centre:
+        _require_network(text, linkage)
+    from linkages.mechanisms.mechanism import Mechanism
+
+    refusal = (
+        f"{hold.names}: it takes a mechanism with joints by name, and {text} is a "
+        "single loop, a table or axes"
+    )
+    locked = _with_locks(require_kind(linkage, Mechanism, refusal), hold.locks)
+    inputs = Inputs(locked) if hold.driver is None else _driven(locked, hold.driver)
+    if not hold.is_without_centre:
+        return inputs
+    loop = _without_centre(_require_network(text, inputs.mechanism))
+    return Inputs(loop.mechanism, inputs.notes + loop.notes)
+
+
+def _driven(mechanism: Mechanism, driver: str) -> Inputs:
+    """The mechanism with what has to be held for one joint to drive it."""
+    from linkages.closure.driving import joints_to_hold
+
+    held = joints_to_hold(mechanism, driver)
+    notes: tuple[str, ...] = ()
+    if held:
+        names = ", ".join(held)
+        notes = (
+            f"--drive {driver}: so that it drives all, also held where they are in the "
+            f"reference configuration: {names}",
+        )
+    return Inputs(mechanism.with_locks(held), notes)
+
+
+def _with_locks(mechanism: Mechanism, texts: Sequence[str]) -> Mechanism:
+    """The mechanism with the locks: those of a network are D-H angles of its outer
+    joints."""
+    from linkages.networks.mechanism import NetworkMechanism
+
+    if isinstance(mechanism, NetworkMechanism):
+        return mechanism.with_kinks(read_kinks(texts))
+    return mechanism.with_locks(_read_locks(mechanism, texts))
+
+
+def read_kinks(texts: Sequence[str], option: str = "--lock") -> dict[str, float]:
+    """The D-H angles, rad, by the names of joints, of "2=40", in degrees; raises
+    `CommandError` and `GeometryError`."""
+    return _read_values(texts, option, lambda joint: True)
+
+
+def _require_network(text: str, linkage: Linkage | Mechanism) -> NetworkMechanism:
+    from linkages.networks.mechanism import NetworkMechanism
+
+    return require_kind(linkage, NetworkMechanism, NO_NETWORK.format(text))
+
+
+def _without_centre(network: NetworkMechanism) -> Inputs:
+    """The single loop that is left of a network without the bars inside."""
+    loop = network.without_centre()
+    note = (
+        "--without-centre: every motion of the network is one of this loop, and the "
+        "loop may have more: taking the middle away adds forms and bifurcations"
+    )
+    followers = [joint for joint in network.still if joint not in network.kinks]
+    notes: tuple[str, ...] = (note,)
+    if followers:
+        names = ", ".join(followers)
+        notes += (f"--without-centre: replaced as well, for it does not move: {names}",)
+    return Inputs(Linkage(loop), notes)
+
+
+def _read_locks(mechanism: Mechanism, texts: Sequence[str]) -> dict[str, float]:
+    """The values of "J=40", in rad where the variable is an angle."""
+    turns = {one.label for one in mechanism.variables if one.motion.is_turn}
+    values = _read_values(texts, "--lock", lambda label: label in turns)
+    check_limits(mechanism, values)
+    return values
+
+
+def check_limits(mechanism: Mechanism, values: Mapping[str, float]) -> None:
+    """Raise `GeometryError`, in degrees, for a lock, by the label of its variable,
+    outside the limits of a file."""
+    for one in mechanism.variables:
+        value = values.get(one.label)
+        if value is None or one.limits is None:
+            continue
+        low, high = one.limits
+        if low <= value <= high:
+            continue
+        unit = math.radians(1.0) if one.motion.is_turn else 1.0
+        word = " deg" if one.motion.is_turn else ""
+        shown, least, most = told_apart(value / unit, low / unit, high / unit)
+        allowed = f"within its limits {least} to {most}{word}"
+        raise GeometryError(f"--lock {one.label}", f"{shown}{word}", allowed)

@@ -13,7 +13,7 @@ import click
 
 from bifurc.errors import BifurcError
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
-from linkages.app.status import library_messages
+from linkages.app.output import library_messages
 
 # each in a module of its own, `linkages.app.commands`
 COMMANDS = (

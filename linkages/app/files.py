@@ -1,10 +1,10 @@
-"""Writing the results of `bifurc map --out DIR`, each file whole or not at all."""
+"""Writing the results of `bifurc map --out DIR`, each file whole or not at all; and what
+figures are drawn over: unknowns by the names of their joints, or by their numbers."""
 
 from __future__ import annotations
 
-import contextlib
-import tempfile
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
@@ -12,34 +12,70 @@ from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
 from bifurc.files.atomic import replace_files
-from linkages.app.figure_axes import FigureAxes
+from linkages.app.exit_codes import CommandError
+from linkages.app.subject import as_subject
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from bifurc.files.table import Variable
+    from linkages.linkage import Linkage
+    from linkages.mechanisms.mechanism import Mechanism
 
 
-def prepare_folder(folder: Path) -> list[Path]:
-    """Make sure that files can be written to ``folder``: the folders that were made for
-    that, the innermost first; raises `OSError` if it cannot be."""
-    chain = [folder, *folder.parents]
-    missing = [path for path in chain if not path.exists()]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError:
-        remove_empty(missing)
-        raise
-    return missing
+@dataclass(frozen=True)
+class FigureAxes:
+    """What figures are drawn over: two or three unknowns for the transition map, one
+    for the singular values, each numbered from 1; the usual ones where nothing is
+    said."""
+
+    transition_map: tuple[int, ...] = ()
+    singular_values: int | None = None
 
 
-def remove_empty(folders: Iterable[Path]) -> None:
-    """Remove folders, the innermost first, as far as nothing is in them."""
-    for folder in folders:
-        with contextlib.suppress(OSError):
-            folder.rmdir()
+def figure_axes(
+    linkage: Linkage | Mechanism,
+    axes: Sequence[str] | None,
+    against: Sequence[str] | None,
+) -> FigureAxes:
+    """What the figures of a linkage are drawn over, for the names or numbers of its
+    joints; raises `CommandError` for one that it does not have, or that is named
+    twice."""
+    if axes is None and against is None:
+        return FigureAxes()
+    names = as_subject(linkage).unknowns
+    numbers = read_numbers("--against", against or (), names)
+    return FigureAxes(
+        read_numbers("--axes", axes or (), names), numbers[0] if numbers else None
+    )
+
+
+def read_numbers(
+    option: str, words: Sequence[str], names: Sequence[str]
+) -> tuple[int, ...]:
+    """The numbers, from 1, of the unknowns that ``words`` name, or else number."""
+    numbers: list[int] = []
+    for word in words:
+        number = number_of(word, names)
+        if number is None:
+            raise CommandError(
+                f"{option}: there is no joint {word} to draw over; the names are "
+                f"{', '.join(names)}, the numbers 1 to {len(names)}"
+            )
+        if number in numbers:
+            raise CommandError(f"{option} {word}: {names[number - 1]} is named twice")
+        numbers.append(number)
+    return tuple(numbers)
+
+
+def number_of(word: str, names: Sequence[str]) -> int | None:
+    """The number, from 1, of the unknown that has this name or else this number; None
+    where there is none. Joints may be called by numbers of their own."""
+    if word in names:
+        return names.index(word) + 1
+    if word.isdecimal() and 1 <= int(word) <= len(names):
+        return int(word)
+    return None
 
 
 def write_data(

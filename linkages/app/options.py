@@ -8,12 +8,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from linkages.app.output import say_more
+
 if TYPE_CHECKING:
     from bifurc.settings import SearchSettings
+
 
 Command = Callable[..., None]
 Option = Callable[[Command], Command]
@@ -107,9 +110,25 @@ class JointWords(click.ParamType[tuple[str, ...]]):
         return words
 
 
-STARTS = click.IntRange(1, MOST_STARTS)
-SEED = click.IntRange(0, LARGEST_SEED)
 POSITIVE = NumberRange(min=0, min_open=True, allows_infinity=True)
+
+
+def number_option(
+    flag: str, kind: click.ParamType[Any], default: float, text: str
+) -> Option:
+    """The option ``flag`` for a number of a kind, which its help says with the
+    ``default``."""
+    return click.option(flag, type=kind, default=default, show_default=True, help=text)
+
+
+def starts_option(text: str) -> Option:
+    """The option ``--starts`` with the help ``text``."""
+    return number_option("--starts", click.IntRange(1, MOST_STARTS), 200, text)
+
+
+def seed_option(text: str) -> Option:
+    """The option ``--seed`` with the help ``text``."""
+    return number_option("--seed", click.IntRange(0, LARGEST_SEED), 0, text)
 
 
 def with_record(
@@ -160,28 +179,17 @@ class SearchOptions:
         )
 
 
-SEARCH_OPTIONS = {
-    "starts": click.option(
-        "--starts",
-        default=200,
-        type=STARTS,
-        show_default=True,
-        help="Random starts; of a mechanism up to 16 times as many where some of what "
-        "it has is met by few.",
+SEARCH_OPTIONS: dict[str, Option] = {
+    "starts": starts_option(
+        "Random starts; of a mechanism up to 16 times as many where some of what "
+        "it has is met by few."
     ),
-    "seed": click.option(
-        "--seed",
-        default=0,
-        type=SEED,
-        show_default=True,
-        help="Seed of the random starts.",
-    ),
-    "tolerance": click.option(
+    "seed": seed_option("Seed of the random starts."),
+    "tolerance": number_option(
         "--tolerance",
-        default=1e-13,
-        type=NumberRange(1e-14, 1e-7),
-        show_default=True,
-        help="How closely curves are followed.",
+        NumberRange(1e-14, 1e-7),
+        1e-13,
+        "How closely curves are followed.",
     ),
     "budget": click.option(
         "--budget",
@@ -222,7 +230,7 @@ class HoldOptions:
         return ", ".join(name for name, is_given in given.items() if is_given)
 
 
-HOLD_OPTIONS = {
+HOLD_OPTIONS: dict[str, Option] = {
     "locks": click.option(
         "--lock",
         "locks",
@@ -272,8 +280,25 @@ param_option = click.option(
     metavar="KEY=VALUE",
     help="Parameter of a named linkage, angles in degrees; may be given several times.",
 )
+
+
+def _say_more(ctx: click.Context, param: click.Parameter, value: bool) -> None:
+    if value:
+        say_more()
+
+
 verbose_option = click.option(
-    "-v", "--verbose", is_flag=True, help="Say more on standard error."
+    "-v",
+    "--verbose",
+    is_flag=True,
+    expose_value=False,
+    callback=_say_more,
+    help="Say more on standard error.",
+)
+no_certify_option = click.option(
+    "--no-certify",
+    is_flag=True,
+    help="Do not prove that no form jumps from one arc to another.",
 )
 
 
@@ -286,3 +311,64 @@ def json_option(angles: str = "") -> Option:
 def out_option(content: str) -> Option:
     """The option ``--out``, a folder for ``content``."""
     return click.option("--out", type=FOLDER, help=f"Folder for {content}.")
+
+
+POSITIVE_LENGTH = NumberRange(min=0, min_open=True)
+UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}  # mm
+
+
+@dataclass(frozen=True)
+class PrintOptions:
+    """How parts are printed: what stands on the command line, mm; None for what does
+    not stand there."""
+
+    diameter: float | None = None
+    play: float | None = None
+    wall: float | None = None
+    size: float | None = None
+    unit: str | None = None
+    offsets: str | None = None
+
+    @property
+    def unit_in_mm(self) -> float | None:
+        """The unit of the linkage, where one is given."""
+        return None if self.unit is None else UNITS[self.unit]
+
+
+def _size_option(flag: str, meaning: str) -> Option:
+    """An option of printed parts for a length, mm."""
+    text = f"For .stl and .step: {meaning}"
+    return click.option(flag, type=POSITIVE_LENGTH, metavar="MM", help=text)
+
+
+PRINT_OPTIONS: dict[str, Option] = {
+    "diameter": _size_option("--diameter", "diameter of the rods.  [default: 6]"),
+    "play": _size_option(
+        "--play",
+        "gap between surfaces that turn on each other, and the least one between parts "
+        "on the way.  [default: 0.3]",
+    ),
+    "wall": _size_option("--wall", "least thickness of a wall.  [default: 1.2]"),
+    "size": _size_option(
+        "--size", "the linkage's mean length of a link.  [default: 100]"
+    ),
+    "unit": click.option(
+        "--unit",
+        type=click.Choice(list(UNITS)),
+        help="For .stl and .step: the unit of the linkage's lengths, instead of --size.",
+    ),
+    "offsets": click.option(
+        "--offsets",
+        metavar="MM,MM,...",
+        help=(
+            "For .stl and .step: where each hinge sits along its axis, from the foot "
+            "of the common normal before it.  [default: so that no parts meet]"
+        ),
+    ),
+}
+
+
+def print_options(command: Command) -> Command:
+    """``command`` with the options of printed parts, which it takes as one
+    `PrintOptions` called ``printing``."""
+    return with_record(command, "printing", PrintOptions, PRINT_OPTIONS)

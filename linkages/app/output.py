@@ -1,11 +1,16 @@
-"""What a command prints, and the folder that it writes to."""
+"""What a command prints, what it says on standard error while it works, and the folder
+that it writes to."""
 
 from __future__ import annotations
 
+import contextlib
 import json
+import logging
 import os
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+import tempfile
+import time
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -43,15 +48,37 @@ def _discard_standard_output() -> None:
     os.close(nowhere)
 
 
-def require_folder(out: Path) -> None:
-    """Make sure, before anything is computed, that files can be written to ``out``;
-    raises `CommandError`. What is made for that and stays empty, as the command ends in
+def require_folder(out: Path | None) -> None:
+    """Make sure, before anything is computed, that files can be written to ``out``, if
+    there is one; raises `CommandError`. What is made for that and stays empty, as the command ends in
     an error, is removed again."""
-    from linkages.app.files import prepare_folder, remove_empty
-
+    if out is None:
+        return
     with writing_to(out):
         made = prepare_folder(out)
     click.get_current_context().call_on_close(lambda: remove_empty(made))
+
+
+def prepare_folder(folder: Path) -> list[Path]:
+    """Make sure that files can be written to ``folder``: the folders that were made for
+    that, the innermost first; raises `OSError` if it cannot be."""
+    chain = [folder, *folder.parents]
+    missing = [path for path in chain if not path.exists()]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError:
+        remove_empty(missing)
+        raise
+    return missing
+
+
+def remove_empty(folders: Iterable[Path]) -> None:
+    """Remove folders, the innermost first, as far as nothing is in them."""
+    for folder in folders:
+        with contextlib.suppress(OSError):
+            folder.rmdir()
 
 
 def require_ending(option: str, out: Path, *endings: str) -> None:
@@ -71,6 +98,22 @@ def require_writable(out: Path, option: str = "--out") -> None:
         require_replaceable(out)
 
 
+def write_content(out: Path, content: str | bytes, option: str) -> None:
+    """Write the file ``out`` behind an option, whole or not at all; raises
+    `CommandError`."""
+    from bifurc.files.atomic import replace_file
+
+    data = content.encode("utf-8") if isinstance(content, str) else content
+    with writing_to(out, option):
+        replace_file(out, lambda part: part.write_bytes(data))
+
+
+def say_written(paths: Iterable[Path], out: Path) -> None:
+    """Say on standard error which files were written to a folder."""
+    names = ", ".join(path.name for path in paths)
+    click.echo(f"wrote {names} to {out}", err=True)
+
+
 @contextmanager
 def writing_to(out: Path, option: str = "--out") -> Iterator[None]:
     """A block that writes to ``out``, the value of an option; raises `CommandError`
@@ -81,3 +124,64 @@ def writing_to(out: Path, option: str = "--out") -> Iterator[None]:
         reason = error.strerror or str(error)
         message = f"{option} {out}: nothing can be written there ({reason})"
         raise CommandError(message) from None
+
+
+LIBRARIES = ("bifurc", "linkages")
+
+
+class StatusLine:
+    """A line on a terminal that says what was found so far; it appears after a second
+    and is wiped at the end of its block."""
+
+    def __init__(self, patience: float = 1.0):
+        self._start = time.monotonic()
+        self._patience = patience
+        self._width = 0
+
+    def __call__(self, what: str, count: int) -> None:
+        """Show progress: the `progress` callback of `bifurc.search.explore.explore`."""
+        seconds = time.monotonic() - self._start
+        if seconds <= self._patience or not sys.stderr.isatty():
+            return
+        text = f"exploring: {count} {what} so far, {seconds:.0f} s"
+        click.echo("\r" + text.ljust(self._width), nl=False, err=True)
+        self._width = len(text)
+
+    def __enter__(self) -> StatusLine:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        if self._width:
+            click.echo("\r" + " " * self._width + "\r", nl=False, err=True)
+            self._width = 0
+
+
+class EchoHandler(logging.Handler):
+    """Log records of the library, one line each on standard error."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Show one record."""
+        click.echo(f"{record.levelname.lower()}: {record.getMessage()}", err=True)
+
+
+@contextmanager
+def library_messages() -> Iterator[None]:
+    """Show warnings of the library on standard error for the time of a block."""
+    handler = EchoHandler()
+    for name in LIBRARIES:
+        logger = logging.getLogger(name)
+        logger.setLevel(logging.WARNING)
+        logger.addHandler(handler)
+    try:
+        yield
+    finally:
+        for name in LIBRARIES:
+            logger = logging.getLogger(name)
+            logger.setLevel(logging.NOTSET)
+            logger.removeHandler(handler)
+
+
+def say_more() -> None:
+    """Let the library say all it has to say, inside a block of `library_messages`."""
+    for name in LIBRARIES:
+        logging.getLogger(name).setLevel(logging.INFO)

@@ -14,13 +14,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas
 from bifurc.branch import Branch
 from bifurc.isometry import Isometry
 from bifurc.problem import Problem
+from bifurc.torus import wrap
 from linkages.app.exit_codes import CommandError
-from linkages.app.texts.numbers import in_degrees, link_name
+from linkages.app.texts.numbers import in_degrees, in_lengths, link_name
 from linkages.labels import FormLabels, loop_of
 from linkages.linkage import Linkage
 from linkages.loop import Loop
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
     from linkages.links.clearance import Approach
     from linkages.mechanisms.mechanism import Mechanism
     from linkages.networks.mechanism import NetworkMechanism
+
 
 FREEDOMS = 6  # of a body in space
 # what unknowns are shown in, by the units of an atlas
@@ -60,21 +63,16 @@ class Subject(ABC):
     to_angles: Isometry
     size: float
     name: str
+    # Grübler's count: the freedoms of the joints, less those that loops take
+    gruebler: int
+    # what the unknowns (n,) are multiplied with to be in rad and the user's unit of length
+    factors: np.ndarray
+    # what is made: the table, where there is one
+    geometry: Loop | Mechanism
     # what moves: "links" of a loop, "bodies" elsewhere
     parts: str
     # where errors of manufacturing are, in words
     places: str
-
-    @property
-    @abstractmethod
-    def factors(self) -> np.ndarray:
-        """What the unknowns (n,) are multiplied with to be in rad and the user's unit
-        of length."""
-
-    @property
-    @abstractmethod
-    def geometry(self) -> Loop | Mechanism:
-        """What is made: the table, where there is one."""
 
     @abstractmethod
     def as_loop(self) -> Loop:
@@ -90,44 +88,42 @@ class Subject(ABC):
     def heading(self, atlas: Atlas) -> str:
         """What stands above configurations."""
 
-    @property
-    @abstractmethod
-    def gruebler(self) -> int:
-        """Grübler's count: the freedoms of the joints, less those that loops take."""
-
     @abstractmethod
     def equations(self) -> Problem:
         """The closure equations of the atlas."""
 
-    @abstractmethod
     def in_loop_angles(self, atlas: Atlas) -> Atlas:
         """An atlas in the joint angles of the table; as it is, where there is none."""
+        return atlas
 
-    @abstractmethod
     def place(self, point: np.ndarray) -> dict[str, Any]:
-        """What a JSON document says of a configuration (n,) besides its numbers."""
+        """What a JSON document says of a configuration (n,) besides its numbers; nothing
+        where these are the joint angles of a table, as in all that follows."""
+        return {}
 
-    @abstractmethod
     def variable(self, index: int) -> dict[str, str]:
         """What it says of an unknown, by index, besides its number."""
+        return {}
 
     @abstractmethod
     def still(self, index: int, value: float) -> str:
         """A joint that stands still along a form, by the index of its unknown, as text;
         where it stands is said of a table."""
 
-    @abstractmethod
     def motion(self, atlas: Atlas, form: int) -> dict[str, Any]:
         """What it says of what joints and bodies do along a form, by index."""
+        return {}
 
-    @abstractmethod
     def document(self, atlas: Atlas) -> dict[str, Any]:
         """What it says of the subject besides its table."""
+        return {}
 
     @property
-    @abstractmethod
     def part_names(self) -> tuple[str, ...]:
-        """What the links or the bodies are called."""
+        """What the links, by the joints that they join, or the bodies are called."""
+        assert self.table is not None
+        n = self.table.n
+        return tuple(link_name(link, n) for link in range(n))
 
     def approaches(self, branch: Branch) -> tuple[Approach, ...]:
         """Where every two links or bodies that share no joint are nearest along a
@@ -141,22 +137,22 @@ class Subject(ABC):
             for approach in approaches_along(self.table, angles.branch(branch))
         )
 
-    @abstractmethod
     def ranges_beyond_limits(self) -> list[LimitedRange]:
         """What limited variables are without their limits, where these keep out all
         configurations."""
+        return []
 
     @abstractmethod
     def joint_values(self, points: np.ndarray) -> Values:
         """The values of all joint variables at configurations (k, n)."""
 
-    @abstractmethod
     def dataset_variables(self, atlas: Atlas) -> dict[str, Variable]:
         """What a dataset holds besides the atlas, by name."""
+        return {}
 
-    @abstractmethod
     def files(self) -> dict[str, Callable[[Path], object]]:
         """What writes files of the subject itself, by their names."""
+        return {}
 
 
 class LoopSubject(Subject):
@@ -172,33 +168,19 @@ class LoopSubject(Subject):
         self.to_angles = Isometry.identity(loop.n)
         self.size = loop.characteristic_length
         self.name = loop.name
-
-    @property
-    def factors(self) -> np.ndarray:
-        """1: all unknowns are angles."""
-        return np.ones(self.table.n)
-
-    @property
-    def geometry(self) -> Loop:
-        """The table."""
-        return self.table
+        self.gruebler = loop.n - FREEDOMS
+        self.factors = np.ones(loop.n)
+        self.geometry = loop
 
     def as_loop(self) -> Loop:
         """The table."""
         return self.table
 
     def still_joints(self, atlas: Atlas, form: int) -> Sequence[int]:
-        """The numbers of the joints."""
         return FormLabels.of(atlas.forms[form]).inactive_joints
 
     def heading(self, atlas: Atlas) -> str:
-        """What stands above configurations."""
         return "joint angles (deg)"
-
-    @property
-    def gruebler(self) -> int:
-        """The number of joints less six."""
-        return self.table.n - FREEDOMS
 
     def equations(self) -> Problem:
         """The closure of the loop."""
@@ -206,50 +188,11 @@ class LoopSubject(Subject):
 
         return LoopClosure(self.table)
 
-    def in_loop_angles(self, atlas: Atlas) -> Atlas:
-        """The atlas as it is."""
-        return atlas
-
-    def place(self, point: np.ndarray) -> dict[str, Any]:
-        """Nothing: the numbers are the joint angles."""
-        return {}
-
-    def variable(self, index: int) -> dict[str, str]:
-        """Nothing: joints have numbers."""
-        return {}
-
-    @property
-    def part_names(self) -> tuple[str, ...]:
-        """The links by the joints that they join."""
-        return names_of_links(self.table)
-
-    def ranges_beyond_limits(self) -> list[LimitedRange]:
-        """None: joints of a table have no limits."""
-        return []
-
     def still(self, index: int, value: float) -> str:
-        """The number of the joint, and its angle."""
         return f"{index + 1} at {in_degrees(value)}"
 
-    def motion(self, atlas: Atlas, form: int) -> dict[str, Any]:
-        """Nothing besides the table."""
-        return {}
-
-    def document(self, atlas: Atlas) -> dict[str, Any]:
-        """Nothing besides the table."""
-        return {}
-
     def joint_values(self, points: np.ndarray) -> Values:
-        """The joint angles."""
         return Values(self.unknowns, points)
-
-    def dataset_variables(self, atlas: Atlas) -> dict[str, Variable]:
-        """Nothing: the unknowns are the joint angles."""
-        return {}
-
-    def files(self) -> dict[str, Callable[[Path], object]]:
-        """None: the table stands in the dataset."""
-        return {}
 
 
 class MechanismSubject(Subject):
@@ -270,16 +213,9 @@ class MechanismSubject(Subject):
         self.unknowns = self.labels
         self.size = self.readout.structure.unit
         self.name = mechanism.name
-
-    @property
-    def factors(self) -> np.ndarray:
-        """1 of angles, the characteristic length of lengths."""
-        return self.readout.structure.scales
-
-    @property
-    def geometry(self) -> Loop | Mechanism:
-        """The table of a single loop, else the mechanism."""
-        return self.readout.mechanism if self.table is None else self.table
+        self.gruebler = mechanism.gruebler
+        self.factors = self.readout.structure.scales
+        self.geometry = mechanism if self.table is None else self.table
 
     def as_loop(self) -> Loop:
         """The loop through the axes of the joints."""
@@ -288,27 +224,18 @@ class MechanismSubject(Subject):
         return loop_geometry(self.readout.mechanism)
 
     def still_joints(self, atlas: Atlas, form: int) -> Sequence[str]:
-        """The names of the joints."""
         from linkages.readout.facts import form_facts
 
         return tuple(form_facts(atlas, form, self.readout).still)
 
     def heading(self, atlas: Atlas) -> str:
-        """What stands above configurations."""
         units = [words for unit, words in UNITS.items() if unit in atlas.units]
         return f"{', '.join(self.labels)} ({', '.join(units)})"
 
-    @property
-    def gruebler(self) -> int:
-        """The count of the mechanism."""
-        return self.readout.mechanism.gruebler
-
     def equations(self) -> Problem:
-        """The closure of the mechanism."""
         return self.readout.closure
 
     def in_loop_angles(self, atlas: Atlas) -> Atlas:
-        """An atlas in the joint angles of a single loop."""
         from linkages.readout.loop_atlas import in_loop_angles
 
         return in_loop_angles(atlas, self.readout)
@@ -326,7 +253,7 @@ class MechanismSubject(Subject):
         """The bodies by name; of a single loop the links."""
         if self.table is None:
             return self.readout.mechanism.bodies
-        return names_of_links(self.table)
+        return super().part_names
 
     def approaches(self, branch: Branch) -> tuple[Approach, ...]:
         """Those of bodies; of a single loop those of links."""
@@ -343,7 +270,6 @@ class MechanismSubject(Subject):
         return list(ranges_beyond_limits(self.readout.mechanism))
 
     def still(self, index: int, value: float) -> str:
-        """The name of the variable."""
         return self.labels[index]
 
     def motion(self, atlas: Atlas, form: int) -> dict[str, Any]:
@@ -360,7 +286,7 @@ class MechanismSubject(Subject):
 
     def joint_values(self, points: np.ndarray) -> Values:
         """All variables, and the unit quaternions of spherical joints."""
-        from linkages.export.motion import quaternions_without_jumps
+        from linkages.export.model import quaternions_without_jumps
 
         columns = [self.readout.values(points)]
         names = self.readout.labels()
@@ -416,11 +342,6 @@ class NetworkSubject(MechanismSubject):
         return {**super().document(atlas), "network": values}
 
 
-def names_of_links(loop: Loop) -> tuple[str, ...]:
-    """What the links of a loop are called."""
-    return tuple(link_name(link, loop.n) for link in range(loop.n))
-
-
 def as_subject(linkage: Linkage | Mechanism) -> Subject:
     """What `linkages.load` returns, as a subject."""
     if isinstance(linkage, Linkage):
@@ -447,3 +368,62 @@ def _linkage_of(atlas: Atlas) -> Linkage | Mechanism:
     mechanism = network_of(atlas) or mechanism_of(atlas)
     assert mechanism is not None
     return mechanism
+
+
+SHOWN_SHARE = 0.5e-4 / 360  # of a turn, that four digits of a degree do not show
+
+
+def numbers_at(atlas: Atlas, point: NDArray[np.float64]) -> list[float]:
+    """The unknowns (n,) of an atlas, angles between -pi and pi, lengths in the user's
+    unit; of a mechanism that is a single loop the joint angles of this loop."""
+    subject = subject_at(atlas)
+    to_angles = subject.to_angles
+    periods = atlas.periods[to_angles.columns]
+    factors = subject.factors[to_angles.columns]
+    numbers = wrap(to_angles.points(point), periods) * factors
+    return [float(number) for number in numbers]
+
+
+class ArclengthUnit(NamedTuple):
+    """How arclengths are shown: times ``factor``, with ``name`` behind."""
+
+    factor: float
+    name: str
+
+
+def arclength_unit(atlas: Atlas) -> ArclengthUnit:
+    """The unit of arclengths on the screen: degrees, where all unknowns are angles;
+    else that of the unknowns, in which lengths are over the characteristic length."""
+    if set(atlas.units) == {"rad"}:
+        return ArclengthUnit(float(np.degrees(1.0)), "deg")
+    return ArclengthUnit(1.0, unit_of_arclengths(atlas))
+
+
+def unit_of_arclengths(atlas: Atlas) -> str:
+    """What arclengths count as they are in the atlas and in files: rad, lengths over
+    the characteristic length, or both."""
+    if set(atlas.units) == {"rad"}:
+        return "rad"
+    lengths = f"lengths over {subject_at(atlas).size:.4g}"
+    return f"rad, {lengths}" if "rad" in atlas.units else lengths
+
+
+def show_configuration(atlas: Atlas, point: NDArray[np.float64]) -> str:
+    """The unknowns (n,) as text: angles in degrees, above -180 and up to 180, lengths
+    in the user's unit; those of a mechanism from its reference configuration."""
+    angles = wrap(point, atlas.periods, within=SHOWN_SHARE)
+    return " ".join(f"{text:>9}" for text in show_travel(atlas, angles))
+
+
+def show_travel(atlas: Atlas, point: NDArray[np.float64], digits: int = 4) -> list[str]:
+    """The unknowns (n,) as texts, as they stand, with so many digits of a degree."""
+    is_angle = [unit == "rad" for unit in atlas.units]
+    texts = []
+    for value, factor, angle in zip(
+        point, subject_at(atlas).factors, is_angle, strict=True
+    ):
+        if angle:
+            texts.append(in_degrees(value, digits))
+        else:
+            texts.append(in_lengths(factor * value, factor))
+    return texts

@@ -15,9 +15,8 @@ from bifurc.atlas import Atlas, Event, Form, MeetingPoint, NearMotion
 from bifurc.completeness import completeness_document
 from bifurc.decisions import is_tied
 from bifurc.singular.point import Kind
-from linkages.app.answer.configurations import numbers_at
 from linkages.app.answer.verdict import is_without_gaps
-from linkages.app.subject import subject_at
+from linkages.app.subject import numbers_at, subject_at
 from linkages.labels import FormLabels
 
 # values that JSON can hold; docs/results.md says what each key does

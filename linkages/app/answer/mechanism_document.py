@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -42,14 +43,7 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
         ],
         "idle_bodies": list(readout.structure.idle_bodies),
         "idle_turns": list(readout.structure.idle_turns),
-        "loose_chains": [
-            {
-                "bodies": list(chain.bodies),
-                "between": list(chain.between),
-                "freedoms": chain.freedoms,
-            }
-            for chain in loose_chains(readout.structure)
-        ],
+        "loose_chains": [asdict(chain) for chain in loose_chains(readout.structure)],
         "characteristic_length": readout.structure.unit,
         "origin": list(mechanism.origin),
         "coordinate_rounding": mechanism.coordinate_rounding,

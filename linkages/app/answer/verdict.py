@@ -16,9 +16,8 @@ from bifurc.decisions import closes_to_rounding
 from bifurc.singular.point import Kind
 from bifurc.systems.verdict import has_only_open_points
 from bifurc.tables import count_of
-from linkages.app.answer.configurations import ArclengthUnit, arclength_unit
 from linkages.app.exit_codes import ExitCode
-from linkages.app.subject import subject_at
+from linkages.app.subject import ArclengthUnit, arclength_unit, subject_at
 from linkages.app.texts.numbers import in_degrees, in_lengths
 from linkages.statements import has_all_assemblies
 from linkages.turns.translates import translates_of

@@ -12,6 +12,7 @@ from linkages.app.options import (
     form_option,
     hold_options,
     json_option,
+    number_option,
     param_option,
     search_options,
     verbose_option,
@@ -23,15 +24,12 @@ LARGEST = 1e100  # diameter, as lengths of links
 @click.command("clearance", epilog=exit_code_table())
 @click.argument("source", metavar="NAME|FILE.toml|ATLAS.nc")
 @form_option
-@click.option(
+@number_option(
     "--diameter",
-    type=NumberRange(min=0, max=LARGEST),
-    default=0.0,
-    show_default=True,
-    help=(
-        "Diameter of the links, in the unit of the linkage; 0 is that of their "
-        "middle lines."
-    ),
+    NumberRange(min=0, max=LARGEST),
+    0.0,
+    "Diameter of the links, in the unit of the linkage; 0 is that of their middle "
+    "lines.",
 )
 @json_option("; angles in radians")
 @hold_options
@@ -44,7 +42,6 @@ def clearance_command(
     diameter: float,
     as_json: bool,
     parameters: tuple[str, ...],
-    verbose: bool,
     search: SearchOptions,
     hold: HoldOptions,
 ) -> None:
@@ -67,11 +64,8 @@ def clearance_command(
         clearance_of,
         describe_clearance,
     )
-    from linkages.app.status import say_more
     from linkages.app.texts.form_names import choose_forms, require_forms
 
-    if verbose:
-        say_more()
     atlas = atlas_of(source, parameters, search, hold)
     require_forms(atlas)
     chosen = choose_forms(atlas, forms)

@@ -9,7 +9,7 @@ import click
 
 from linkages.app.exit_codes import exit_code_table
 from linkages.app.options import FILE, HoldOptions, hold_options
-from linkages.app.output import require_ending, require_writable, say, writing_to
+from linkages.app.output import require_ending, require_writable, say, write_content
 from linkages.formats.table import READ_WORDS, WRITTEN, WRITTEN_WORDS, mechanism_text
 
 if TYPE_CHECKING:
@@ -34,14 +34,12 @@ are 0; that of a network is one with its locks.
 def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
     """Write a mechanism to a file of another format."""
     require_ending(TARGET, out, *WRITTEN)
-    from bifurc.files.atomic import replace_file
     from bifurc.tables import count_of
 
     mechanism = _mechanism(source, hold)
     text = mechanism_text(mechanism, out)
     require_writable(out, TARGET)
-    with writing_to(out, TARGET):
-        replace_file(out, lambda path: path.write_text(text, encoding="utf-8"))
+    write_content(out, text, TARGET)
     bodies = count_of(len(mechanism.bodies), "body")
     joints = count_of(len(mechanism.joints), "joint")
     say(f"{out}: {mechanism.name}, {bodies}, {joints}")
@@ -58,8 +56,7 @@ def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
 def _mechanism(source: str, hold: HoldOptions) -> Mechanism:
     """The mechanism of a file; raises `CommandError` for a single loop that is given as
     a table or as axes."""
-    from linkages.app.choice import require_kind
-    from linkages.app.inputs import choose_held
+    from linkages.app.choice import choose_held, require_kind
     from linkages.mechanisms.mechanism import Mechanism
 
     refusal = (

@@ -9,23 +9,24 @@ from typing import TYPE_CHECKING
 import click
 from click.core import ParameterSource
 
-from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
+from linkages.app.exit_codes import CommandError, exit_code_table
 from linkages.app.options import (
     FILE,
     HoldOptions,
+    PrintOptions,
     SearchOptions,
     form_option,
     hold_options,
+    number_option,
     param_option,
+    print_options,
     search_options,
     verbose_option,
 )
-from linkages.app.reports.print_options import PrintOptions, print_options
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
-    from linkages.export.model import LinkageModel
-    from linkages.export.motion import Motion
+    from linkages.export.model import LinkageModel, Motion
 
 TO = "--to"
 MODEL, TABLE = ".glb", ".csv"
@@ -67,12 +68,11 @@ TARGETS = {
     metavar="FROM TO",
     help="A route between two forms; may be given several times.",
 )
-@click.option(
+@number_option(
     "--count",
-    type=click.IntRange(FEWEST, MOST),
-    default=361,
-    show_default=True,
-    help="Configurations along each form or route, for .glb and .csv.",
+    click.IntRange(FEWEST, MOST),
+    361,
+    "Configurations along each form or route, for .glb and .csv.",
 )
 @print_options
 @hold_options
@@ -86,7 +86,6 @@ def export_command(
     routes: tuple[tuple[str, str], ...],
     count: int,
     parameters: tuple[str, ...],
-    verbose: bool,
     search: SearchOptions,
     hold: HoldOptions,
     printing: PrintOptions,
@@ -108,11 +107,8 @@ def export_command(
     """
     from linkages.app.answer.verdict import exit_by, judge
     from linkages.app.output import require_ending, require_writable
-    from linkages.app.status import say_more
     from linkages.app.texts.form_names import require_forms
 
-    if verbose:
-        say_more()
     require_ending(TO, out, *MOTIONS, *PARTS, *MECHANISMS)
     check_options(out)
     check_count_of_forms(out, forms)
@@ -214,8 +210,7 @@ def export_parts(
 
 def export_mechanism(atlas: Atlas, texts: tuple[str, ...], out: Path) -> None:
     """Write the linkage where the first of the forms begins."""
-    from bifurc.files.atomic import replace_file
-    from linkages.app.output import writing_to
+    from linkages.app.output import write_content
     from linkages.app.texts.form_names import choose_forms
     from linkages.formats.table import mechanism_text
     from linkages.labels import loop_of
@@ -223,9 +218,7 @@ def export_mechanism(atlas: Atlas, texts: tuple[str, ...], out: Path) -> None:
 
     form = choose_forms(atlas, texts)[0]
     mechanism = mechanism_of_loop(loop_of(atlas), form.branch(0.0))
-    text = mechanism_text(mechanism, out)
-    with writing_to(out, TO):
-        replace_file(out, lambda part: part.write_text(text, encoding="utf-8"))
+    write_content(out, mechanism_text(mechanism, out), TO)
     click.echo(f"wrote {out}: {form.name}", err=True)
 
 
@@ -237,13 +230,10 @@ def export_motions(
     out: Path,
 ) -> None:
     """Write the motions along forms and routes."""
-    from bifurc.files.atomic import replace_file
-    from linkages.app.output import writing_to
+    from linkages.app.output import write_content
 
     motions = choose_motions(atlas, forms, routes, count)
-    content = make_content(atlas, motions, out)
-    with writing_to(out, TO):
-        replace_file(out, lambda part: part.write_bytes(content))
+    write_content(out, make_content(atlas, motions, out), TO)
     names = ", ".join(motion.name for motion in motions)
     click.echo(f"wrote {out}: {names}", err=True)
 
@@ -256,7 +246,7 @@ def choose_motions(
 ) -> list[Motion]:
     """The motions along forms and routes, all forms where neither is named."""
     from linkages.app.texts.form_names import choose_forms
-    from linkages.export.motion import motion_of_form
+    from linkages.export.model import motion_of_form
 
     chosen = choose_forms(atlas, forms) if forms or not routes else []
     motions = [motion_of_form(form, count) for form in chosen]
@@ -278,25 +268,22 @@ def make_route_motion(atlas: Atlas, start: str, goal: str, count: int) -> Motion
     without length.
     """
     from bifurc.errors import RouteError
-    from bifurc.routes.route import find_route
+    from linkages.app.atlas_source import route_between
     from linkages.app.subject import subject_at
-    from linkages.export.motion import motion_of_route
+    from linkages.export.model import motion_of_route
 
     option = f"--route {start!r} {goal!r}"
     try:
         first, last = atlas.full_name(start), atlas.full_name(goal)
     except RouteError as error:
         raise CommandError(f"{option}: {error}") from None
-    problem = subject_at(atlas).equations()
-    try:
-        route = find_route(atlas, first, last, problem=problem)
-    except RouteError as error:
-        raise CommandError(str(error), ExitCode.NO_ROUTE) from None
+    route = route_between(atlas, first, last)
     if not route.legs:
         raise CommandError(
             f"{option}: it begins and ends in one configuration of {first!r}; name two "
             "different forms, or --form for all of one"
         )
+    problem = subject_at(atlas).equations()
     return motion_of_route(atlas, route, f"{first} to {last}", count, problem)
 
 
@@ -320,7 +307,7 @@ def make_table(atlas: Atlas, motion: Motion) -> str:
     """The joint variables along a motion: angles of a loop, or all variables of a
     mechanism and the unit quaternions of its spherical joints."""
     from linkages.app.subject import subject_at
-    from linkages.export.motion import make_angle_table
+    from linkages.export.model import make_angle_table
 
     joints = subject_at(atlas).joint_values(motion.configurations)
     return make_angle_table(motion.arclength, joints.values, joints.names)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import click
 
 from linkages.app.exit_codes import ExitCode, exit_code_table
@@ -12,23 +10,20 @@ from linkages.app.options import (
     NumberRange,
     hold_options,
     json_option,
+    number_option,
     param_option,
 )
-
-if TYPE_CHECKING:
-    pass
 
 LARGEST_TOLERANCE = 1  # as large as the linkage itself
 
 
 @click.command("identify", epilog=exit_code_table())
 @click.argument("linkage", metavar="FILE.toml|NAME")
-@click.option(
+@number_option(
     "--tolerance",
-    default=1e-8,
-    type=NumberRange(min=0, max=LARGEST_TOLERANCE, min_open=True),
-    show_default=True,
-    help="How far a table may be from the linkage it is.",
+    NumberRange(min=0, max=LARGEST_TOLERANCE, min_open=True),
+    1e-8,
+    "How far a table may be from the linkage it is.",
 )
 @json_option("; angles in radians")
 @hold_options
@@ -51,7 +46,7 @@ def identify_command(
       bifurc identify my_linkage.toml
       bifurc identify four-bennett-network --lock 2=40 --lock 6=-75 --without-centre
     """
-    from linkages.app.inputs import choose_held
+    from linkages.app.choice import choose_held
     from linkages.app.output import say, say_json
     from linkages.app.reports.identify import (
         describe_identification,

@@ -16,6 +16,7 @@ from linkages.app.options import (
     SearchOptions,
     hold_options,
     json_option,
+    no_certify_option,
     out_option,
     param_option,
     search_options,
@@ -24,18 +25,14 @@ from linkages.app.options import (
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
-    from linkages.app.figure_axes import FigureAxes
+    from linkages.app.files import FigureAxes
 
 
 @click.command("map", epilog=exit_code_table())
 @click.argument("linkage", metavar="NAME|FILE.toml")
 @out_option("dataset, graph, summary, figures and the page map.html")
 @json_option("; angles in radians")
-@click.option(
-    "--no-certify",
-    is_flag=True,
-    help="Do not prove that no form jumps from one arc to another.",
-)
+@no_certify_option
 @click.option(
     "--digits",
     type=click.IntRange(20, 1000),
@@ -72,7 +69,6 @@ def map_command(
     digits: int | None,
     axes: tuple[str, ...] | None,
     against: tuple[str, ...] | None,
-    verbose: bool,
     search: SearchOptions,
     hold: HoldOptions,
 ) -> None:
@@ -92,10 +88,9 @@ def map_command(
     """
     from linkages.app.answer.verdict import judge
     from linkages.app.atlas_source import explore_linkage
-    from linkages.app.figure_axes import figure_axes
-    from linkages.app.inputs import choose_held
-    from linkages.app.output import require_folder, say
-    from linkages.app.status import say_more
+    from linkages.app.choice import choose_held
+    from linkages.app.files import figure_axes
+    from linkages.app.output import require_folder, say, say_written
 
     if as_json and digits:
         raise CommandError(
@@ -104,10 +99,7 @@ def map_command(
     require_out(out, axes=axes, against=against)
     if hold.is_without_centre and digits:
         raise CommandError("--digits: it does not go with --without-centre")
-    if verbose:
-        say_more()
-    if out is not None:
-        require_folder(out)
+    require_folder(out)
     mechanism = choose_held(linkage, parameters, hold)
     over = figure_axes(mechanism, axes, against)
     # Ctrl-C ends the search, but not before what was found is shown and written
@@ -124,8 +116,7 @@ def map_command(
     if out is not None:
         paths += draw_figures(atlas, out, over)
         paths.append(write_map_page(atlas, out))
-        names = ", ".join(path.name for path in paths)
-        click.echo(f"wrote {names} to {out}", err=True)
+        say_written(paths, out)
     verdict = judge(atlas)
     if as_json and verdict.code is not ExitCode.DONE:
         click.echo(verdict.sentence, err=True)

@@ -51,9 +51,8 @@ def network_command(
       bifurc network serial-bennett-network --locks --kinks 40 -75 --out out
     """
     from linkages.app.choice import choose_linkage, require_kind
-    from linkages.app.output import require_folder, say
-    from linkages.app.texts.lock_tables import make_page
-    from linkages.app.texts.network_text import describe_network
+    from linkages.app.output import require_folder, say, say_written
+    from linkages.app.texts.network_text import describe_network, make_page
     from linkages.networks.entries import NETWORKS
     from linkages.networks.mechanism import NetworkMechanism
 
@@ -66,15 +65,13 @@ def network_command(
         say(describe_network(NETWORKS[name]))
         return
     angles = () if kinks is None else _radians(kinks)
-    if out is not None:
-        require_folder(out)
+    require_folder(out)
     chosen = require_kind(choose_linkage(name, parameters), NetworkMechanism, refusal)
     tables = _lock_all(chosen.placed.network, angles)
     page = make_page(name, tables)
     say(page)
     if out is not None:
-        names = ", ".join(path.name for path in _write(out, page, tables))
-        click.echo(f"wrote {names} to {out}", err=True)
+        say_written(_write(out, page, tables), out)
 
 
 def _lock_all(
@@ -82,19 +79,16 @@ def _lock_all(
 ) -> dict[str, list[LockedState]]:
     """What every pair of locks, at ``kinks`` (rad) if there are some, and every triple
     make of a network."""
-    from linkages.app.status import StatusLine
+    from linkages.app.output import StatusLine
     from linkages.identification.locked_networks import locked_states
 
-    status = StatusLine()
     tables: dict[str, list[LockedState]] = {}
-    try:
+    with StatusLine() as status:
         for count, title in ((2, "pairs"), (3, "triples")):
             states = tables[title] = []
             for state in locked_states(network, count, kinks if count == 2 else ()):
                 states.append(state)
                 status(f"{title} of locks", len(states))
-    finally:
-        status.wipe()
     return tables
 
 
@@ -102,7 +96,7 @@ def _write(out: Path, page: str, tables: dict[str, list[LockedState]]) -> list[P
     """The paths of the files just written to ``out``, all or none."""
     from bifurc.files.atomic import replace_files
     from linkages.app.output import writing_to
-    from linkages.app.texts.lock_tables import as_csv
+    from linkages.app.texts.network_text import as_csv
 
     def write(stage: Path) -> None:
         (stage / "locks.md").write_text(page + "\n", encoding="utf-8")

@@ -19,7 +19,6 @@ from linkages.app.options import (
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
-    from bifurc.routes.route import Route
 
 
 @click.command("route", epilog=exit_code_table())
@@ -49,7 +48,6 @@ def route_command(
     start_locks: str | None,
     goal_locks: str | None,
     parameters: tuple[str, ...],
-    verbose: bool,
     search: SearchOptions,
     hold: HoldOptions,
 ) -> None:
@@ -68,13 +66,10 @@ def route_command(
       bifurc route four-bennett-network --from "2=40,6=-75@p4=90" --to "2=40,4=90"
     """
     from linkages.app.answer.verdict import judge
-    from linkages.app.atlas_source import atlas_of
+    from linkages.app.atlas_source import atlas_of, route_between
     from linkages.app.output import say
-    from linkages.app.status import say_more
     from linkages.app.texts.route_text import describe_route
 
-    if verbose:
-        say_more()
     if start_locks is not None or goal_locks is not None:
         if start is not None:
             raise CommandError("--from, --to: they replace the names FROM and TO")
@@ -93,7 +88,7 @@ def route_command(
         raise CommandError(verdict.sentence, verdict.code)
     start_name = atlas.full_name(start)
     goal_name = atlas.full_name(goal)
-    route = _route_between(atlas, start_name, goal_name)
+    route = route_between(atlas, start_name, goal_name)
     say(describe_route(atlas, route, start_name, goal_name))
 
 
@@ -110,7 +105,7 @@ def _route_over_locks(
     from linkages.app.atlas_source import explore_linkage, require_uninterrupted
     from linkages.app.choice import choose_linkage, require_kind
     from linkages.app.output import say
-    from linkages.app.texts.lock_route_text import describe_lock_route, read_place
+    from linkages.app.texts.route_text import describe_lock_route, read_place
     from linkages.networks.entries import NETWORKS
     from linkages.networks.lock_routes import find_lock_route
     from linkages.networks.mechanism import NetworkMechanism, lock_network
@@ -139,16 +134,3 @@ def _route_over_locks(
         raise CommandError(str(error), ExitCode.NO_ROUTE) from None
     last = explore(lock_network(network, places[1].locks))
     say(describe_lock_route(route, chosen, last))
-
-
-def _route_between(atlas: Atlas, start: str, goal: str) -> Route:
-    """The shortest route between two forms or surfaces; raises `CommandError` where
-    there is none."""
-    from bifurc.errors import RouteError
-    from bifurc.routes.route import find_route
-    from linkages.app.subject import subject_at
-
-    try:
-        return find_route(atlas, start, goal, problem=subject_at(atlas).equations())
-    except RouteError as error:
-        raise CommandError(str(error), ExitCode.NO_ROUTE) from None

@@ -13,6 +13,7 @@ from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.options import (
     SearchOptions,
     json_option,
+    no_certify_option,
     out_option,
     search_options,
     verbose_option,
@@ -27,11 +28,7 @@ if TYPE_CHECKING:
 @click.argument("equations", metavar="FILE.toml")
 @out_option("dataset, graph, summary and figures")
 @json_option()
-@click.option(
-    "--no-certify",
-    is_flag=True,
-    help="Do not prove that no form jumps from one arc to another.",
-)
+@no_certify_option
 @click.option(
     "--param",
     "parameters",
@@ -56,7 +53,6 @@ def solve_command(
     as_json: bool,
     no_certify: bool,
     boxes: int,
-    verbose: bool,
     search: SearchOptions,
 ) -> None:
     """Find all solution curves of the equations in a file, their bifurcations, and the
@@ -71,14 +67,16 @@ def solve_command(
     from bifurc.systems.equation_file import read_equations
     from bifurc.systems.summary import make_summary
     from bifurc.systems.verdict import verdict_of
-    from linkages.app.output import require_folder, say, say_json
-    from linkages.app.status import say_more
+    from linkages.app.output import (
+        require_folder,
+        say,
+        say_json,
+        say_written,
+        writing_to,
+    )
 
-    if verbose:
-        say_more()
     system = read_equations(equations, _values(parameters))
-    if out is not None:
-        require_folder(out)
+    require_folder(out)
     paths: list[Path] = []
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
@@ -93,11 +91,16 @@ def solve_command(
                 say(summary)
         finally:  # where nothing can be shown, there are still the files
             if out is not None:
-                paths = write_numbers(atlas, out, summary)
+                from linkages.app.files import write_data
+
+                with writing_to(out):
+                    paths = write_data(atlas, out, summary)
     if out is not None:
-        paths += draw_figures(atlas, out)
-        names = ", ".join(path.name for path in paths)
-        click.echo(f"wrote {names} to {out}", err=True)
+        from linkages.app.files import write_figures
+
+        with writing_to(out):
+            paths += write_figures(atlas, out)
+        say_written(paths, out)
     code = exit_code_of(atlas)
     if as_json and code is not ExitCode.DONE:
         click.echo(verdict_of(atlas), err=True)
@@ -106,14 +109,11 @@ def solve_command(
 
 def explore_system(system: EquationSystem, search: SearchOptions) -> Atlas:
     """The atlas of a system; progress is shown on standard error."""
-    from linkages.app.status import StatusLine
+    from linkages.app.output import StatusLine
 
     settings = search.settings()
-    status = StatusLine()
-    try:
+    with StatusLine() as status:
         return system.explore(settings=settings, seed=search.seed, progress=status)
-    finally:
-        status.wipe()
 
 
 def exit_code_of(atlas: Atlas) -> ExitCode:
@@ -129,24 +129,6 @@ def exit_code_of(atlas: Atlas) -> ExitCode:
     if is_open or atlas.completeness.level is Level.OUT_OF_TIME:
         return ExitCode.NOTHING_KNOWN
     return ExitCode.DOES_NOT_MOVE
-
-
-def write_numbers(atlas: Atlas, out: Path, summary: str) -> list[Path]:
-    """The paths of dataset, graph and summary, just written to ``out``."""
-    from linkages.app.files import write_data
-    from linkages.app.output import writing_to
-
-    with writing_to(out):
-        return write_data(atlas, out, summary)
-
-
-def draw_figures(atlas: Atlas, out: Path) -> list[Path]:
-    """The paths of the figures, just written to ``out``."""
-    from linkages.app.files import write_figures
-    from linkages.app.output import writing_to
-
-    with writing_to(out):
-        return write_figures(atlas, out)
 
 
 def _values(texts: tuple[str, ...]) -> dict[str, float]:

@@ -8,7 +8,13 @@ from pathlib import Path
 import click
 
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
-from linkages.app.options import FOLDER, SEED, STARTS, NamedPath
+from linkages.app.options import (
+    FOLDER,
+    HOLD_OPTIONS,
+    NamedPath,
+    seed_option,
+    starts_option,
+)
 
 MOST_MEMBERS = 1_000_000_000
 MOST_WORKERS = 10_000
@@ -36,12 +42,7 @@ MOST_WORKERS = 10_000
         "JOINT=VALUE, or JOINT=LOW:HIGH with --random; in the units of `bifurc map`."
     ),
 )
-@click.option(
-    "--without-centre",
-    "is_without_centre",
-    is_flag=True,
-    help="Of a network with locks, take the single loop that its outer bars leave.",
-)
+@HOLD_OPTIONS["is_without_centre"]
 @click.option(
     "--random",
     type=click.IntRange(1, MOST_MEMBERS),
@@ -69,20 +70,8 @@ MOST_WORKERS = 10_000
     metavar="ADDRESS",
     help="Dask scheduler, for several machines: tcp://host:8786.",
 )
-@click.option(
-    "--starts",
-    default=200,
-    type=STARTS,
-    show_default=True,
-    help="Number of random starts of every member.",
-)
-@click.option(
-    "--seed",
-    default=0,
-    type=SEED,
-    show_default=True,
-    help="Seed of the random starts and members.",
-)
+@starts_option("Number of random starts of every member.")
+@seed_option("Seed of the random starts and members.")
 def sweep_command(
     source: str,
     parameters: tuple[str, ...],
@@ -146,7 +135,7 @@ def sweep_command(
 def _report(out: Path, counts: dict[str, int]) -> None:
     """Say how many members have which status; a failure has its own exit code."""
     from linkages.app.output import say
-    from linkages.app.sweep.fields import Status
+    from linkages.app.sweep.member import Status
 
     shown = ", ".join(f"{count} {name.lower()}" for name, count in counts.items())
     say(f"{out}: {shown}")

@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING
 
 import click
 
-from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
+from linkages.app.exit_codes import exit_code_table
 from linkages.app.options import (
-    SEED,
     HoldOptions,
     NumberRange,
     SearchOptions,
     hold_options,
+    number_option,
     out_option,
     param_option,
+    seed_option,
 )
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from bifurc.atlas import Atlas
 
 LARGEST_ERROR = 1  # rad, and characteristic lengths
 MOST_COPIES = 10_000
@@ -29,27 +29,14 @@ MOST_COPIES = 10_000
 
 @click.command("tolerance", epilog=exit_code_table())
 @click.argument("linkage", metavar="NAME|FILE.toml")
-@click.option(
+@number_option(
     "--error",
-    default=1e-4,
-    type=NumberRange(min=0, max=LARGEST_ERROR),
-    show_default=True,
-    help="Standard deviation of the errors.",
+    NumberRange(min=0, max=LARGEST_ERROR),
+    1e-4,
+    "Standard deviation of the errors.",
 )
-@click.option(
-    "--samples",
-    default=4,
-    type=click.IntRange(1, MOST_COPIES),
-    show_default=True,
-    help="Copies that are made.",
-)
-@click.option(
-    "--seed",
-    default=0,
-    type=SEED,
-    show_default=True,
-    help="Number of the first copy.",
-)
+@number_option("--samples", click.IntRange(1, MOST_COPIES), 4, "Copies that are made.")
+@seed_option("Number of the first copy.")
 @hold_options
 @param_option
 @out_option("tolerance.txt and .png")
@@ -73,18 +60,18 @@ def tolerance_command(
       bifurc tolerance special-double-subtractive-goldberg --error 1e-4 --out out
       bifurc tolerance four-bennett-network --lock 2=40 --lock 6=-75
     """
-    from linkages.app.atlas_source import explore_linkage
-    from linkages.app.inputs import choose_held
+    from linkages.app.atlas_source import explore_linkage, require_uninterrupted
+    from linkages.app.choice import choose_held
     from linkages.app.output import require_folder, say
-    from linkages.app.reports.tolerance import climb, measure
+    from linkages.app.reports.tolerance import climb, describe_tolerance, measure
     from linkages.app.subject import as_subject
-    from linkages.app.texts.tolerance_text import describe_tolerance
+    from linkages.app.texts.form_names import require_forms
 
-    if out is not None:
-        require_folder(out)
+    require_folder(out)
     chosen = choose_held(linkage, parameters, hold)
     atlas = explore_linkage(chosen, SearchOptions())
-    _require_forms(atlas)
+    require_uninterrupted(atlas)
+    require_forms(atlas, " to measure.")
     subject = as_subject(chosen)
     # in the unknowns of the equations of what is made with errors
     nominal, atlas = subject.geometry, subject.in_loop_angles(atlas)
@@ -99,20 +86,6 @@ def tolerance_command(
             from linkages.app.reports.tolerance_figure import draw_tolerance
 
             _write(text, draw_tolerance(atlas, copies[0], ladder), out)
-
-
-def _require_forms(atlas: Atlas) -> None:
-    """Raise `CommandError` unless there are forms whose closure can be measured."""
-    from linkages.app.answer.verdict import judge
-    from linkages.app.atlas_source import require_uninterrupted
-
-    require_uninterrupted(atlas)
-    if atlas.forms:
-        return
-    verdict = judge(atlas)
-    if verdict.code is not ExitCode.DONE:
-        raise CommandError(verdict.sentence, verdict.code)
-    raise CommandError(f"{verdict.sentence} It has no form of mobility 1 to measure.")
 
 
 def _write(text: str, figure: Figure, out: Path) -> None:

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 import click
 
 from linkages.app.exit_codes import ExitCode, exit_code_table
-from linkages.app.options import SEED, json_option
+from linkages.app.options import json_option, number_option, seed_option
 
 if TYPE_CHECKING:
-    from linkages.app.reports.verify import Verification
-    from linkages.app.reports.verify_network import NetworkVerification
+    from linkages.app.reports.verify import NetworkVerification, Verification
 
 MOST_MEMBERS = 1_000_000
 MOST_POINTS = 1_000_000
@@ -19,27 +18,13 @@ MOST_POINTS = 1_000_000
 
 @click.command("verify", epilog=exit_code_table())
 @click.argument("name", required=False)
-@click.option(
-    "--members",
-    default=1,
-    type=click.IntRange(1, MOST_MEMBERS),
-    show_default=True,
-    help="Members of each family.",
+@number_option(
+    "--members", click.IntRange(1, MOST_MEMBERS), 1, "Members of each family."
 )
-@click.option(
-    "--points",
-    default=6,
-    type=click.IntRange(1, MOST_POINTS),
-    show_default=True,
-    help="Points of an exact proof.",
+@number_option(
+    "--points", click.IntRange(1, MOST_POINTS), 6, "Points of an exact proof."
 )
-@click.option(
-    "--seed",
-    default=0,
-    type=SEED,
-    show_default=True,
-    help="Seed of what is drawn.",
-)
+@seed_option("Seed of what is drawn.")
 @json_option()
 def verify_command(
     name: str | None, members: int, points: int, seed: int, as_json: bool
@@ -57,7 +42,7 @@ def verify_command(
       bifurc verify mixed-double-goldberg-type-i --members 50 --json
     """
     from linkages.app.output import say, say_json
-    from linkages.app.texts.verify_text import make_verification_document
+    from linkages.app.reports.verify import make_verification_document
     from linkages.catalogue import catalogue
 
     names = list(catalogue()) if name is None else [name]
@@ -84,18 +69,16 @@ def _verify(
     name: str, members: int, points: int, seed: int
 ) -> tuple[Verification | NetworkVerification, str]:
     """What was checked of a linkage or a network, and as text."""
-    from linkages.app.texts.verify_text import (
+    from linkages.app.reports.verify import (
         describe_network_verification,
         describe_verification,
+        verify,
+        verify_network,
     )
     from linkages.networks.entries import NETWORKS
 
     if name in NETWORKS:
-        from linkages.app.reports.verify_network import verify_network
-
         of_network = verify_network(name, members, seed)
         return of_network, describe_network_verification(of_network)
-    from linkages.app.reports.verify import verify
-
     of_linkage = verify(name, members, points, seed)
     return of_linkage, describe_verification(of_linkage)

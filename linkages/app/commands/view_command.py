@@ -38,7 +38,6 @@ def view_command(
     parameters: tuple[str, ...],
     out: Path | None,
     no_open: bool,
-    verbose: bool,
     search: SearchOptions,
     hold: HoldOptions,
 ) -> None:
@@ -54,13 +53,14 @@ def view_command(
     """
     from linkages.app.answer.verdict import exit_by, judge
     from linkages.app.atlas_source import atlas_of
-    from linkages.app.output import require_ending, require_writable, writing_to
-    from linkages.app.status import say_more
+    from linkages.app.output import (
+        require_ending,
+        require_writable,
+        writing_to,
+    )
     from linkages.viewing.document import make_view_document
     from linkages.viewing.page import write_page
 
-    if verbose:
-        say_more()
     path = out or Path(Path(source).stem + PAGE)
     require_ending("--out", path, PAGE)
     require_writable(path)

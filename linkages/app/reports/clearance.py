@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from bifurc.atlas import Atlas, Form
-from bifurc.tables import table
-from linkages.app.answer.configurations import (
+from bifurc.tables import section_of
+from linkages.app.subject import (
     arclength_unit,
     numbers_at,
     show_configuration,
+    subject_at,
 )
-from linkages.app.subject import subject_at
 from linkages.links.clearance import Approach
 
 
@@ -68,7 +68,6 @@ def clearance_document(
 
 
 SHOWN = 1e-9  # in characteristic lengths: what is less comes out as 0
-HEADS = ("clearance", "at most less by")
 
 
 def describe_clearance(atlas: Atlas, clearances: list[FormClearance]) -> str:
@@ -88,24 +87,22 @@ def _of_form(atlas: Atlas, clearance: FormClearance) -> str:
     if not clearance.approaches:
         return f"{clearance.form.name}: every two bodies share a joint"
     subject = subject_at(atlas)
+    word = subject.parts
     smallest = SHOWN * subject.size
     unit = arclength_unit(atlas)
     rows = []
     for approach in clearance.approaches:
         rows.append(
-            (
-                " and ".join(clearance.links(approach)),
-                _length(clearance.gap(approach), smallest),
-                f"{approach.error:.1g}",
-                f"{unit.factor * approach.s:.3f}",
-                show_configuration(atlas, approach.theta),
-            )
+            {
+                word: " and ".join(clearance.links(approach)),
+                "clearance": _length(clearance.gap(approach), smallest),
+                "at most less by": f"{approach.error:.1g}",
+                f"arclength ({unit.name})": f"{unit.factor * approach.s:.3f}",
+                subject.heading(atlas): show_configuration(atlas, approach.theta),
+            }
         )
-    links, least, *_ = rows[0]
-    word = subject.parts
-    title = f"{clearance.form.name}: the least clearance is {least} ({word} {links})"
-    heads = (word, *HEADS, f"arclength ({unit.name})", subject.heading(atlas))
-    return f"{title}\n{table(heads, rows)}"
+    least = f"{rows[0]['clearance']} ({word} {rows[0][word]})"
+    return section_of(f"{clearance.form.name}: the least clearance is {least}", rows)
 
 
 def _length(length: float, smallest: float) -> str:

@@ -14,7 +14,7 @@ from bifurc.singular.confirm import (
     Convergence,
     confirm_singular_point,
 )
-from bifurc.tables import table
+from bifurc.tables import section_of
 from linkages.app.choice import choose_precisely
 from linkages.app.subject import LoopSubject, subject_at
 from linkages.closure.precise import precise_residual
@@ -61,7 +61,7 @@ def describe_confirmation(
         word = confirmation.convergence.name.lower().replace("_", " ")
         if is_rounded and confirmation.convergence is Convergence.INCONSISTENT:
             word = ROUNDED
-        rows.append((*_row(point, confirmation), word))
+        rows.append({**_row(point, confirmation), "convergence": word})
         endings[confirmation.convergence] = f"  {confirmation.convergence.value}"
         if confirmation.convergence is Convergence.INCONSISTENT:
             gap = max(gap, confirmation.residual)
@@ -70,21 +70,8 @@ def describe_confirmation(
     title = f"Confirmation at {digits} digits"
     if not rows:
         return f"{title}: there is no singular point to confirm."
-    heads = (
-        "name",
-        "kind",
-        "digits right",
-        "distance (rad)",
-        "error stated",
-        "null space (rad)",
-        "nullity",
-        "next s.v.",
-        "|F|",
-        "error here",
-        "convergence",
-    )
     explanations = "\n".join(endings.values())
-    return f"{title}\n{table(heads, rows)}\n\nConvergence\n{explanations}"
+    return f"{section_of(title, rows)}\n\nConvergence\n{explanations}"
 
 
 def _of_rounded_numbers(gap: float) -> str:
@@ -96,21 +83,21 @@ def _of_rounded_numbers(gap: float) -> str:
     )
 
 
-def _row(meeting: MeetingPoint, confirmation: Confirmation) -> tuple[str, ...]:
+def _row(meeting: MeetingPoint, confirmation: Confirmation) -> dict[str, str]:
     stated = meeting.point.error
     within = confirmation.distance <= stated + confirmation.error
-    return (
-        meeting.name,
-        meeting.kind.value,
-        f"{confirmation.agreeing_digits:.1f}",
-        f"{confirmation.distance:.1e}",
-        f"{stated:.1e} {'holds' if within else 'exceeded'}",
-        f"{confirmation.angle:.1e}",
-        str(confirmation.nullity),
-        _smallest_regular(confirmation),
-        f"{confirmation.residual:.0e}",
-        f"{confirmation.error:.0e}",
-    )
+    return {
+        "name": meeting.name,
+        "kind": meeting.kind.value,
+        "digits right": f"{confirmation.agreeing_digits:.1f}",
+        "distance (rad)": f"{confirmation.distance:.1e}",
+        "error stated": f"{stated:.1e} {'holds' if within else 'exceeded'}",
+        "null space (rad)": f"{confirmation.angle:.1e}",
+        "nullity": str(confirmation.nullity),
+        "next s.v.": _smallest_regular(confirmation),
+        "|F|": f"{confirmation.residual:.0e}",
+        "error here": f"{confirmation.error:.0e}",
+    }
 
 
 def _smallest_regular(confirmation: Confirmation) -> str:

@@ -11,15 +11,20 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Form
 from bifurc.tables import table
-from linkages.app.answer.configurations import show_configuration
 from linkages.app.exit_codes import CommandError, ExitCode
-from linkages.app.reports.print_options import PrintOptions
+from linkages.app.options import PrintOptions
+from linkages.app.subject import show_configuration
 from linkages.app.texts.numbers import link_name
 from linkages.labels import loop_of
 from linkages.loop import Loop
 from linkages.printing.assembly import Dimensions, Kind, Part
-from linkages.printing.interference import PartApproach, find_meetings
-from linkages.printing.seating import REACHES, Seating, choose_seats
+from linkages.printing.seating import (
+    REACHES,
+    PartApproach,
+    Seating,
+    choose_seats,
+    find_meetings,
+)
 from linkages.values import GeometryError, told_apart
 
 DIAMETER, PLAY, WALL, SIZE = 6.0, 0.3, 1.2, 100.0  # mm

@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 
 from bifurc.atlas import Atlas, MeetingPoint
 from bifurc.curves.valley import Unfolding
-from linkages.app.answer.configurations import arclength_unit, unit_of_arclengths
 from linkages.app.reports.tolerance import Ladder, Tolerance, half_branches, room_beside
+from linkages.app.subject import arclength_unit, unit_of_arclengths
 
 COLOURS = (
     "#0077bb",

@@ -1,10 +1,12 @@
 """Verification of linkages: conditions, exact closure, mobility, closed form against
-traced curve, misprints."""
+traced curve, misprints; of networks: closed form against the closure in space."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +14,7 @@ from numpy.typing import NDArray
 from bifurc.branch import Branch
 from bifurc.curves.continuation import trace_branch
 from bifurc.numerics.singular_values import singular_values
+from bifurc.tables import count_of
 from linkages.catalogue import entry
 from linkages.closed_forms.closed_form import ClosedForm
 from linkages.closed_forms.comparison import compare
@@ -22,6 +25,7 @@ from linkages.errata.erratum import HOLDS
 from linkages.errata.misprints import errata_of
 from linkages.loop import Loop
 from linkages.mobility import survey
+from linkages.networks.entries import NETWORKS, NetworkEntry
 from linkages.values import GeometryError
 
 Floats = NDArray[np.float64]
@@ -228,3 +232,215 @@ def _closure_error(problem: LoopClosure, branch: Branch) -> float:
     """The largest residual along a branch."""
     residuals = problem.residuals(branch.sample(SAMPLES))
     return float(np.linalg.norm(residuals, axis=1).max())
+
+
+CONFIGURATIONS = 200  # of the closed form, at which closure in space is looked at
+
+
+@dataclass(frozen=True)
+class NetworkMember:
+    """One member of a network: its parameters, or why the constructor ``refused`` them.
+
+    ``closure`` is the largest residual in space over so many ``configurations`` of the
+    closed form, relative to the characteristic length; ``mobility`` is the number of
+    unknowns less the largest rank there, and that ``by_closed_form``.
+    """
+
+    parameters: Mapping[str, float]
+    refused: str = ""
+    configurations: int = 0
+    closure: float = NAN
+    mobility: int = 0
+    by_closed_form: int = 0
+
+
+@dataclass(frozen=True)
+class NetworkVerification:
+    """Everything checked about one network; ``expected`` is the mobility that is
+    published."""
+
+    name: str
+    conditions: tuple[str, ...]
+    members: tuple[NetworkMember, ...]
+    expected: int
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """What does not hold, in words; empty when all is well."""
+        sentences = []
+        real = [member for member in self.members if not member.refused]
+        for number, member in enumerate(real, start=1):
+            sentences += [f"member {number}: {text}" for text in self._faults(member)]
+        if not real:
+            sentences.append("no member that is not refused")
+        return tuple(sentences)
+
+    def _faults(self, member: NetworkMember) -> list[str]:
+        """What is wrong with one member."""
+        faults = []
+        if member.mobility != self.expected:
+            faults.append(f"mobility {member.mobility} by rank, not {self.expected}")
+        if member.by_closed_form != self.expected:
+            mobility = member.by_closed_form
+            faults.append(f"mobility {mobility} by closed form, not {self.expected}")
+        if not member.closure <= CLOSURE:
+            faults.append(f"closed form misses closure by {member.closure:.1e}")
+        return faults
+
+
+def verify_network(name: str, members: int = 1, seed: int = 0) -> NetworkVerification:
+    """Verify the default member of the network called ``name`` and ``members`` - 1
+    random ones."""
+    source = NETWORKS[name]
+    rng = np.random.default_rng(seed)
+    parameters = [source.defaults]
+    parameters += [source.draw(rng) for _ in range(members - 1)]
+    return NetworkVerification(
+        name=name,
+        conditions=tuple(condition.text for condition in source.conditions),
+        members=tuple(_check_network(source, values, rng) for values in parameters),
+        expected=source.mobility,
+    )
+
+
+def _check_network(
+    source: NetworkEntry, values: Mapping[str, float], rng: np.random.Generator
+) -> NetworkMember:
+    """Build a member, and look at configurations of its closed form in space."""
+    # they import networkx, which a loop does not need
+    from linkages.closure.mechanism_closure import MechanismClosure
+    from linkages.decisions import is_dependent_constraint
+    from linkages.networks.assembly import assemble, motion_at
+    from linkages.networks.mechanism import lock_network
+
+    try:
+        network = source.build(**values)
+        mechanism = lock_network(network, {})
+    except GeometryError as refusal:
+        return NetworkMember(values, refused=str(refusal))
+    placed = mechanism.placed
+    problem = MechanismClosure(mechanism)
+    states = rng.permutation(assemble(network, {}))[:CONFIGURATIONS]
+    states = np.concatenate([placed.reference[None], states])
+    free = list(problem.structure.column_of)
+    points = placed.variables(states)[:, free]
+    residuals = np.linalg.norm(problem.residuals(points), axis=1)
+    singular_values = np.linalg.svd(problem.jacobians(points), compute_uv=False)
+    ranks = np.count_nonzero(~is_dependent_constraint(singular_values), axis=1)
+    return NetworkMember(
+        values,
+        configurations=len(points),
+        closure=float(residuals.max()),
+        mobility=problem.n - int(ranks.max()),
+        by_closed_form=motion_at(network, (), placed.reference).mobility,
+    )
+
+
+Json: TypeAlias = (
+    "bool | int | float | str | Sequence[Json] | Mapping[str, Json] | None"
+)
+
+
+def make_verification_document(
+    verification: Verification | NetworkVerification,
+) -> dict[str, Json]:
+    """The verification as plain values for JSON, where nan becomes None."""
+    values = asdict(verification)
+    values["failures"] = list(verification.failures)
+    return {key: _without_nan(value) for key, value in values.items()}
+
+
+def _without_nan(value: Json) -> Json:
+    if isinstance(value, Mapping):
+        return {key: _without_nan(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_without_nan(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def describe_verification(verification: Verification) -> str:
+    """The verification as a paragraph for the screen."""
+    lines = [verification.name]
+    lines += [_line("condition", text) for text in verification.conditions]
+    lines += [_line("closed form", _proof(form)) for form in verification.closed_forms]
+    if not verification.closed_forms:
+        lines.append(_line("closed form", "none in the sources"))
+    lines.append(_line("members", _count_members(verification.members)))
+    real = [member for member in verification.members if member.real]
+    if real:
+        closure = max(member.closure for member in real)
+        lines.append(_line("mobility", _mobility_by_both(real)))
+        lines.append(_line("closure", f"{closure:.1e} at most along the curves"))
+    if real and verification.closed_forms:
+        lines.append(_line("distance", _distance(real)))
+    lines += [_line("erratum", _erratum(erratum)) for erratum in verification.errata]
+    lines += [_line("FAILED", text) for text in verification.failures]
+    return "\n".join(lines)
+
+
+def describe_network_verification(verification: NetworkVerification) -> str:
+    """The verification of a network as a paragraph for the screen."""
+    lines = [verification.name]
+    lines += [_line("condition", text) for text in verification.conditions]
+    real = [member for member in verification.members if not member.refused]
+    refused = len(verification.members) - len(real)
+    lines.append(_line("members", f"{len(real)} checked, {refused} refused"))
+    if real:
+        by_rank = _alternatives({member.mobility for member in real})
+        by_form = _alternatives({member.by_closed_form for member in real})
+        mobility = f"{by_rank} by rank, {by_form} by closed form"
+        lines.append(_line("mobility", mobility))
+        closure = max(member.closure for member in real)
+        count = sum(member.configurations for member in real)
+        places = count_of(count, "configuration")
+        text = f"{closure:.1e} at most in space, at {places} of the closed form"
+        lines.append(_line("closure", text))
+    lines += [_line("FAILED", text) for text in verification.failures]
+    return "\n".join(lines)
+
+
+def _line(head: str, text: str) -> str:
+    return f"  {head:<13} {text}"
+
+
+def _proof(form: ClosedFormCheck) -> str:
+    proved = "NOT PROVED"
+    if form.proved:
+        proved = f"proved exactly at {count_of(form.points, 'point')}"
+    return f"{form.form}: {proved} (doubt {form.doubt:.0e}); {form.source}"
+
+
+def _count_members(members: Sequence[MemberCheck]) -> str:
+    traced = sum(member.real for member in members)
+    refused = sum(bool(member.refused) for member in members)
+    unreal = len(members) - refused - traced
+    return f"{traced} traced, {refused} refused, {unreal} without real configuration"
+
+
+def _mobility_by_both(members: Sequence[MemberCheck]) -> str:
+    by_rank = _alternatives({member.corank for member in members})
+    by_tracing = _alternatives({member.mobility for member in members})
+    curves = sum(len(member.outcomes) for member in members)
+    return f"{by_rank} by rank, {by_tracing} by tracing ({count_of(curves, 'curve')})"
+
+
+def _alternatives(values: set[int]) -> str:
+    return " or ".join(str(value) for value in sorted(values))
+
+
+def _distance(members: Sequence[MemberCheck]) -> str:
+    everywhere = max(member.distance for member in members)
+    certain = max(member.certain for member in members)
+    return (
+        f"{everywhere:.1e} rad at most from the closed form, "
+        f"{certain:.1e} off singular points"
+    )
+
+
+def _erratum(erratum: ErratumCheck) -> str:
+    return (
+        f"{erratum.equation}: printed fails by {erratum.printed:.1e}, "
+        f"corrected by {erratum.corrected:.1e}"
+    )

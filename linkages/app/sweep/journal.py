@@ -14,7 +14,7 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 
 from bifurc.errors import BifurcError
-from linkages.app.sweep.fields import FIELDS, Field, Record, Status
+from linkages.app.sweep.member import FIELDS, Field, Record, Status
 from linkages.app.sweep.plan import Plan
 
 try:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bifurc.errors import BifurcError
-from linkages.app.sweep.fields import FIELDS, Field, Record, Status
+from linkages.app.sweep.member import FIELDS, Field, Record, Status
 from linkages.app.sweep.plan import Block, Plan
 from linkages.app.sweep.subjects import JointName, Quantity
 

@@ -12,9 +12,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
 from urllib.parse import quote
 
-from linkages.app.choice import choose_linkage, require_kind
+from linkages.app.choice import NO_NETWORK, check_limits, choose_linkage, require_kind
 from linkages.app.exit_codes import CommandError
-from linkages.app.inputs import NO_NETWORK, check_limits
 from linkages.catalogue import entry
 from linkages.entry import Parameter, ParameterKind
 from linkages.linkage import Linkage, is_linkage_file

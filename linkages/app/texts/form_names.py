@@ -60,14 +60,13 @@ def choose_form(atlas: Atlas, text: str) -> Form:
     return numbered[text]
 
 
-def require_forms(atlas: Atlas) -> None:
-    """Raise `CommandError` unless there are forms to move along."""
+def require_forms(
+    atlas: Atlas, use: str = "; joints of a mechanism are held with --lock."
+) -> None:
+    """Raise `CommandError` unless there are forms for the ``use`` that it says."""
     if atlas.forms:
         return
     verdict = judge(atlas)
     if verdict.code is not ExitCode.DONE:
         raise CommandError(verdict.sentence, verdict.code)
-    raise CommandError(
-        f"{verdict.sentence} It has no form of mobility 1; joints of a mechanism are "
-        "held with --lock."
-    )
+    raise CommandError(f"{verdict.sentence} It has no form of mobility 1{use}")

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from bifurc.atlas import Atlas
-from bifurc.tables import section
+from bifurc.tables import section, section_of
 from bifurc.torus import wrap
-from linkages.app.answer.configurations import SHOWN_SHARE
 from linkages.app.answer.mechanism_document import describe_mechanism
+from linkages.app.subject import SHOWN_SHARE
 from linkages.app.texts.form_names import listed_numbers
 from linkages.app.texts.numbers import in_degrees, in_lengths, known_to
 from linkages.mechanisms.joint import Joint
@@ -32,8 +32,7 @@ def describe_joints(readout: Readout) -> str:
     joints = readout.mechanism.joints
     size = max(float(np.abs(joint.place).max()) for joint in joints)
     rows = [_joint_row(joint, size) for joint in joints]
-    heads = ("name", "kind", "bodies", "point", "direction", "locked")
-    text = section("Joints", heads, rows) + _coordinates(readout)
+    text = section_of("Joints", rows) + _coordinates(readout)
     is_turn = {
         variable.label: variable.motion.is_turn
         for variable in readout.mechanism.variables
@@ -88,7 +87,7 @@ def _couplings(mechanism: Mechanism) -> list[str]:
     return equations
 
 
-def _joint_row(joint: Joint, size: float) -> tuple[str, ...]:
+def _joint_row(joint: Joint, size: float) -> dict[str, str]:
     """A joint of a mechanism whose largest coordinate is ``size``."""
     motions = joint.motions * (len(joint.bodies) - 1)
     locks = [
@@ -96,14 +95,15 @@ def _joint_row(joint: Joint, size: float) -> tuple[str, ...]:
         for part, value, motion in zip(joint.parts, joint.locked, motions, strict=True)
         if value is not None
     ]
-    return (
-        joint.name,
-        joint.kind.value,
-        ", ".join(joint.bodies),
-        _vector(joint.point, size),
-        _vector(joint.direction, float(np.abs(joint.direction or 0.0).max())),
-        ", ".join(locks) or "-",
-    )
+    longest = float(np.abs(joint.direction or 0.0).max())
+    return {
+        "name": joint.name,
+        "kind": joint.kind.value,
+        "bodies": ", ".join(joint.bodies),
+        "point": _vector(joint.point, size),
+        "direction": _vector(joint.direction, longest),
+        "locked": ", ".join(locks) or "-",
+    }
 
 
 def _vector(vector: tuple[float, float, float] | None, size: float) -> str:
@@ -129,21 +129,20 @@ def describe_loops(atlas: Atlas, readout: Readout) -> str:
     for loop in document["loops"]:
         dependent = ", ".join(loop["dependent_joints"]) or "-"
         rows.append(
-            (
-                ", ".join(loop["joints"]),
-                str(loop["constraints"]),
-                str(loop["redundant"]),
-                dependent,
-            )
+            {
+                "joints": ", ".join(loop["joints"]),
+                "constraints": str(loop["constraints"]),
+                "redundant": str(loop["redundant"]),
+                "motion that others can make": dependent,
+            }
         )
-    heads = ("joints", "constraints", "redundant", "motion that others can make")
     count = (
         f"Mobility {atlas.mobility}; Grübler's count is {readout.mechanism.gruebler}"
     )
     count += f"{_special_count(readout.mechanism)}."
     for chain in document["loose_chains"]:
         count += f"\n{_of_loose_chain(chain)}"
-    loops = section("Loops", heads, rows)
+    loops = section_of("Loops", rows)
     return f"{loops}\n\n{count}" if loops else count
 
 

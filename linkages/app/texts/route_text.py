@@ -1,4 +1,5 @@
-"""A route of a linkage as text: degrees, joints numbered from 1."""
+"""A route of a linkage as text, degrees and joints numbered from 1; routes of a network
+over its locks, read from a command line and shown."""
 
 from __future__ import annotations
 
@@ -7,12 +8,25 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.routes.route import Route
 from bifurc.tables import count_of, table
-from linkages.app.answer.configurations import (
+from linkages.app.choice import read_kinks
+from linkages.app.exit_codes import CommandError
+from linkages.app.subject import (
     arclength_unit,
     show_configuration,
     show_travel,
+    subject_at,
 )
-from linkages.app.subject import subject_at
+from linkages.app.texts.network_text import describe_ring
+from linkages.app.texts.numbers import in_degrees
+from linkages.networks.lock_routes import (
+    LockRoute,
+    NetworkPlace,
+    Switch,
+    Travel,
+    show_locks,
+)
+from linkages.networks.mechanism import NetworkMechanism, network_of
+from linkages.readout.readout import Readout
 
 
 def describe_route(atlas: Atlas, route: Route, start: str, goal: str) -> str:
@@ -55,3 +69,86 @@ def _rows(atlas: Atlas, route: Route) -> list[tuple[str, ...]]:
 
 def _turns(atlas: Atlas, travel: np.ndarray) -> list[str]:
     return show_travel(atlas, travel, digits=2)
+
+
+def read_place(text: str, option: str, network: NetworkMechanism) -> NetworkPlace:
+    """The place of "2=40,6=-75@p4=90": locks, and behind @ the angle at which another
+    outer joint is; degrees, D-H angles, "p" may be left out.
+
+    Raises `CommandError` and `GeometryError`.
+    """
+    locks, at, angles = text.partition("@")
+    if not locks.strip():
+        raise CommandError(f"{option} {text}: it must begin with locks, such as 2=40")
+    if at and not angles.strip():
+        raise CommandError(f"{option} {text}: behind @ there must be an angle, p4=90")
+    ring = network.placed.network.plan.ring
+    named = [_without_p(part, ring) for part in angles.split(",")] if at else []
+    return NetworkPlace(
+        read_kinks([part.strip() for part in locks.split(",")], option),
+        read_kinks(named, option),
+    )
+
+
+def _without_p(text: str, ring: tuple[str, ...]) -> str:
+    """ "4=90" for "p4=90"."""
+    text = text.strip()
+    name, _, _ = text.partition("=")
+    is_known = name.strip() in ring
+    return text if is_known else text.removeprefix("p")
+
+
+def describe_lock_route(
+    route: LockRoute, network: NetworkMechanism, last: Atlas
+) -> str:
+    """A route over locks as a table, and what the network does at its end, of which
+    ``last`` is the map."""
+    ring = network.placed.network.plan.ring
+    rows: list[tuple[str, ...]] = [("", "start", "", *_angles(route.start))]
+    reached = route.start
+    for step in route.steps:
+        number = str(len(rows))
+        if isinstance(step, Switch):
+            rows.append((number, _switch(step), "", *_angles(reached)))
+            continue
+        reached = step.end
+        length = f"{np.degrees(step.length):.6g}"
+        rows.append((number, _travel(step), length, *_angles(reached)))
+    heads = ("", "", "length", *(f"joint {axis}" for axis in ring))
+    length = np.degrees(route.length)
+    parts = [
+        f"Route from the locks {show_locks(route.before)} to "
+        f"{show_locks(route.after)}: {count_of(route.switches, 'exchange')} of locks, "
+        f"{length:.6g} deg in joint space",
+        table(heads, rows),
+        "All in degrees; D-H angles of the outer joints. Locks are exchanged where the "
+        "network stands: one joint more is locked, and it is rigid, until another one "
+        "is released.",
+    ]
+    if route.starts > 1:
+        parts.append(
+            f"{route.starts} places are such as the start: the route leaves from that "
+            "from which it is shortest; name more angles behind @ for another one."
+        )
+    locked = network_of(last)
+    assert locked is not None
+    ranges = describe_ring(last, Readout(locked), locked)
+    parts.append(f"With the last locks\n{ranges}")
+    return "\n\n".join(parts)
+
+
+def _switch(step: Switch) -> str:
+    locked, released = show_locks([step.locked]), show_locks([step.released])
+    return f"lock {locked}, release {released}"
+
+
+def _travel(step: Travel) -> str:
+    """Along which forms, and over which bifurcations, a stretch leads."""
+    names = []
+    for leg in step.route.legs:
+        names.append(f"{leg.form} to {leg.at}" if leg.at else leg.form)
+    return f"with {show_locks(step.locks)} along {', '.join(names)}"
+
+
+def _angles(angles: np.ndarray) -> list[str]:
+    return [in_degrees(float(angle), 3) for angle in angles]

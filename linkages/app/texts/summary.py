@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas, MeetingPoint, Surface
 from bifurc.branch import Branch, Outcome
 from bifurc.singular.point import Kind
-from bifurc.tables import section
-from linkages.app.answer.configurations import (
+from bifurc.tables import section, section_of
+from linkages.app.answer.verdict import judge
+from linkages.app.subject import (
+    MechanismSubject,
+    NetworkSubject,
     arclength_unit,
     show_configuration,
+    subject_at,
     unit_of_arclengths,
 )
-from linkages.app.answer.verdict import judge
-from linkages.app.subject import MechanismSubject, NetworkSubject, subject_at
 from linkages.app.texts.entry_text import describe_geometry
 from linkages.app.texts.form_names import listed_forms
 from linkages.labels import FormLabels, loop_of
@@ -30,10 +30,10 @@ def make_summary(atlas: Atlas) -> str:
     and time."""
     completeness = atlas.completeness
     provenance = atlas.provenance
-    tables = _tables(atlas)
+    geometry, motions = _tables(atlas)
     parts = [
         f"{atlas.subject.get('name')}\n{judge(atlas).sentence}",
-        *tables.geometry,
+        *geometry,
         _forms(atlas),
         _surfaces(atlas),
         *(_points(atlas, title) for title in dict.fromkeys(one.title for one in Kind)),
@@ -41,24 +41,18 @@ def make_summary(atlas: Atlas) -> str:
         _rigid_assemblies(atlas),
         _near_motions(atlas),
         _certificates(atlas),
-        *tables.motions,
+        *motions,
         f"Completeness ({completeness.level}): {completeness.statement}.",
         f"Explored in {provenance.seconds:.3f} s, seed {provenance.seed}.",
     ]
     return "\n\n".join(part for part in parts if part)
 
 
-class _Tables(NamedTuple):
+def _tables(atlas: Atlas) -> tuple[list[str], list[str]]:
     """Tables of what was mapped, and of what it does along its forms."""
-
-    geometry: list[str]
-    motions: list[str]
-
-
-def _tables(atlas: Atlas) -> _Tables:
     subject = subject_at(atlas)
     if not isinstance(subject, MechanismSubject):
-        return _Tables([describe_geometry(loop_of(atlas))], [])
+        return [describe_geometry(loop_of(atlas))], []
     from linkages.app.texts import mechanism_text, network_text
 
     readout = subject.readout
@@ -68,14 +62,14 @@ def _tables(atlas: Atlas) -> _Tables:
         geometry.append(network_text.describe_kinks(network))
     geometry.append(mechanism_text.describe_loops(atlas, readout))
     if not atlas.forms:
-        return _Tables(geometry, [])
+        return geometry, []
     motions = [
         mechanism_text.describe_motions(atlas, readout),
         mechanism_text.describe_dead_points(atlas, readout),
     ]
     if network is not None:
         motions.append(network_text.describe_ring(atlas, readout, network))
-    return _Tables(geometry, motions)
+    return geometry, motions
 
 
 def _forms(atlas: Atlas) -> str:
@@ -84,28 +78,18 @@ def _forms(atlas: Atlas) -> str:
     for form in listed_forms(atlas):
         labels = FormLabels.of(form)
         rows.append(
-            (
-                form.name,
-                _closure(form.branch),
-                f"{unit.factor * form.branch.length:.6g}",
-                _winding(atlas, form.branch),
-                _inactive_joints(atlas, labels),
-                labels.symmetry.value or "-",
-                f"{form.min_singular_value:.3g}",
-                f"{labels.max_residual:.1e}",
-            )
+            {
+                "name": form.name,
+                "closed": _closure(form.branch),
+                f"length ({unit.name})": f"{unit.factor * form.branch.length:.6g}",
+                "winding": _winding(atlas, form.branch),
+                "inactive joints": _inactive_joints(atlas, labels),
+                "symmetry": labels.symmetry.value or "-",
+                "smallest s.v.": f"{form.min_singular_value:.3g}",
+                "residual": f"{labels.max_residual:.1e}",
+            }
         )
-    heads = (
-        "name",
-        "closed",
-        f"length ({unit.name})",
-        "winding",
-        "inactive joints",
-        "symmetry",
-        "smallest s.v.",
-        "residual",
-    )
-    return section("Forms", heads, rows)
+    return section_of("Forms", rows)
 
 
 def _closure(branch: Branch) -> str:
@@ -161,17 +145,18 @@ def _points(atlas: Atlas, title: str) -> str:
             continue
         remark = f": {point.note}" if point.note else ""
         rows.append(
-            (
-                point.name,
-                show_configuration(atlas, point.point.u),
-                str(point.point.rank),
-                f"{point.point.error:.0e}",
-                ", ".join(_names_at(atlas, point)) or "-",
-                point.kind.value + remark,
-            )
+            {
+                "name": point.name,
+                subject_at(atlas).heading(atlas): show_configuration(
+                    atlas, point.point.u
+                ),
+                "rank": str(point.point.rank),
+                "error": f"{point.point.error:.0e}",
+                "forms": ", ".join(_names_at(atlas, point)) or "-",
+                "kind": point.kind.value + remark,
+            }
         )
-    heads = ("name", subject_at(atlas).heading(atlas), "rank", "error", "forms", "kind")
-    return section(title, heads, rows)
+    return section_of(title, rows)
 
 
 def _names_at(atlas: Atlas, point: MeetingPoint) -> list[str]:
@@ -188,11 +173,15 @@ def _names_at(atlas: Atlas, point: MeetingPoint) -> list[str]:
 def _near_misses(atlas: Atlas) -> str:
     rows = []
     for miss in sorted(atlas.near_misses, key=lambda miss: miss.value):
-        angles = show_configuration(atlas, miss.u)
-        value, error = f"{miss.value:.6g}", f"{miss.error:.0e}"
-        rows.append((angles, value, error, atlas.forms[miss.form].name))
-    heads = (subject_at(atlas).heading(atlas), "singular value", "error", "form")
-    return section("Near misses (no bifurcation)", heads, rows, SHOWN)
+        rows.append(
+            {
+                subject_at(atlas).heading(atlas): show_configuration(atlas, miss.u),
+                "singular value": f"{miss.value:.6g}",
+                "error": f"{miss.error:.0e}",
+                "form": atlas.forms[miss.form].name,
+            }
+        )
+    return section_of("Near misses (no bifurcation)", rows, SHOWN)
 
 
 def _rigid_assemblies(atlas: Atlas) -> str:
@@ -204,44 +193,42 @@ def _near_motions(atlas: Atlas) -> str:
     rows = []
     unit = arclength_unit(atlas)
     for near in atlas.near_motions:
-        angles = show_configuration(atlas, near.sample)
         closed = "yes" if near.is_closed else "no"
         length = f"{unit.factor * near.length:.4g}"
         if near.mobility > 1:
             closed, length = "-", "-"
-        mobility = str(near.mobility)
-        rows.append((angles, mobility, closed, length, f"{near.misclosure:.3g}"))
-    length = f"length ({unit.name})"
-    heads = (
-        subject_at(atlas).heading(atlas),
-        "mobility",
-        "closed",
-        length,
-        "misclosure",
-    )
-    return section("Near motions (the loop nearly closes)", heads, rows, SHOWN)
+        rows.append(
+            {
+                subject_at(atlas).heading(atlas): show_configuration(
+                    atlas, near.sample
+                ),
+                "mobility": str(near.mobility),
+                "closed": closed,
+                f"length ({unit.name})": length,
+                "misclosure": f"{near.misclosure:.3g}",
+            }
+        )
+    return section_of("Near motions (the loop nearly closes)", rows, SHOWN)
 
 
 def _certificates(atlas: Atlas) -> str:
     rows = []
+    unit = unit_of_arclengths(atlas)
     for form in listed_forms(atlas):
         certificate = form.certificate
         if certificate is None:
             continue
         rows.append(
-            (
-                form.name,
-                certificate.status,
-                str(certificate.points),
-                f"{certificate.bound:.3g}",
-                _show_intervals(certificate.gaps),
-                _show_intervals(certificate.blurred),
-            )
+            {
+                "name": form.name,
+                "status": certificate.status,
+                "points": str(certificate.points),
+                "bound K": f"{certificate.bound:.3g}",
+                f"refused ({unit})": _show_intervals(certificate.gaps),
+                f"blurred ({unit})": _show_intervals(certificate.blurred),
+            }
         )
-    unit = unit_of_arclengths(atlas)
-    intervals = f"refused ({unit})", f"blurred ({unit})"
-    heads = ("name", "status", "points", "bound K", *intervals)
-    return section("Certificates (each form is one arc of solutions)", heads, rows)
+    return section_of("Certificates (each form is one arc of solutions)", rows)
 
 
 def _show_intervals(intervals: NDArray[np.float64]) -> str:

@@ -13,8 +13,7 @@ from linkages.app.commands.export_command import make_table
 from linkages.app.exit_codes import ExitCode
 from linkages.app.subject import subject_at
 from linkages.export.glb import make_glb
-from linkages.export.model import Shape, model_of_mechanism
-from linkages.export.motion import motion_of_form
+from linkages.export.model import Shape, model_of_mechanism, motion_of_form
 from linkages.linkage import load
 from linkages.mapping import map_linkage
 from tests.linkages.export.test_glb import poses_of

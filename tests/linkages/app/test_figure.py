@@ -4,7 +4,7 @@ import pytest
 from click.testing import CliRunner
 
 from linkages.app.cli import main
-from linkages.app.figure_axes import number_of
+from linkages.app.files import number_of
 from linkages.files.mechanism_file import mechanism_toml
 from linkages.source_figures.table import source_figures
 from tests.linkages.viewing.conftest import slider_crank

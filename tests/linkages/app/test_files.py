@@ -7,7 +7,8 @@ from click.testing import CliRunner
 
 import bifurc.search.tracing
 from linkages.app.cli import main
-from linkages.app.files import prepare_folder, write_data
+from linkages.app.files import write_data
+from linkages.app.output import prepare_folder
 from linkages.closure.loop_closure import LoopClosure
 from linkages.linkage import load
 from linkages.mapping import map_linkage

@@ -5,7 +5,7 @@ import io
 
 import numpy as np
 
-from linkages.export.motion import make_angle_table, motion_of_form
+from linkages.export.model import make_angle_table, motion_of_form
 from linkages.linkage import load
 from linkages.mapping import map_linkage
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from linkages.export.glb import make_glb
-from linkages.export.model import model_of_loop
-from linkages.export.motion import Motion, link_poses, motion_of_form
+from linkages.export.model import Motion, link_poses, model_of_loop, motion_of_form
 from linkages.linkage import load
 from linkages.links.rods import place_links
 from linkages.loop import Loop

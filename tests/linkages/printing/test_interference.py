@@ -6,7 +6,7 @@ import pytest
 from linkages.linkage import load
 from linkages.mapping import map_linkage
 from linkages.printing.assembly import Assembly, Dimensions, Kind, Seats
-from linkages.printing.interference import find_meetings, nearest_approach
+from linkages.printing.seating import find_meetings, nearest_approach
 
 DIMENSIONS = Dimensions(6.0, 0.3, 1.2)
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from bifurc.settings import SearchSettings
-from linkages.app.answer.configurations import numbers_at
-from linkages.app.subject import subject_at
+from linkages.app.subject import numbers_at, subject_at
 from linkages.app.texts.summary import make_summary
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism

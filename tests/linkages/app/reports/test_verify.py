@@ -9,11 +9,12 @@ from click.testing import CliRunner
 
 from linkages.app.cli import main
 from linkages.app.exit_codes import ExitCode
-from linkages.app.reports.verify import ErratumCheck, verify
-from linkages.app.reports.verify_network import verify_network
-from linkages.app.texts.verify_text import (
+from linkages.app.reports.verify import (
+    ErratumCheck,
     describe_network_verification,
     describe_verification,
+    verify,
+    verify_network,
 )
 from linkages.catalogue import catalogue, entry
 from linkages.networks.entries import NETWORKS

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager
 
-from linkages.app.sweep.workers import Pool
+from linkages.app.sweep.run import Pool
 
 
 class AtOnce(Executor):
@@ -21,5 +21,5 @@ class AtOnce(Executor):
 
 @contextmanager
 def pool_at_once(workers: int | None, scheduler: str | None) -> Iterator[Pool]:
-    """What stands for `linkages.app.sweep.workers.open_pool`."""
+    """What stands for `linkages.app.sweep.run.open_pool`."""
     yield Pool(AtOnce(), window=4)

@@ -15,10 +15,9 @@ from linkages.app.cli import main
 from linkages.app.exit_codes import ExitCode
 from linkages.app.sweep.journal import JournalError
 from linkages.app.sweep.plan import Plan
-from linkages.app.sweep.run import journal_path, run_sweep
+from linkages.app.sweep.run import Pool, journal_path, run_sweep
 from linkages.app.sweep.store import StoreError, count_status
 from linkages.app.sweep.subjects import Family
-from linkages.app.sweep.workers import Pool
 
 PLAN = Plan(Family("bennett"), random=3, ranges={"alpha": (0.5, 1.0)}, starts=10)
 COUNTS = ("closed_forms", "bifurcations", "components", "rank_drops", "surfaces")

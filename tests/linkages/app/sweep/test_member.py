@@ -7,8 +7,7 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 
-from linkages.app.sweep.fields import Status
-from linkages.app.sweep.member import map_member
+from linkages.app.sweep.member import Status, map_member
 from linkages.app.sweep.plan import Plan
 from linkages.app.sweep.subjects import Family
 

@@ -21,10 +21,9 @@ pytest.importorskip("zarr")
 
 from linkages.app.cli import main
 from linkages.app.sweep.plan import Plan, read_plan
-from linkages.app.sweep.run import journal_path, run_sweep
+from linkages.app.sweep.run import Pool, journal_path, run_sweep
 from linkages.app.sweep.store import SweepStore, open_sweep
 from linkages.app.sweep.subjects import Family
-from linkages.app.sweep.workers import Pool
 
 PLAN = Plan(
     Family("bennett"),

@@ -14,9 +14,8 @@ pytest.importorskip("zarr")
 
 from linkages.app.cli import main
 from linkages.app.exit_codes import CommandError, ExitCode
-from linkages.app.sweep.fields import Status
 from linkages.app.sweep.journal import JournalError
-from linkages.app.sweep.member import map_member
+from linkages.app.sweep.member import Status, map_member
 from linkages.app.sweep.plan import Plan, read_plan
 from linkages.app.sweep.run import journal_path, run_sweep
 from linkages.app.sweep.store import StoreError, SweepStore, open_sweep
