@@ -301,11 +301,6 @@ class Problem(ABC):
         sizes: np.ndarray = np.linalg.norm(self.residuals(points), axis=1)
         return sizes / self.magnitude
 
-    @property
-    def has_rim(self) -> bool:
-        """Whether curves may leave the region in which they are followed."""
-        return bool(np.isfinite(self.bounds).any())
-
     def excess(self, points: np.ndarray) -> np.ndarray:
         """How far points (k, n) lie outside the bounds (k,), in the unknown that is
         farthest; negative inside."""

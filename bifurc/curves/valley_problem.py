@@ -91,11 +91,6 @@ class ValleyProblem(NumericalProblem):
 
     # --- the region -------------------------------------------------------------------
 
-    @property
-    def has_rim(self) -> bool:
-        """Whether curves may leave the region: where they miss too much."""
-        return True
-
     def excess(self, points: np.ndarray) -> np.ndarray:
         """How far points (k, n) lie outside the region (k,): outside the bounds, or by
         how much more than a near motion may they miss F = 0, over that."""

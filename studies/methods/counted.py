@@ -36,7 +36,8 @@ class Counted(NumericalProblem):
         ):
             setattr(self, name, getattr(problem, name))
         # by collocation F and F' are evaluated through the methods below
-        self._compiled = type(problem).march is not NumericalProblem.march
+        is_own = type(problem).march is not NumericalProblem.march
+        self._compiled = is_own or getattr(problem, "scaled_tape", None) is not None
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
