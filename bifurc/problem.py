@@ -194,6 +194,10 @@ class Problem(ABC):
     how far off `hessian` may be, over a bound on F''. ``has_assumed_bounds`` (n, 2): which
     ends of the bounds were chosen, as none were given; a single False for none of them.
     ``has_crossings``: curves may cross, so that short steps are a sign of a crossing.
+    ``stride``: the unit of the longest step along a curve, in scales. ``piece_norm``: the order
+    of the norm of vectors when a piece is judged. ``node_corrector`` corrects all points at
+    the nodes of a piece in one call; None where they are corrected one by one.
+    ``equation_count`` is known where there is a `bordered_solver`.
     """
 
     names: tuple[str, ...]
@@ -209,6 +213,10 @@ class Problem(ABC):
     is_exact: bool = False
     data_rounding: float = 0.0
     has_crossings: bool = True
+    stride: float = 1.0
+    piece_norm: float = np.inf
+    node_corrector: NodeCorrector | None = None
+    equation_count: int
     has_assumed_bounds: np.ndarray = np.array(False)
 
     @property
@@ -221,11 +229,6 @@ class Problem(ABC):
         """Whether it has so many unknowns that F' is bordered instead of decomposed, and
         F'' is not formed."""
         return self.n > LARGE
-
-    @property
-    def stride(self) -> float:
-        """The unit of the longest step along a curve."""
-        return self.scale
 
     @property
     def reach(self) -> float:
@@ -251,30 +254,16 @@ class Problem(ABC):
         """F' (m, n) at one point (n,), sparse where that is how it is made."""
         return self.jacobians(point[None])[0]
 
-    @property
-    def equation_count(self) -> int:
-        """Number of equations that `bordered_solver` solves: those of curves."""
-        return self.n - 1
-
     def bordered_solver(self, point: np.ndarray, tangent: np.ndarray) -> Solver | None:
         """What solves systems with F' (m, n) at a point (n,), over the magnitude, and
         under it the row ``tangent`` (n,); None where that matrix is to be factored."""
         return None
 
-    def node_corrector(self) -> NodeCorrector | None:
-        """What corrects all points at the nodes of a piece in one call; None where they
-        are corrected one by one."""
-        return None
-
     def valley_corrector(self) -> NodeCorrector | None:
-        """The same for the valley along which the system is nearly solved:
-        `bifurc.curves.valley_problem`."""
+        """What corrects all points at the nodes of a piece of the valley along which the
+        system is nearly solved (`bifurc.curves.valley_problem`) in one call; None where
+        they are corrected one by one."""
         return None
-
-    def largest_entry(self, vectors: np.ndarray) -> float:
-        """What counts as the size of the largest of the ``vectors`` (k, n) when a piece
-        is judged: its largest entry."""
-        return float(np.abs(vectors).max())
 
     @abstractmethod
     def hessian(self, point: np.ndarray) -> np.ndarray:
@@ -291,10 +280,6 @@ class Problem(ABC):
     def hessians(self, points: np.ndarray) -> np.ndarray:
         """F'' (k, m, n, n) at points (k, n)."""
         return np.array([self.hessian(point) for point in points])
-
-    def relative_hessians(self, points: np.ndarray) -> np.ndarray:
-        """F'' over the magnitude (k, m, n, n) at points (k, n)."""
-        return self.hessians(points) / self.magnitude
 
     def gaps(self, points: np.ndarray) -> np.ndarray:
         """|F| over the magnitude (k,) at points (k, n)."""
@@ -329,18 +314,6 @@ class Problem(ABC):
             points = np.vstack([point, point + shifts, point - shifts])
             values, slopes = self.residuals(points), self.jacobians(points)
         return bool(np.isfinite(values).all() and np.isfinite(slopes).all())
-
-    def missed(self, points: np.ndarray) -> np.ndarray:
-        """What points (k, n) of a curve may miss (k,), over the magnitude, where its
-        place is not defined: nothing, as a rule."""
-        return np.zeros(len(points))
-
-    def bridge(
-        self, start: np.ndarray, heading: np.ndarray, width: float, order: int
-    ) -> Piece | None:
-        """A piece of about ``width`` from ``start`` (n,) along ``heading`` (n,), across
-        points that are `missed`; None where there is none."""
-        return None
 
     def precise_residual(self) -> PreciseResidual | None:
         """F over mpmath numbers, n of them in and m out, right to whatever precision

@@ -186,7 +186,7 @@ def _march(
         order=settings.order,
         tolerance=settings.tolerance,
         shortest=max(track.caution.shortest, settings.shortest) * problem.scale,
-        longest=settings.longest * problem.stride,
+        longest=settings.longest * problem.stride * problem.scale,
         count=AT_A_BEND if track.is_at_a_bend else count,
         closing=closing,
         length=settings.max_length * problem.reach - track.reached,

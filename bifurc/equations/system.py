@@ -187,7 +187,8 @@ class ScaledTape:
         share = self._share_of_magnitude(start)
         march = self._march_above(share, start, tangent, settings)
         if march.status is MarchStatus.STALLED and not len(march.pieces):
-            larger = self._share_next_to(start)
+            beside = np.tile(start, (self._sample_count, 1))
+            larger = self._share_about(beside, NEXT_TO)
             if larger > share:
                 march = self._march_above(larger, start, tangent, settings)
         return march
@@ -257,10 +258,6 @@ class ScaledTape:
         if len(self._solutions):
             return self._share_at_solutions
         return self._share_about(np.tile(start, (self._sample_count, 1)), BESIDE)
-
-    def _share_next_to(self, start: np.ndarray) -> float:
-        """That share, as it is at a ``start`` (n,) and hardly off it."""
-        return self._share_about(np.tile(start, (self._sample_count, 1)), NEXT_TO)
 
     @property
     def _sample_count(self) -> int:

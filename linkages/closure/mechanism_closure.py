@@ -71,9 +71,12 @@ class MechanismClosure(NumericalProblem):
         self.units = tuple(unknown.unit for unknown in unknowns)
         self.periods = np.array([unknown.period for unknown in unknowns])
         self.bounds = np.array([[one.low, one.high] for one in unknowns])
+        # in a step of the same angles more joints make it longer, by the root of their number
+        self.stride = math.sqrt(max(1.0, self.n / STRIDE_OF))
         self.data_rounding = mechanism.coordinate_rounding / self.structure.unit
         self._equations: Equations = write_equations(self.structure, errors)
         tape = self._equations.tape
+        self.equation_count = tape.m
         self.equations = f"recorded ({tape.size} operations)"
         self.scaled_tape = ScaledTape(
             tape,
@@ -127,17 +130,6 @@ class MechanismClosure(NumericalProblem):
         return CurvatureBounds(self.structure, self.curvature_residual)
 
     # --- curves and solutions ---------------------------------------------------------
-
-    @property
-    def stride(self) -> float:
-        """The unit of the longest step along a form: in a step of the same angles more
-        joints make it longer, by the root of their number."""
-        return self.scale * math.sqrt(max(1.0, self.n / STRIDE_OF))
-
-    @property
-    def equation_count(self) -> int:
-        """Number of equations."""
-        return self._equations.tape.m
 
     def bordered_solver(self, point: np.ndarray, tangent: np.ndarray) -> Solver | None:
         """What solves systems with F' (m, n) at a point (n,), over the magnitude, and
