@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from bifurc import _core
 from bifurc.checks import check_callable, floats_of
 from bifurc.decisions import (
     is_derivative,
@@ -20,7 +19,7 @@ from bifurc.decisions import (
 )
 from bifurc.equations.recording import Recording, record
 from bifurc.equations.system import ScaledTape
-from bifurc.equations.tape import Operation, rounding_of_constants
+from bifurc.equations.tape import rounding_of_constants
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.bordered import as_dense
@@ -215,17 +214,6 @@ class EquationProblem(NumericalProblem):
         jacobians = [as_dense(self.jacobian(point)) for point in points]
         return np.array(jacobians).reshape(len(points), self._rows, self.n)
 
-    def is_smooth_within(self, point: np.ndarray, reach: float) -> bool:
-        """Whether F' is known to be finite up to ``reach`` from ``point`` (n,) in every
-        unknown: by intervals where the equations are recorded."""
-        tape = self.recording.tape
-        if tape is None:
-            return super().is_smooth_within(point, reach)
-        bounds = tape.compiled.jacobian_bounds(
-            (point - reach)[None], (point + reach)[None]
-        )
-        return bool(np.isfinite(bounds).all())
-
     def coefficient_rounding(self, point: np.ndarray) -> np.ndarray:
         """How far off F (m,) at a point (n,) is where its coefficients are rounded to
         doubles; 0 where it is not recorded."""
@@ -233,14 +221,6 @@ class EquationProblem(NumericalProblem):
         if tape is None:
             return super().coefficient_rounding(point)
         return rounding_of_constants(tape, point)
-
-    def continuous_tape(self) -> _core.Tape | None:
-        """The recorded equations in compiled form; None where they are not recorded, or
-        jump: an angle does."""
-        tape = self.recording.tape
-        if tape is None or np.any(tape.operations == Operation.ANGLE):
-            return None
-        return tape.compiled
 
     def _given_jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
         assert self._jacobian is not None

@@ -11,10 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
-from bifurc import _core, torus
-from bifurc.checks import floats_of
+from bifurc import torus
 from bifurc.decisions import is_in_bounds, is_solution
-from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.seeds import Seeds
 
@@ -306,15 +304,6 @@ class Problem(ABC):
         """How far outside the bounds a point still counts as inside."""
         return is_in_bounds.threshold * self.scale
 
-    def is_smooth_within(self, point: np.ndarray, reach: float) -> bool:
-        """Whether F and F' are finite up to ``reach`` from ``point`` (n,) in every
-        unknown, as far as is seen at the point and beside it."""
-        shifts = reach * np.eye(self.n)
-        with np.errstate(all="ignore"):
-            points = np.vstack([point, point + shifts, point - shifts])
-            values, slopes = self.residuals(points), self.jacobians(points)
-        return bool(np.isfinite(values).all() and np.isfinite(slopes).all())
-
     def precise_residual(self) -> PreciseResidual | None:
         """F over mpmath numbers, n of them in and m out, right to whatever precision
         is set when it is called; None where F is known in doubles only."""
@@ -341,11 +330,6 @@ class Problem(ABC):
 
         F is taken as the analytic function that it is next to a solution.
         """
-        return None
-
-    def continuous_tape(self) -> _core.Tape | None:
-        """The equations as a compiled list of operations without jumps, with bounds on F
-        and F' in boxes; None where there is none."""
         return None
 
     @abstractmethod
@@ -379,13 +363,3 @@ class Problem(ABC):
     def difference(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         """a - b (..., n) with periodic unknowns taken to within half a period of 0."""
         return torus.difference(a, b, self.periods)
-
-    def check_point(self, point: np.ndarray, name: str) -> np.ndarray:
-        """``point`` as a float array (n,); raises `ProblemError` for a wrong shape or
-        values not finite."""
-        checked = floats_of(name, point)
-        if checked.shape != (self.n,):
-            raise ProblemError(f"shape of {name}", checked.shape, f"({self.n},)")
-        if not np.isfinite(checked).all():
-            raise ProblemError(name, checked, "finite")
-        return checked

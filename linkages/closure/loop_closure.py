@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bifurc.checks import check_number, check_type, rows_of
+from bifurc.checks import check_number, check_type, point_of, rows_of
 from bifurc.decisions import is_start_solved
 from bifurc.errors import ProblemError
 from bifurc.function_problem import NumericalProblem
@@ -66,7 +66,7 @@ class LoopClosure(NumericalProblem):
 
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """Second derivative (6, n, n) of the residual."""
-        hessian: np.ndarray = self.hessians(self.check_point(point, "point")[None])[0]
+        hessian: np.ndarray = self.hessians(point_of("point", point, self.n)[None])[0]
         return hessian
 
     def hessians(self, points: np.ndarray) -> np.ndarray:
@@ -195,7 +195,7 @@ class LoopClosure(NumericalProblem):
         if not 0.0 < radius < np.inf:
             raise ProblemError("radius", radius, "positive and finite")
         starts = rows_of("starts", starts, self.n)
-        center = self.check_point(center, "center")
+        center = point_of("center", center, self.n)
         projected = _core.project_to_sphere(
             starts, center, radius, self._geometry, SPHERE_STEPS
         )
