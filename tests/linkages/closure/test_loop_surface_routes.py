@@ -10,8 +10,7 @@ from bifurc.errors import RouteError
 from bifurc.files.dataset import load_atlas, save_atlas
 from bifurc.files.graphml import plain_graph
 from bifurc.graphs import arc_graph
-from bifurc.routes.route import find_route
-from bifurc.routes.spread import spread_route
+from bifurc.routes.route import find_route, spread_route
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from bifurc.torus import wrap
