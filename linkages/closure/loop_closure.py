@@ -4,6 +4,7 @@ interface."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -168,15 +169,13 @@ class LoopClosure(NumericalProblem):
         if slices is None:
             return drawn
         near, gaps = self.project(slices.nearly_real)
-        constructed = [slices.configurations, near[is_start_solved(gaps)]]
-        random = np.repeat(
-            [False, True], [sum(map(len, constructed)), len(drawn.points)]
-        )
-        return Seeds(
-            points=np.concatenate([*constructed, drawn.points]),
-            random=random,
-            gaps=drawn.gaps,
-            missed=drawn.missed,
+        closed = near[is_start_solved(gaps)]
+        constructed = np.concatenate([slices.configurations, closed])
+        is_random = np.zeros(len(constructed), dtype=bool)
+        return replace(
+            drawn,
+            points=np.concatenate([constructed, drawn.points]),
+            random=np.concatenate([is_random, drawn.random]),
             audit=slices,
         )
 
