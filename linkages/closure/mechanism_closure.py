@@ -6,10 +6,11 @@ import math
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bifurc.checks import check_type, rows_of
+from bifurc.checks import check_type, point_of, rows_of
 from bifurc.decisions import is_start_solved
 from bifurc.equations.system import ScaledTape
 from bifurc.function_problem import NumericalProblem
@@ -29,6 +30,9 @@ from linkages.structure.structure import Structure
 from linkages.turns import whole_turns
 from linkages.turns.turn_lattice import TurnLattice, turn_lattice
 from linkages.turns.whole_turns import TurnedEnds
+
+if TYPE_CHECKING:
+    from scipy.sparse import sparray
 
 # unknowns up to which compiled methods with dense matrices take no longer than those in
 # Python: for sections with spheres, and for curves of equations that are not sparse
@@ -97,6 +101,14 @@ class MechanismClosure(NumericalProblem):
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' (k, m, n) at points (k, n)."""
         return self.scaled_tape.jacobians(rows_of("points", points, self.n))
+
+    def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
+        """F' (m, n) at one point (n,), sparse for many unknowns."""
+        return super().jacobian(point_of("point", point, self.n))
+
+    def hessian(self, point: np.ndarray) -> np.ndarray:
+        """F'' (m, n, n) at a point (n,)."""
+        return super().hessian(point_of("point", point, self.n))
 
     @cached_property
     def rows_of_closures(self) -> list[slice]:
