@@ -65,6 +65,17 @@ def floats_of(name: str, value: ArrayLike) -> np.ndarray:
         raise ProblemError(name, repr(value), "numbers") from error
 
 
+def point_of(name: str, values: ArrayLike, n: int) -> np.ndarray:
+    """``values`` as an array of floats (n,); raises `ProblemError` for a wrong shape or
+    values not finite."""
+    point = floats_of(name, values)
+    if point.shape != (n,):
+        raise ProblemError(f"shape of {name}", point.shape, f"({n},)")
+    if not np.isfinite(point).all():
+        raise ProblemError(name, point, "finite")
+    return point
+
+
 def rows_of(name: str, values: ArrayLike, n: int) -> np.ndarray:
     """``values`` as an array of floats (k, n); raises `ProblemError` where it is
     none."""

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from bifurc import _core
 from bifurc.checks import check_callable, floats_of
 from bifurc.decisions import (
     is_derivative,
@@ -19,8 +18,8 @@ from bifurc.decisions import (
     is_whole_circle,
 )
 from bifurc.equations.recording import Recording, record
-from bifurc.equations.system import LARGEST_DENSE, ScaledTape
-from bifurc.equations.tape import Operation, rounding_of_constants
+from bifurc.equations.system import ScaledTape
+from bifurc.equations.tape import rounding_of_constants
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.bordered import as_dense
@@ -41,8 +40,6 @@ from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
 
 if TYPE_CHECKING:
-    import mpmath
-
     # SciPy takes longer to import than a small problem to solve
     from scipy.sparse import sparray
 
@@ -65,10 +62,38 @@ EXACT_HESSIAN = 1e-14  # how far off, over a bound on it, rounding leaves an exa
 
 class NumericalProblem(Problem):
     """A problem that gives `residuals` and `jacobians`, and nothing else: second
-    derivatives by differences, pieces by collocation, solutions by least squares."""
+    derivatives by differences, pieces by collocation, solutions by least squares.
+
+    Where it has its equations as a ``scaled_tape``, these come of that: exact
+    derivatives, pieces by Taylor series, and all in compiled code as far as that is
+    fast.
+    """
+
+    scaled_tape: ScaledTape | None = None
+
+    def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
+        """F' (m, n) at one point (n,), sparse where a tape of many unknowns is."""
+        if self.scaled_tape is not None:
+            return self.scaled_tape.jacobian(point)
+        return super().jacobian(point)
+
+    def precise_residual(self) -> PreciseResidual | None:
+        """F over mpmath numbers where there is a tape; its constants are the doubles that
+        it computes with. Raises `ValueError` where F is not real."""
+        return None if self.scaled_tape is None else self.scaled_tape.precise_residual
+
+    def valley_corrector(self) -> NodeCorrector | None:
+        """What corrects points at the nodes of a piece of the valley along which the
+        equations are nearly solved, where the tape is small."""
+        if self.scaled_tape is None or not self.scaled_tape.is_small:
+            return None
+        return self.scaled_tape.valley_points_at_nodes
 
     def hessian(self, point: np.ndarray) -> np.ndarray:
-        """F'' (m, n, n) at a point (n,), by central differences of F'."""
+        """F'' (m, n, n) at a point (n,): exact by the tape, else by central
+        differences of F'."""
+        if self.scaled_tape is not None:
+            return self.scaled_tape.hessian(point)
         steps = HESSIAN_STEP * (1.0 + np.abs(point))
         shifts = np.diag(steps)
         upper = self.jacobians(point + shifts)
@@ -83,14 +108,19 @@ class NumericalProblem(Problem):
     def march(
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
     ) -> March:
-        """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,), by
-        collocation; no more than `AT_ONCE`, as they do not end where the curve does."""
+        """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,): Taylor series
+        of the tape, else by collocation, no more than `AT_ONCE`, as they do not end
+        where the curve does."""
+        if self.scaled_tape is not None and self.scaled_tape.is_marched:
+            return self.scaled_tape.march(start, tangent, settings)
         few = replace(settings, count=min(settings.count, AT_ONCE))
         return march_by_collocation(self, start, tangent, few)
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solutions (k, n) near starts (k, n) and the relative residual (k,) that is
         left at each, by least squares."""
+        if self.scaled_tape is not None and self.scaled_tape.is_marched:
+            return self.scaled_tape.project(starts)
         return project_by_least_squares(self, starts)
 
     def project_to_sphere(
@@ -98,6 +128,8 @@ class NumericalProblem(Problem):
     ) -> SphereProjection:
         """Solutions near starts (k, n) at distance ``radius`` from ``center`` (n,), by
         Newton's method."""
+        if self.scaled_tape is not None and self.scaled_tape.is_small:
+            return self.scaled_tape.project_to_sphere(starts, center, radius)
         return project_to_sphere_by_newton(self, starts, center, radius)
 
     def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
@@ -124,8 +156,6 @@ class EquationProblem(NumericalProblem):
     else by complex step or by central differences; ``derivatives`` says which.
     """
 
-    _scaled: ScaledTape | None = None
-
     def __init__(
         self,
         function: Callable[[np.ndarray], Sequence[float] | np.ndarray],
@@ -148,7 +178,7 @@ class EquationProblem(NumericalProblem):
         if tape is not None:
             self.hessian_error = EXACT_HESSIAN
             self.is_exact = True
-            self._scaled = ScaledTape(
+            self.scaled_tape = ScaledTape(
                 tape, magnitude, self.scale, self.bounds, self.periods, region
             )
 
@@ -157,8 +187,8 @@ class EquationProblem(NumericalProblem):
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
         points = np.atleast_2d(points)
-        if self._scaled is not None:
-            return self._scaled.residuals(points)
+        if self.scaled_tape is not None:
+            return self.scaled_tape.residuals(points)
         function = self._function  # called thousands of times a curve
         with np.errstate(all="ignore"):  # beyond the rim of where it is defined
             values = [function(point) for point in points]
@@ -167,10 +197,8 @@ class EquationProblem(NumericalProblem):
     def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
         """F' (m, n) at one point (n,), sparse where the given ``jacobian`` makes it so,
         or the recording of many unknowns."""
-        if self._scaled is not None:
-            if self._scaled.is_sparse:
-                return self._scaled.sparse_jacobian(point)
-            return self._scaled.jacobians(point[None])[0]
+        if self.scaled_tape is not None:
+            return super().jacobian(point)
         if self._jacobian is not None:
             return self._given_jacobian(point)
         with np.errstate(all="ignore"):
@@ -181,46 +209,10 @@ class EquationProblem(NumericalProblem):
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' (k, m, n) at points (k, n), dense."""
         points = np.atleast_2d(points)
-        if self._scaled is not None:
-            return self._scaled.jacobians(points)
+        if self.scaled_tape is not None:
+            return self.scaled_tape.jacobians(points)
         jacobians = [as_dense(self.jacobian(point)) for point in points]
         return np.array(jacobians).reshape(len(points), self._rows, self.n)
-
-    def hessian(self, point: np.ndarray) -> np.ndarray:
-        """F'' (m, n, n) at a point (n,): exact where the equations are recorded, else
-        by central differences of F'."""
-        if self._compiled is not None:
-            return self._compiled.hessian(point)
-        return super().hessian(point)
-
-    def is_smooth_within(self, point: np.ndarray, reach: float) -> bool:
-        """Whether F' is known to be finite up to ``reach`` from ``point`` (n,) in every
-        unknown: by intervals where the equations are recorded."""
-        tape = self.recording.tape
-        if tape is None:
-            return super().is_smooth_within(point, reach)
-        bounds = tape.compiled.jacobian_bounds(
-            (point - reach)[None], (point + reach)[None]
-        )
-        return bool(np.isfinite(bounds).all())
-
-    def precise_residual(self) -> PreciseResidual | None:
-        """F over mpmath numbers where the equations are recorded; their constants are
-        the doubles that the function computes with. Raises `ValueError` where F is not
-        real."""
-        tape = self.recording.tape
-        if tape is None:
-            return None
-
-        def residual(unknowns: Sequence[mpmath.mpf]) -> list[mpmath.mpf]:
-            import mpmath  # it takes long to import
-
-            values: list[mpmath.mpf] = tape.over(unknowns, mpmath)
-            if any(isinstance(value, mpmath.mpc) for value in values):
-                raise ValueError("F is not real there")
-            return values
-
-        return residual
 
     def coefficient_rounding(self, point: np.ndarray) -> np.ndarray:
         """How far off F (m,) at a point (n,) is where its coefficients are rounded to
@@ -229,52 +221,6 @@ class EquationProblem(NumericalProblem):
         if tape is None:
             return super().coefficient_rounding(point)
         return rounding_of_constants(tape, point)
-
-    def continuous_tape(self) -> _core.Tape | None:
-        """The recorded equations in compiled form; None where they are not recorded, or
-        jump: an angle does."""
-        tape = self.recording.tape
-        if tape is None or np.any(tape.operations == Operation.ANGLE):
-            return None
-        return tape.compiled
-
-    # --- curves and solutions ---------------------------------------------------------
-
-    @property
-    def _compiled(self) -> ScaledTape | None:
-        """The recorded equations, where they are few enough for the methods that are
-        compiled."""
-        return self._scaled if self.n <= LARGEST_DENSE else None
-
-    def march(
-        self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
-    ) -> March:
-        """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,): Taylor series
-        where the equations are recorded, else by collocation."""
-        if self._scaled is not None and self._scaled.is_marched:
-            return self._scaled.march(start, tangent, settings)
-        return super().march(start, tangent, settings)
-
-    def valley_corrector(self) -> NodeCorrector | None:
-        """What corrects points at the nodes of a piece of the valley along which the
-        equations are nearly solved, where they are recorded."""
-        return None if self._compiled is None else self._compiled.valley_corrector()
-
-    def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Solutions (k, n) near starts (k, n) and the relative residual (k,) that is
-        left at each, by least squares."""
-        if self._scaled is not None and self._scaled.is_marched:
-            return self._scaled.project(starts)
-        return super().project(starts)
-
-    def project_to_sphere(
-        self, starts: np.ndarray, center: np.ndarray, radius: float
-    ) -> SphereProjection:
-        """Solutions near starts (k, n) at distance ``radius`` from ``center`` (n,), by
-        Newton's method."""
-        if self._compiled is not None:
-            return self._compiled.project_to_sphere(starts, center, radius)
-        return super().project_to_sphere(starts, center, radius)
 
     def _given_jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
         assert self._jacobian is not None
@@ -475,7 +421,7 @@ class FunctionProblem(EquationProblem):
 
         A function may also drop imaginary parts without a word.
         """
-        if self._scaled is not None:
+        if self.scaled_tape is not None:
             return "recorded"
         if self._jacobian is not None:
             return "given"
@@ -582,8 +528,8 @@ class FunctionProblem(EquationProblem):
             return
         expected = self._central_difference(probe)
         origin = "by differences"
-        if self._scaled is not None:
-            expected = self._scaled.jacobians(probe[None])[0]
+        if self.scaled_tape is not None:
+            expected = self.scaled_tape.jacobians(probe[None])[0]
             origin = "as recorded"
         if not np.all(np.isfinite(expected)):
             return  # at the rim of where the function is defined

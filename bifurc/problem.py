@@ -11,10 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
-from bifurc import _core, torus
-from bifurc.checks import floats_of
+from bifurc import torus
 from bifurc.decisions import is_in_bounds, is_solution
-from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.seeds import Seeds
 
@@ -194,6 +192,10 @@ class Problem(ABC):
     how far off `hessian` may be, over a bound on F''. ``has_assumed_bounds`` (n, 2): which
     ends of the bounds were chosen, as none were given; a single False for none of them.
     ``has_crossings``: curves may cross, so that short steps are a sign of a crossing.
+    ``stride``: the unit of the longest step along a curve, in scales. ``piece_norm``: the order
+    of the norm of vectors when a piece is judged. ``node_corrector`` corrects all points at
+    the nodes of a piece in one call; None where they are corrected one by one.
+    ``equation_count`` is known where there is a `bordered_solver`.
     """
 
     names: tuple[str, ...]
@@ -209,6 +211,10 @@ class Problem(ABC):
     is_exact: bool = False
     data_rounding: float = 0.0
     has_crossings: bool = True
+    stride: float = 1.0
+    piece_norm: float = np.inf
+    node_corrector: NodeCorrector | None = None
+    equation_count: int
     has_assumed_bounds: np.ndarray = np.array(False)
 
     @property
@@ -221,11 +227,6 @@ class Problem(ABC):
         """Whether it has so many unknowns that F' is bordered instead of decomposed, and
         F'' is not formed."""
         return self.n > LARGE
-
-    @property
-    def stride(self) -> float:
-        """The unit of the longest step along a curve."""
-        return self.scale
 
     @property
     def reach(self) -> float:
@@ -251,30 +252,16 @@ class Problem(ABC):
         """F' (m, n) at one point (n,), sparse where that is how it is made."""
         return self.jacobians(point[None])[0]
 
-    @property
-    def equation_count(self) -> int:
-        """Number of equations that `bordered_solver` solves: those of curves."""
-        return self.n - 1
-
     def bordered_solver(self, point: np.ndarray, tangent: np.ndarray) -> Solver | None:
         """What solves systems with F' (m, n) at a point (n,), over the magnitude, and
         under it the row ``tangent`` (n,); None where that matrix is to be factored."""
         return None
 
-    def node_corrector(self) -> NodeCorrector | None:
-        """What corrects all points at the nodes of a piece in one call; None where they
-        are corrected one by one."""
-        return None
-
     def valley_corrector(self) -> NodeCorrector | None:
-        """The same for the valley along which the system is nearly solved:
-        `bifurc.curves.valley_problem`."""
+        """What corrects all points at the nodes of a piece of the valley along which the
+        system is nearly solved (`bifurc.curves.valley_problem`) in one call; None where
+        they are corrected one by one."""
         return None
-
-    def largest_entry(self, vectors: np.ndarray) -> float:
-        """What counts as the size of the largest of the ``vectors`` (k, n) when a piece
-        is judged: its largest entry."""
-        return float(np.abs(vectors).max())
 
     @abstractmethod
     def hessian(self, point: np.ndarray) -> np.ndarray:
@@ -292,19 +279,10 @@ class Problem(ABC):
         """F'' (k, m, n, n) at points (k, n)."""
         return np.array([self.hessian(point) for point in points])
 
-    def relative_hessians(self, points: np.ndarray) -> np.ndarray:
-        """F'' over the magnitude (k, m, n, n) at points (k, n)."""
-        return self.hessians(points) / self.magnitude
-
     def gaps(self, points: np.ndarray) -> np.ndarray:
         """|F| over the magnitude (k,) at points (k, n)."""
         sizes: np.ndarray = np.linalg.norm(self.residuals(points), axis=1)
         return sizes / self.magnitude
-
-    @property
-    def has_rim(self) -> bool:
-        """Whether curves may leave the region in which they are followed."""
-        return bool(np.isfinite(self.bounds).any())
 
     def excess(self, points: np.ndarray) -> np.ndarray:
         """How far points (k, n) lie outside the bounds (k,), in the unknown that is
@@ -325,27 +303,6 @@ class Problem(ABC):
     def slack(self) -> float:
         """How far outside the bounds a point still counts as inside."""
         return is_in_bounds.threshold * self.scale
-
-    def is_smooth_within(self, point: np.ndarray, reach: float) -> bool:
-        """Whether F and F' are finite up to ``reach`` from ``point`` (n,) in every
-        unknown, as far as is seen at the point and beside it."""
-        shifts = reach * np.eye(self.n)
-        with np.errstate(all="ignore"):
-            points = np.vstack([point, point + shifts, point - shifts])
-            values, slopes = self.residuals(points), self.jacobians(points)
-        return bool(np.isfinite(values).all() and np.isfinite(slopes).all())
-
-    def missed(self, points: np.ndarray) -> np.ndarray:
-        """What points (k, n) of a curve may miss (k,), over the magnitude, where its
-        place is not defined: nothing, as a rule."""
-        return np.zeros(len(points))
-
-    def bridge(
-        self, start: np.ndarray, heading: np.ndarray, width: float, order: int
-    ) -> Piece | None:
-        """A piece of about ``width`` from ``start`` (n,) along ``heading`` (n,), across
-        points that are `missed`; None where there is none."""
-        return None
 
     def precise_residual(self) -> PreciseResidual | None:
         """F over mpmath numbers, n of them in and m out, right to whatever precision
@@ -373,11 +330,6 @@ class Problem(ABC):
 
         F is taken as the analytic function that it is next to a solution.
         """
-        return None
-
-    def continuous_tape(self) -> _core.Tape | None:
-        """The equations as a compiled list of operations without jumps, with bounds on F
-        and F' in boxes; None where there is none."""
         return None
 
     @abstractmethod
@@ -411,13 +363,3 @@ class Problem(ABC):
     def difference(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         """a - b (..., n) with periodic unknowns taken to within half a period of 0."""
         return torus.difference(a, b, self.periods)
-
-    def check_point(self, point: np.ndarray, name: str) -> np.ndarray:
-        """``point`` as a float array (n,); raises `ProblemError` for a wrong shape or
-        values not finite."""
-        checked = floats_of(name, point)
-        if checked.shape != (self.n,):
-            raise ProblemError(f"shape of {name}", checked.shape, f"({self.n},)")
-        if not np.isfinite(checked).all():
-            raise ProblemError(name, checked, "finite")
-        return checked

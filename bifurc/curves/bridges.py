@@ -7,6 +7,7 @@ import numpy as np
 from bifurc.branch import points_on_piece
 from bifurc.curves.misclosure import visible_misclosure
 from bifurc.curves.track import Bridge, BridgeRule, Place, Track
+from bifurc.curves.valley_problem import ValleyProblem
 from bifurc.decisions import is_solution
 from bifurc.numerics.collocation import bridge_by_collocation
 from bifurc.numerics.null_spaces import decompose
@@ -33,9 +34,10 @@ def bridge_from(problem: Problem, track: Track, tolerance: float) -> Bridge | No
     """
     if not len(track):
         return None
-    blurred = _blurred_ahead(problem, track)
-    if blurred is not None:
-        return _bridge_of_problem(problem, track, blurred)
+    if isinstance(problem, ValleyProblem):
+        blurred = _blurred_ahead(problem, track)
+        if blurred is not None:
+            return _bridge_of_valley(problem, track, blurred)
     if track.caution.bridges is BridgeRule.NOWHERE:
         return None
     misclosure = visible_misclosure(problem, track.pieces[:, 0])
@@ -57,26 +59,28 @@ def bridge_from(problem: Problem, track: Track, tolerance: float) -> Bridge | No
     return None
 
 
-def _blurred_ahead(problem: Problem, track: Track) -> float | None:
-    """How far ahead the last point lies that the problem misses where the next piece
-    would be; None where there is none."""
+def _blurred_ahead(valley: ValleyProblem, track: Track) -> float | None:
+    """How far ahead the last point lies where the valley is not single and the next
+    piece would be; None where there is none."""
     point, tangent = track.front
     steps = 2.0 * float(track.radii[-1]) * AHEAD
-    missed = np.flatnonzero(problem.missed(point + steps[:, None] * tangent))
+    missed = np.flatnonzero(valley.missed(point + steps[:, None] * tangent))
     return float(steps[missed[-1]]) if len(missed) else None
 
 
-def _bridge_of_problem(problem: Problem, track: Track, blurred: float) -> Bridge | None:
-    """A bridge that the problem itself lays across points that it misses, which reach
-    as far ahead as ``blurred``."""
+def _bridge_of_valley(
+    valley: ValleyProblem, track: Track, blurred: float
+) -> Bridge | None:
+    """A bridge across points where the valley is not single, which reach as far ahead
+    as ``blurred``."""
     for reach in BLURRED_REACHES:
-        begin = track.reached - reach * problem.scale
-        if begin < track.centers[0] or reach * problem.scale < BEYOND * blurred:
+        begin = track.reached - reach * valley.scale
+        if begin < track.centers[0] or reach * valley.scale < BEYOND * blurred:
             continue
         last = track.piece_at(begin)
         place = track.at(last, begin)
-        width = 2 * reach * problem.scale
-        piece = problem.bridge(place.point, place.tangent, width, track.order)
+        width = 2 * reach * valley.scale
+        piece = valley.bridge(place.point, place.tangent, width, track.order)
         if piece is not None:
             return Bridge(last, begin, piece)
     return None

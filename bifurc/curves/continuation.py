@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.branch import Branch, Outcome
-from bifurc.checks import check_type
+from bifurc.checks import check_type, point_of
 from bifurc.curves.bridges import MOST_ROOM, bridge_from
 from bifurc.curves.ends import end_of_curve, same_place
 from bifurc.curves.track import CAUTIOUS, End, Place, Track
@@ -73,9 +73,9 @@ def trace_branch(
     """
     check_type("problem", problem, Problem)
     check_type("settings", settings, TraceSettings)
-    start = problem.check_point(start, "start")
+    start = point_of("start", start, problem.n)
     if direction is not None:
-        direction = problem.check_point(direction, "direction")
+        direction = point_of("direction", direction, problem.n)
         if not np.any(direction):
             raise ProblemError("direction", direction, "a vector other than zero")
     tangent = null_vector(problem, start, direction)
@@ -186,7 +186,7 @@ def _march(
         order=settings.order,
         tolerance=settings.tolerance,
         shortest=max(track.caution.shortest, settings.shortest) * problem.scale,
-        longest=settings.longest * problem.stride,
+        longest=settings.longest * problem.stride * problem.scale,
         count=AT_A_BEND if track.is_at_a_bend else count,
         closing=closing,
         length=settings.max_length * problem.reach - track.reached,

@@ -143,8 +143,6 @@ def _leaving(problem: Problem, track: Track, first: int) -> float | None:
 def _leaving_by_samples(problem: Problem, track: Track, first: int) -> float | None:
     """The same for a problem whose class says in a way of its own, by `Problem.excess`,
     what besides lies outside."""
-    if not problem.has_rim:
-        return None
     breaks = track.breaks(track.reached)[first:]
     centers, radii = track.centers[first:, None], track.radii[first:, None]
     lengths = np.diff(breaks)[:, None]

@@ -192,7 +192,7 @@ class _Nodes:
         """What follows from F'' at the nodes: near a surface it is small where H^-1 is
         large."""
         flat = self.points.reshape(-1, self.problem.n)
-        hessians = self.problem.relative_hessians(flat)
+        hessians = self.problem.hessians(flat) / self.problem.magnitude
         return self._checks(hessians.reshape(len(flat), -1, self.problem.n))
 
     def _checks(self, hessians: np.ndarray | None) -> ArcChecks:

@@ -38,7 +38,7 @@ from bifurc.function_problem import AT_ONCE, NumericalProblem
 from bifurc.numerics.collocation import march_by_collocation, reparametrised
 from bifurc.numerics.corrector import correct_across
 from bifurc.numerics.null_spaces import Decomposition, decompose
-from bifurc.problem import March, MarchSettings, NodeCorrector, Piece, Problem
+from bifurc.problem import March, MarchSettings, Piece, Problem
 
 TINY = 1e-30  # keeps a difference of squared singular values from being zero
 # Places on a piece, from -1 to 1, at which it is seen whether there is a valley.
@@ -64,6 +64,7 @@ class ValleyProblem(NumericalProblem):
         self.rank = of.n - 1
         self.take_unknowns_of(of)
         self.hessian_error = of.hessian_error
+        self.node_corrector = of.valley_corrector()
 
     # --- G and G' ---------------------------------------------------------------------
 
@@ -78,23 +79,13 @@ class ValleyProblem(NumericalProblem):
         """G' (k, m, n) at points (k, n): P F' + P' F."""
         residuals = self.of.relative_residuals(points)
         jacobians = self.of.relative_jacobians(points)
-        hessians = self.of.relative_hessians(points)
+        hessians = self.of.hessians(points) / self.magnitude
         count, m, n = jacobians.shape
         rows = hessians.reshape(count, m * n, n)
         derivatives: np.ndarray = _core.valley_jacobians(residuals, jacobians, rows)
         return derivatives * self.magnitude
 
-    def node_corrector(self) -> NodeCorrector | None:
-        """What corrects all points at the nodes of a piece in one call, where the
-        problem has that."""
-        return self.of.valley_corrector()
-
     # --- the region -------------------------------------------------------------------
-
-    @property
-    def has_rim(self) -> bool:
-        """Whether curves may leave the region: where they miss too much."""
-        return True
 
     def excess(self, points: np.ndarray) -> np.ndarray:
         """How far points (k, n) lie outside the region (k,): outside the bounds, or by

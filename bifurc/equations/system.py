@@ -8,12 +8,14 @@ the way in and out.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from bifurc import _core
+from bifurc.checks import rows_of
 from bifurc.decisions import is_in_bounds
 from bifurc.equations.tape import Tape
 from bifurc.problem import (
@@ -21,12 +23,13 @@ from bifurc.problem import (
     March,
     MarchSettings,
     MarchStatus,
-    NodeCorrector,
     Solver,
     SphereProjection,
 )
 
 if TYPE_CHECKING:
+    import mpmath
+
     # SciPy takes longer to import than a small problem to solve
     from scipy.sparse import csc_array
 
@@ -65,7 +68,11 @@ class ScaledTape:
     """The compiled methods of a ``tape`` whose F' is of size ``magnitude`` and whose
     unknowns are of size ``scale``, within ``bounds`` (n, 2) and with ``periods``
     (n,); solutions are looked for in the ``region`` (n, 2), that of the bounds unless
-    given. Immutable."""
+    given. Immutable.
+
+    It ``is_small`` where compiled methods with dense matrices are fast enough: up to
+    the unknowns ``largest_dense``; with sparse ones up to ``largest_sparse``.
+    """
 
     def __init__(
         self,
@@ -75,8 +82,12 @@ class ScaledTape:
         bounds: np.ndarray,
         periods: np.ndarray,
         region: np.ndarray | None = None,
+        largest_dense: float = LARGEST_DENSE,
+        largest_sparse: float = LARGEST_SPARSE,
     ):
         self.tape = tape
+        self.is_small = tape.n <= largest_dense
+        self._largest_sparse = largest_sparse
         self._scale = scale
         self._magnitude = magnitude
         self._unit = 2.0 ** round(math.log2(scale))
@@ -96,19 +107,17 @@ class ScaledTape:
         """F' (k, m, n) at points (k, n)."""
         return self.tape.compiled.jacobians(_contiguous(points))
 
-    def sparse_jacobian(self, point: np.ndarray) -> csc_array:
-        """F' (m, n) at one point (n,), by columns, as it is factored."""
+    def jacobian(self, point: np.ndarray) -> np.ndarray | csc_array:
+        """F' (m, n) at one point (n,); by columns, as it is factored, where it is large
+        and has few entries."""
+        if self.tape.n <= LARGEST_DENSE or not self._has_few_entries:
+            return self.jacobians(point[None])[0]
         from scipy.sparse import csc_array
 
         pattern = self._pattern
         entries = self.tape.compiled.entries(_contiguous(point))
         by_columns = (entries[pattern.order], pattern.rows, pattern.starts)
         return csc_array(by_columns, shape=(self.tape.m, self.tape.n))
-
-    @cached_property
-    def is_sparse(self) -> bool:
-        """Whether F' is large and has few entries."""
-        return self.tape.n > LARGEST_DENSE and self._has_few_entries
 
     @cached_property
     def is_factored_sparse(self) -> bool:
@@ -118,9 +127,9 @@ class ScaledTape:
     @property
     def is_marched(self) -> bool:
         """Whether marches and projections are to be made in compiled code."""
-        if self.tape.n <= LARGEST_DENSE:
+        if self.is_small:
             return True
-        return self.tape.n <= LARGEST_SPARSE and self.is_factored_sparse
+        return self.tape.n <= self._largest_sparse and self.is_factored_sparse
 
     @cached_property
     def _has_few_entries(self) -> bool:
@@ -137,6 +146,16 @@ class ScaledTape:
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """F'' (m, n, n) at a point (n,)."""
         return self.tape.compiled.hessian(_contiguous(point))
+
+    def precise_residual(self, unknowns: Sequence[mpmath.mpf]) -> list[mpmath.mpf]:
+        """F (m,) over mpmath numbers (n,), the constants being the doubles of the tape.
+        Raises `ValueError` where F is not real."""
+        import mpmath  # it takes long to import
+
+        values: list[mpmath.mpf] = self.tape.over(unknowns, mpmath)
+        if any(isinstance(value, mpmath.mpc) for value in values):
+            raise ValueError("F is not real there")
+        return values
 
     def bordered_solver(self, point: np.ndarray, tangent: np.ndarray) -> Solver | None:
         """What solves systems with F' (m, n) at a point (n,), over the magnitude, and
@@ -168,7 +187,8 @@ class ScaledTape:
         share = self._share_of_magnitude(start)
         march = self._march_above(share, start, tangent, settings)
         if march.status is MarchStatus.STALLED and not len(march.pieces):
-            larger = self._share_next_to(start)
+            beside = np.tile(start, (self._sample_count, 1))
+            larger = self._share_about(beside, NEXT_TO)
             if larger > share:
                 march = self._march_above(larger, start, tangent, settings)
         return march
@@ -213,17 +233,12 @@ class ScaledTape:
             residuals=share * unit * residuals,
         )
 
-    def valley_corrector(self) -> NodeCorrector:
-        """What corrects points at the nodes of a piece of the valley along which the
-        equations are nearly solved."""
+    def valley_points_at_nodes(self, nodes: CurveNodes) -> np.ndarray | None:
+        """Points (k, n) at the nodes of a piece of the valley along which the equations
+        are nearly solved; None where one of them cannot be corrected."""
         units = np.ones(self.tape.n)
         weights = np.full(self.tape.m, 1.0 / self._magnitude)
-        compiled = self.tape.compiled
-
-        def correct(nodes: CurveNodes) -> np.ndarray | None:
-            return compiled.valley_points_at_nodes(units, weights, *nodes)
-
-        return correct
+        return self.tape.compiled.valley_points_at_nodes(units, weights, *nodes)
 
     @property
     def _outer_bounds(self) -> np.ndarray:
@@ -243,10 +258,6 @@ class ScaledTape:
         if len(self._solutions):
             return self._share_at_solutions
         return self._share_about(np.tile(start, (self._sample_count, 1)), BESIDE)
-
-    def _share_next_to(self, start: np.ndarray) -> float:
-        """That share, as it is at a ``start`` (n,) and hardly off it."""
-        return self._share_about(np.tile(start, (self._sample_count, 1)), NEXT_TO)
 
     @property
     def _sample_count(self) -> int:
@@ -287,6 +298,7 @@ class ScaledTape:
         """Solutions (k, n) near starts (k, n) and the residual (k,), over the
         magnitude, that is left at each; unknowns that are held (n,) stay where they are
         but for rounding."""
+        starts = rows_of("starts", starts, self.tape.n)
         units = self._units
         if is_held is not None:
             units = np.where(is_held, HELD * self._unit, self._unit)

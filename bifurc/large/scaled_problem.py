@@ -44,6 +44,7 @@ class ScaledProblem(NumericalProblem):
     """
 
     has_crossings = False  # bridges take dense matrices
+    piece_norm = 2  # entries are small where they are many
 
     def __init__(self, problem: LargeProblem, start: np.ndarray):
         n = problem.n
@@ -57,15 +58,11 @@ class ScaledProblem(NumericalProblem):
         self.periods = np.full(n, np.inf)
         self.bounds = np.tile([-np.inf, np.inf], (n, 1))
         self.bounds[-1] = problem.bounds / sizes[-1]
+        self.equation_count = n - 1
         self.scale = 1.0
         self.derivatives = problem.derivatives
         self.magnitude = 1.0
         self.magnitude = self._size_of_jacobian(self.own_units.inwards(start))
-
-    def largest_entry(self, vectors: np.ndarray) -> float:
-        """The longest of the ``vectors`` (k, n): entries are small where they are
-        many."""
-        return float(np.linalg.norm(vectors, axis=1).max())
 
     # --- values -----------------------------------------------------------------------
 

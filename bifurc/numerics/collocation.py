@@ -172,7 +172,7 @@ def _attempt(problem: Problem, aim: _Aim, width: float) -> _Accepted | _Rejected
     if nodes is None:
         return _Rejected(FAILED)
     coefficients = basis.from_values @ nodes
-    tail = problem.largest_entry(coefficients[-2:])
+    tail = float(np.linalg.norm(coefficients[-2:], problem.piece_norm, axis=1).max())
     # below the distance to which points are known, coefficients are rounding
     enough = max(aim.tolerance, TAIL * aim.known_to) * problem.scale
     root = 1.0 / aim.order  # the tail goes with this power of the width, upside down
@@ -226,11 +226,10 @@ def _points_at_nodes(
     if not problem.has_crossings:
         enough = max(enough, SETTLED * aim.known_to)
     most = 100 * aim.tolerance + MISSED * aim.misclosure
-    correct_nodes = problem.node_corrector()
-    if correct_nodes is not None:
+    if problem.node_corrector is not None:
         step = last_step(enough, problem.scale)
         nodes = CurveNodes(start, heading, offsets, basis.all_predictors, step, most)
-        return correct_nodes(nodes)
+        return problem.node_corrector(nodes)
     points = np.empty((len(offsets), len(start)))
     points[0] = start
     factored: Bordered | None = bordered_at(problem, start, heading)

@@ -18,11 +18,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bifurc import _core
 from bifurc.branch import Branch
 from bifurc.completeness import Level, Scope
 from bifurc.curves.certificate import Certificate, CertificateStatus
 from bifurc.curves.monitor import dead_points
 from bifurc.decisions import closes_to_rounding, is_same_point
+from bifurc.equations.tape import Operation
+from bifurc.function_problem import EquationProblem
 from bifurc.problem import Problem
 from bifurc.search.answer.completeness import SearchClaim
 from bifurc.search.findings import TracedBranch
@@ -78,6 +81,17 @@ class Subdivision:
         return not len(self.found) and not len(self.left) and not self.refuted
 
 
+def continuous_tape(problem: Problem) -> _core.Tape | None:
+    """The recorded equations in compiled form, with bounds on F and F' in boxes; None
+    where they are not recorded, or jump: an angle does."""
+    if not isinstance(problem, EquationProblem):
+        return None
+    tape = problem.recording.tape
+    if tape is None or np.any(tape.operations == Operation.ANGLE):
+        return None
+    return tape.compiled
+
+
 def can_be_subdivided(problem: Problem) -> bool:
     """Whether there are few enough unknowns within finite bounds, one equation less,
     and bounds on F."""
@@ -85,7 +99,7 @@ def can_be_subdivided(problem: Problem) -> bool:
         return False
     if np.any(problem.has_assumed_bounds):
         return False
-    tape = problem.continuous_tape()
+    tape = continuous_tape(problem)
     return tape is not None and tape.equations == problem.n - 1
 
 
@@ -179,7 +193,7 @@ class _Division:
         branches: Sequence[Branch],
         points: Sequence[SingularPoint],
     ):
-        tape = problem.continuous_tape()
+        tape = continuous_tape(problem)
         assert tape is not None
         self.tape = tape
         self.problem = problem

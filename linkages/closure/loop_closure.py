@@ -4,11 +4,12 @@ interface."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
-from bifurc.checks import check_number, check_type, rows_of
+from bifurc.checks import check_number, check_type, point_of, rows_of
 from bifurc.decisions import is_start_solved
 from bifurc.errors import ProblemError
 from bifurc.function_problem import NumericalProblem
@@ -66,7 +67,7 @@ class LoopClosure(NumericalProblem):
 
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """Second derivative (6, n, n) of the residual."""
-        hessian: np.ndarray = self.hessians(self.check_point(point, "point")[None])[0]
+        hessian: np.ndarray = self.hessians(point_of("point", point, self.n)[None])[0]
         return hessian
 
     def hessians(self, points: np.ndarray) -> np.ndarray:
@@ -168,15 +169,13 @@ class LoopClosure(NumericalProblem):
         if slices is None:
             return drawn
         near, gaps = self.project(slices.nearly_real)
-        constructed = [slices.configurations, near[is_start_solved(gaps)]]
-        random = np.repeat(
-            [False, True], [sum(map(len, constructed)), len(drawn.points)]
-        )
-        return Seeds(
-            points=np.concatenate([*constructed, drawn.points]),
-            random=random,
-            gaps=drawn.gaps,
-            missed=drawn.missed,
+        closed = near[is_start_solved(gaps)]
+        constructed = np.concatenate([slices.configurations, closed])
+        is_random = np.zeros(len(constructed), dtype=bool)
+        return replace(
+            drawn,
+            points=np.concatenate([constructed, drawn.points]),
+            random=np.concatenate([is_random, drawn.random]),
             audit=slices,
         )
 
@@ -195,7 +194,7 @@ class LoopClosure(NumericalProblem):
         if not 0.0 < radius < np.inf:
             raise ProblemError("radius", radius, "positive and finite")
         starts = rows_of("starts", starts, self.n)
-        center = self.check_point(center, "center")
+        center = point_of("center", center, self.n)
         projected = _core.project_to_sphere(
             starts, center, radius, self._geometry, SPHERE_STEPS
         )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
@@ -11,19 +10,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bifurc.checks import check_type, rows_of
+from bifurc.checks import check_type, point_of, rows_of
 from bifurc.decisions import is_start_solved
 from bifurc.equations.system import ScaledTape
 from bifurc.function_problem import NumericalProblem
 from bifurc.limits import Deadline
-from bifurc.problem import (
-    March,
-    MarchSettings,
-    NodeCorrector,
-    PreciseResidual,
-    Solver,
-    SphereProjection,
-)
+from bifurc.problem import Solver
 from bifurc.seeding import random_seeds, start_region
 from bifurc.seeds import Seeds
 from linkages.closure import cut_at_limits
@@ -40,7 +32,6 @@ from linkages.turns.turn_lattice import TurnLattice, turn_lattice
 from linkages.turns.whole_turns import TurnedEnds
 
 if TYPE_CHECKING:
-    import mpmath
     from scipy.sparse import sparray
 
 # unknowns up to which compiled methods with dense matrices take no longer than those in
@@ -65,6 +56,7 @@ class MechanismClosure(NumericalProblem):
     the mechanism, where it is there already.
     """
 
+    scaled_tape: ScaledTape
     curvature_residual = 0.2
     hessian_error = 1e-14
     derivatives = "recorded"
@@ -83,47 +75,40 @@ class MechanismClosure(NumericalProblem):
         self.units = tuple(unknown.unit for unknown in unknowns)
         self.periods = np.array([unknown.period for unknown in unknowns])
         self.bounds = np.array([[one.low, one.high] for one in unknowns])
+        # in a step of the same angles more joints make it longer, by the root of their number
+        self.stride = math.sqrt(max(1.0, self.n / STRIDE_OF))
         self.data_rounding = mechanism.coordinate_rounding / self.structure.unit
         self._equations: Equations = write_equations(self.structure, errors)
         tape = self._equations.tape
+        self.equation_count = tape.m
         self.equations = f"recorded ({tape.size} operations)"
-        self._tape = ScaledTape(
-            tape, self.magnitude, self.scale, self.bounds, self.periods
+        self.scaled_tape = ScaledTape(
+            tape,
+            self.magnitude,
+            self.scale,
+            self.bounds,
+            self.periods,
+            largest_dense=LARGEST_COMPILED,
+            largest_sparse=math.inf,
         )
 
     # --- values and derivatives -------------------------------------------------------
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
-        return self._tape.residuals(rows_of("points", points, self.n))
-
-    def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
-        """F' (m, n) at one point (n,), sparse for many unknowns."""
-        point = self.check_point(point, "point")
-        if self._tape.is_sparse:
-            return self._tape.sparse_jacobian(point)
-        return self._tape.jacobians(point[None])[0]
+        return self.scaled_tape.residuals(rows_of("points", points, self.n))
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' (k, m, n) at points (k, n)."""
-        return self._tape.jacobians(rows_of("points", points, self.n))
+        return self.scaled_tape.jacobians(rows_of("points", points, self.n))
+
+    def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
+        """F' (m, n) at one point (n,), sparse for many unknowns."""
+        return super().jacobian(point_of("point", point, self.n))
 
     def hessian(self, point: np.ndarray) -> np.ndarray:
         """F'' (m, n, n) at a point (n,)."""
-        return self._tape.hessian(self.check_point(point, "point"))
-
-    def precise_residual(self) -> PreciseResidual:
-        """F over mpmath numbers; the geometry is that of the doubles, taken as
-        exact."""
-        tape = self._equations.tape
-
-        def residual(unknowns: Sequence[mpmath.mpf]) -> list[mpmath.mpf]:
-            import mpmath  # it takes long to import
-
-            values: list[mpmath.mpf] = tape.over(unknowns, mpmath)
-            return values
-
-        return residual
+        return super().hessian(point_of("point", point, self.n))
 
     @cached_property
     def rows_of_closures(self) -> list[slice]:
@@ -158,66 +143,10 @@ class MechanismClosure(NumericalProblem):
 
     # --- curves and solutions ---------------------------------------------------------
 
-    @cached_property
-    def _is_compiled(self) -> bool:
-        """Whether curves and solutions come from compiled code: sparse matrices of any
-        size are factored there, dense ones up to some size."""
-        return self._tape.is_factored_sparse or self.n <= LARGEST_COMPILED
-
-    @property
-    def stride(self) -> float:
-        """The unit of the longest step along a form: in a step of the same angles more
-        joints make it longer, by the root of their number."""
-        return self.scale * math.sqrt(max(1.0, self.n / STRIDE_OF))
-
-    @property
-    def equation_count(self) -> int:
-        """Number of equations."""
-        return self._equations.tape.m
-
     def bordered_solver(self, point: np.ndarray, tangent: np.ndarray) -> Solver | None:
         """What solves systems with F' (m, n) at a point (n,), over the magnitude, and
         under it the row ``tangent`` (n,); None where that matrix is to be factored."""
-        return self._tape.bordered_solver(point, tangent)
-
-    def march(
-        self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
-    ) -> March:
-        """Taylor pieces of the motion from ``start`` (n,) along ``tangent`` (n,)."""
-        if self._is_compiled:
-            return self._tape.march(start, tangent, settings)
-        return super().march(start, tangent, settings)
-
-    def valley_corrector(self) -> NodeCorrector | None:
-        """What corrects points at the nodes of a piece of the valley along which the
-        mechanism nearly closes."""
-        if self.n > LARGEST_COMPILED:
-            return None
-        return self._tape.valley_corrector()
-
-    def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Closed configurations (k, n) near ``starts`` and the residual (k,) left at
-        each."""
-        starts = rows_of("starts", starts, self.n)
-        if self._is_compiled:
-            return self._tape.project(starts)
-        return super().project(starts)
-
-    def project_with_held(
-        self, starts: np.ndarray, is_held: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """What `project` gives, the unknowns that are held (n,) staying as they are in
-        each of the ``starts`` (k, n)."""
-        return self._tape.project(starts, is_held)
-
-    def project_to_sphere(
-        self, starts: np.ndarray, center: np.ndarray, radius: float
-    ) -> SphereProjection:
-        """Closed configurations near ``starts`` (k, n) at distance ``radius`` from
-        ``center`` (n,)."""
-        if self.n <= LARGEST_COMPILED:
-            return self._tape.project_to_sphere(starts, center, radius)
-        return super().project_to_sphere(starts, center, radius)
+        return self.scaled_tape.bordered_solver(point, tangent)
 
     # --- starts -----------------------------------------------------------------------
 
@@ -280,7 +209,7 @@ class MechanismClosure(NumericalProblem):
             return np.empty((0, self.n))
         missed = drawn.missed[is_start_solved(drawn.gaps)]
         beyond = np.concatenate([solutions[~self.are_inside(solutions)], missed])
-        hold = self.project_with_held
+        hold = self.scaled_tape.project
         return brought_within_limits(self, hold, beyond[:MOST_BEYOND], rng)
 
     def _drawn(

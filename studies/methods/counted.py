@@ -23,20 +23,12 @@ class Counted(NumericalProblem):
         self._problem = problem
         self.evaluations = 0
         self.budget = budget
-        for name in (
-            "names",
-            "units",
-            "periods",
-            "bounds",
-            "magnitude",
-            "scale",
-            "derivatives",
-            "curvature_residual",
-            "hessian_error",
-        ):
-            setattr(self, name, getattr(problem, name))
+        self.take_unknowns_of(problem)
+        self.curvature_residual = problem.curvature_residual
+        self.hessian_error = problem.hessian_error
         # by collocation F and F' are evaluated through the methods below
-        self._compiled = type(problem).march is not NumericalProblem.march
+        is_own = type(problem).march is not NumericalProblem.march
+        self._compiled = is_own or getattr(problem, "scaled_tape", None) is not None
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""

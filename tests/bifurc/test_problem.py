@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bifurc.curves.continuation import trace_branch
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
 from bifurc.problem import March, MarchSettings, MarchStatus, Piece
@@ -27,12 +28,12 @@ def test_differences_are_taken_modulo_the_periods_and_only_of_periodic_unknowns(
 @pytest.mark.parametrize("point", [np.zeros(3), np.zeros((1, 2)), 0.0])
 def test_a_point_of_the_wrong_shape_is_refused(point):
     with pytest.raises(ProblemError, match=r"shape of start.*\(2,\)"):
-        FunctionProblem(circle, BOX).check_point(point, "start")
+        trace_branch(FunctionProblem(circle, BOX), point)
 
 
 def test_a_point_that_is_not_finite_is_refused():
     with pytest.raises(ProblemError, match=r"start.*finite"):
-        FunctionProblem(circle, BOX).check_point([0.0, np.nan], "start")
+        trace_branch(FunctionProblem(circle, BOX), [0.0, np.nan])
 
 
 def test_gaps_are_residuals_over_the_magnitude():

@@ -25,6 +25,7 @@ from bifurc.decisions import (
     stands_still,
     unit_over_rounding,
 )
+from bifurc.function_problem import EquationProblem
 from bifurc.numerics.blur import (
     change_by_blur,
     distance_to_singular,
@@ -219,12 +220,27 @@ def _doubts_of_form(
         ]
         if loose:
             reach = is_stub.threshold * problem.scale
-            rough = sum(not problem.is_smooth_within(end, reach) for end in loose)
+            rough = sum(not _is_smooth_within(problem, end, reach) for end in loose)
             if rough:
                 kind = SearchDoubt.STALLED_AT_RIM
                 yield kind.doubt(name, ends=len(loose), rough=rough)
             else:
                 yield SearchDoubt.STALLED.doubt(name, ends=len(loose))
+
+
+def _is_smooth_within(problem: Problem, point: np.ndarray, reach: float) -> bool:
+    """Whether F and F' are finite up to ``reach`` from ``point`` (n,) in every unknown:
+    by intervals where the equations are recorded, else as far as is seen at the point
+    and beside it."""
+    if isinstance(problem, EquationProblem) and problem.recording.tape is not None:
+        low, high = (point - reach)[None], (point + reach)[None]
+        bounds = problem.recording.tape.compiled.jacobian_bounds(low, high)
+        return bool(np.isfinite(bounds).all())
+    shifts = reach * np.eye(problem.n)
+    with np.errstate(all="ignore"):
+        points = np.vstack([point, point + shifts, point - shifts])
+        values, slopes = problem.residuals(points), problem.jacobians(points)
+    return bool(np.isfinite(values).all() and np.isfinite(slopes).all())
 
 
 def _name(index: int) -> str:

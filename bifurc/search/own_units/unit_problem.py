@@ -72,8 +72,6 @@ OF_EQUATIONS = (
     "march",
     "project",
     "project_to_sphere",
-    "bridge",
-    "missed",
     "excess",
 )
 OF_ONE_UNIT = ("hessian", "seeds", "curvature_bound", "complex_curvature")

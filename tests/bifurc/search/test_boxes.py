@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bifurc import FunctionProblem
+from bifurc.search.subdivision import continuous_tape
 
 
 def quartic(u):
@@ -23,7 +24,7 @@ def curve_of_four(u):
 def divided(function, n, most=50_000, smallest=1e-6):
     """The problem, and what became of its bounds; nothing is left out."""
     one = FunctionProblem(function, [(-1.53, 1.47)] * n)
-    tape = one.continuous_tape()
+    tape = continuous_tape(one)
     low, high = np.full((1, n), -1.53), np.full((1, n), 1.47)
     nowhere = (np.empty((0, n)), np.empty(0), np.full(n, np.inf))
     return one, tape.divide(low, high, *nowhere, smallest, most)
@@ -69,7 +70,7 @@ def test_boxes_that_are_not_looked_at_are_handed_back():
     assert len(low)
     one = FunctionProblem(quartic, [(-1.53, 1.47)] * 2)
     nowhere = (np.empty((0, 2)), np.empty(0), np.full(2, np.inf))
-    rest = one.continuous_tape().divide(low, high, *nowhere, 1e-6, 50_000)
+    rest = continuous_tape(one).divide(low, high, *nowhere, 1e-6, 50_000)
     assert part[0] + rest[0] == whole[0]
     assert len(part[3][0]) + len(rest[3][0]) == len(whole[3][0])
 
@@ -87,12 +88,12 @@ def test_balls_are_left_out_modulo_the_periods():
     low, high = np.full((1, 2), -1.53), np.full((1, 2), 1.47)
     centers = np.array([[period, -period]])
     ball = (centers, np.array([0.1]), np.array([period, period]))
-    _, waiting, small, *_ = one.continuous_tape().divide(low, high, *ball, 1e-3, 5000)
+    _, waiting, small, *_ = continuous_tape(one).divide(low, high, *ball, 1e-3, 5000)
     assert not len(waiting[0]) and not len(small[0])
 
 
 def test_sums_are_rounded_to_the_next_doubles():
-    tape = FunctionProblem(lambda u: [u[0] + u[1]], [(-1, 1)] * 2).continuous_tape()
+    tape = continuous_tape(FunctionProblem(lambda u: [u[0] + u[1]], [(-1, 1)] * 2))
     rng = np.random.default_rng(0)
     points = rng.normal(size=(500, 2)) * 10.0 ** rng.integers(-300, 300, (500, 1))
     points = np.concatenate([points, [[0.5, 0.5], [-1.0, 2.0], [1.0, -1.0]]])
@@ -115,7 +116,7 @@ def test_sums_are_rounded_to_the_next_doubles():
     ],
 )
 def test_arrays_that_do_not_fit_are_refused(low, centers, error):
-    tape = FunctionProblem(quartic, [(-1, 1)] * 2).continuous_tape()
+    tape = continuous_tape(FunctionProblem(quartic, [(-1, 1)] * 2))
     periods = np.full(2, np.inf)
     with pytest.raises(ValueError, match=error):
         tape.divide(low, np.ones((1, 2)), centers, np.empty(0), periods, 1e-6, 10)

@@ -19,8 +19,9 @@ from tests.bifurc.known_curves import contradictory
 class OneByOne(ValleyProblem):
     """A valley of which the points at nodes are corrected one by one."""
 
-    def node_corrector(self):
-        return None
+    def __init__(self, of):
+        super().__init__(of)
+        self.node_corrector = None
 
 
 def nearly_bennett():
@@ -51,7 +52,7 @@ def test_points_corrected_in_one_call_are_those_corrected_one_by_one(name):
         march_by_collocation(valley, point, tangent, settings)
         for valley in (ValleyProblem(problem), OneByOne(problem))
     ]
-    assert ValleyProblem(problem).node_corrector() is not None
+    assert ValleyProblem(problem).node_corrector is not None
     assert len(marches[0].pieces) == len(marches[1].pieces) == 1
     # points are known to rounding over the smallest regular singular value, about 0.1
     assert marches[0].radii == pytest.approx(marches[1].radii, abs=1e-13)

@@ -89,7 +89,7 @@ def test_what_is_held_stays_and_the_rest_closes():
     problem = MechanismClosure(line_symmetric_loop(R0=(1.0, 1.05)))
     starts = np.random.default_rng(0).uniform(-np.pi, np.pi, (40, 6))
     starts[:, 0] = 1.02
-    points, gaps = problem.project_with_held(starts, np.arange(6) == 0)
+    points, gaps = problem.scaled_tape.project(starts, np.arange(6) == 0)
     assert np.abs(points[:, 0] - 1.02).max() < 1e-12
     assert np.count_nonzero(gaps < 1e-12) > 10
 
@@ -100,7 +100,7 @@ def test_what_is_brought_within_limits_is_closed_there():
     starts = rng.uniform(-np.pi, np.pi, (40, 6))
     points, gaps = problem.project(starts)
     beyond = points[gaps < 1e-12]
-    inside = brought_within_limits(problem, problem.project_with_held, beyond, rng)
+    inside = brought_within_limits(problem, problem.scaled_tape.project, beyond, rng)
     assert len(inside) > 10
     assert np.all(problem.are_inside(inside))
     assert np.abs(problem.residuals(inside)).max() < 1e-9
@@ -110,7 +110,7 @@ def test_nothing_is_brought_from_nowhere():
     problem = MechanismClosure(line_symmetric_loop(R0=(1.0, 1.05)))
     rng = np.random.default_rng(0)
     assert brought_within_limits(
-        problem, problem.project_with_held, np.empty((0, 6)), rng
+        problem, problem.scaled_tape.project, np.empty((0, 6)), rng
     ).shape == (0, 6)
 
 
@@ -127,7 +127,7 @@ def test_the_way_along_solutions_leads_within_many_limits(monkeypatch):
     points, gaps = problem.project(starts)
     beyond = points[(gaps < 1e-12) & ~problem.are_inside(points)]
     inside = within_limits.brought_within_limits(
-        problem, problem.project_with_held, beyond, rng
+        problem, problem.scaled_tape.project, beyond, rng
     )
     assert len(inside) > 0.2 * len(beyond) > 2
     assert np.all(problem.are_inside(inside))
