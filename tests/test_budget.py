@@ -45,7 +45,6 @@ LONGER = {
         "bifurc.search.search.look_where_starts_stop",
         "bifurc.search.subdivision._are_known",
         "bifurc.search.tracing.trace",
-        "linkages.app.commands.map_command.map_command",
         "linkages.app.commands.route_command._route_over_locks",
         "linkages.closure.cut_at_limits.cut_motions",
         "linkages.closure.driving.joints_to_hold",
