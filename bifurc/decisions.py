@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import tomllib
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -120,12 +120,18 @@ def unit_over_rounding(decision: Decision, by_rounding: float) -> float:
     return max(1.0, by_rounding / decision.threshold)
 
 
+def by_name(table: Mapping[str, Decision]) -> Callable[[str], Decision]:
+    """What a module gives for a name that it does not define: the decision of a table
+    that has this name in code."""
+
+    def decision_of(name: str) -> Decision:
+        try:
+            return table[name]
+        except KeyError:
+            raise AttributeError(f"there is no decision {name!r}") from None
+
+    return decision_of
+
+
 TABLE = read_decisions(Path(__file__).with_name("decisions.toml"))
-
-
-def __getattr__(name: str) -> Decision:
-    """The decision of this name in code."""
-    try:
-        return TABLE[name]
-    except KeyError:
-        raise AttributeError(f"there is no decision {name!r}") from None
+__getattr__ = by_name(TABLE)

@@ -21,7 +21,6 @@ LONGER = {
         "bifurc.diagrams.cells._kinds_of",
         "bifurc.diagrams.cells.cells_along",
         "bifurc.diagrams.zeros.zeros_along",
-        "bifurc.large.locators.locate_crossing",
         "bifurc.numerics.bordered.__init__",
         "bifurc.numerics.collocation._points_at_nodes",
         "bifurc.numerics.collocation.march_by_collocation",

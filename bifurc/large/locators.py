@@ -4,6 +4,7 @@ systems alone."""
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -140,22 +141,7 @@ def locate_crossing(
     rows = np.stack([tangent, *(triple.right for triple in triples)])
     columns = np.column_stack([triple.left for triple in triples])
 
-    def step_at(values: np.ndarray) -> tuple[np.ndarray, _NullSpace]:
-        point, beta = values[:n], values[n:]
-        system = problem.bordered(point, rows, columns)
-        solved = np.column_stack(
-            [system.solve(_unit(n + q, k)) for k in range(n - 1, n + q)]
-        )
-        left = [system.solve_transposed(_unit(n + q, k)) for k in range(n, n + q)]
-        null = _null_space(problem, point, solved, np.stack(left))
-        residual = problem.relative_residuals(point[None])[0] + columns @ beta
-        across = system.solve(np.concatenate([-residual, np.zeros(q + 1)]))
-        bends = problem.second_derivative(point, across[:n], null.basis)
-        wanted = (null.g - null.left @ bends).ravel()
-        forms = null.forms.reshape(-1, q + 1)
-        shares, *_ = np.linalg.lstsq(forms, wanted, rcond=NO_FORM)
-        return across + solved @ shares, null
-
+    step_at = partial(_crossing_step, problem, rows, columns)
     end = _by_newton(step_at, np.append(start, np.zeros(q)), n)
     if end is None:
         return None
@@ -170,6 +156,29 @@ def locate_crossing(
         forms=back.T @ null.forms @ back,
         regular=float(np.linalg.norm(null.g, ord=2)),
     )
+
+
+def _crossing_step(
+    problem: ScaledProblem, rows: np.ndarray, columns: np.ndarray, values: np.ndarray
+) -> tuple[np.ndarray, _NullSpace]:
+    """The step (n + q,) from x and beta, ``values`` (n + q,), with C ``rows`` (q + 1, n)
+    and B ``columns`` (n - 1, q), and the null space at x."""
+    n, q = problem.n, columns.shape[1]
+    point, beta = values[:n], values[n:]
+    system = problem.bordered(point, rows, columns)
+    solved = np.column_stack(
+        [system.solve(_unit(n + q, k)) for k in range(n - 1, n + q)]
+    )
+    left = [system.solve_transposed(_unit(n + q, k)) for k in range(n, n + q)]
+    null = _null_space(problem, point, solved, np.stack(left))
+    # to F + B beta = 0 first, and then along the null space to G = 0
+    residual = problem.relative_residuals(point[None])[0] + columns @ beta
+    across = system.solve(np.concatenate([-residual, np.zeros(q + 1)]))
+    bends = problem.second_derivative(point, across[:n], null.basis)
+    wanted = (null.g - null.left @ bends).ravel()
+    forms = null.forms.reshape(-1, q + 1)
+    shares, *_ = np.linalg.lstsq(forms, wanted, rcond=NO_FORM)
+    return across + solved @ shares, null
 
 
 class _NullSpace(NamedTuple):

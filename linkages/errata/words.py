@@ -11,7 +11,7 @@ from bifurc.atlas import Atlas
 from linkages.catalogue import entry
 from linkages.closed_forms.translator import Stroke, contact_angle, stroke_angles
 from linkages.construction.constructions import ending_with, superpose
-from linkages.construction.link import Link, bennett_links, closed_chain
+from linkages.construction.link import basic_links, closed_chain
 from linkages.families.mixed_double_goldberg import Kind, Order, double_goldberg_type
 from linkages.identification.identify import identify
 from linkages.linkage import load
@@ -41,18 +41,21 @@ def _random_maps(name: str) -> list[Atlas]:
 
 
 def components_of_double_goldbergs() -> str:
+    """How many of random double-Goldberg linkages have forms that do not meet."""
     maps = _random_maps("wohlhart-double-goldberg")
     split = [atlas for atlas in maps if atlas.components > 1]
     return f"{len(split)} of {len(maps)} random ones have more than one component"
 
 
 def one_curve_for_two_forms() -> str:
+    """How many of random line-symmetric Bricard linkages have a single form."""
     maps = _random_maps("bricard-line-symmetric")
     single = [atlas for atlas in maps if len(atlas.forms) == 1]
     return f"in {len(single)} of {len(maps)} random ones both are one closed curve"
 
 
 def windings_of_type_two() -> str:
+    """How often the joints of Type II linkages with two twists delta turn round."""
     windings = []
     for delta in (45, 83):
         atlas = map_linkage(
@@ -65,7 +68,8 @@ def windings_of_type_two() -> str:
 
 
 def type_of_a_common_pair() -> str:
-    a, b, c, d = _basic_links()
+    """What the superposition on the common pair of S2 and G2 is."""
+    a, b, c, d = basic_links(1.0, *np.radians([66, 50, 28, 83])).values()
     # links of S2 and G2 from the common pair on, which comes last
     subtractive = closed_chain(a, b - c, a, c, b)
     other = closed_chain(a, c + d, a, c, d)
@@ -76,6 +80,7 @@ def type_of_a_common_pair() -> str:
 
 
 def bakers_variants() -> str:
+    """What the mixed linkages of Types II and IV made of Goldberg loops are."""
     alpha, beta, gamma, delta = np.radians([66, 50, 28, 83])
     variants = ["serial-goldberg-variant-6r", "l-shape-goldberg-variant-6r"]
     texts = []
@@ -108,12 +113,6 @@ def continuous_twists() -> str:
     return "none of O2, O4, O6 meet at " + ", ".join(map(str, free)) + " deg"
 
 
-def _basic_links() -> tuple[Link, ...]:
-    """Links a, b, c, d of one Bennett ratio."""
-    alpha, beta, gamma, delta = np.radians([66, 50, 28, 83])
-    return bennett_links(1.0, alpha, b=(beta, None), c=(gamma, None), d=(delta, None))
-
-
 def _identified(loop: Loop, names: Sequence[str]) -> str:
     """Which of the linkages called ``names`` a loop is."""
     entries = [entry(name) for name in names]
@@ -131,6 +130,7 @@ def _freedoms(mechanism: NetworkMechanism, locks: Sequence[str]) -> tuple[int, i
 
 
 def pairs_three_apart() -> str:
+    """How many pairs of locks three joints apart leave a 6R of mobility 1."""
     network = lock_network(NETWORKS["four-bennett-network"].build(), {})
     ring = network.placed.network.plan.ring
     pairs = [(ring[k], ring[(k + 3) % 8]) for k in range(8)]
@@ -139,6 +139,7 @@ def pairs_three_apart() -> str:
 
 
 def moving_triples() -> str:
+    """Which triples of locks leave a network that moves."""
     network = lock_network(NETWORKS["four-bennett-network"].build(), {})
     triples = list(combinations(network.placed.network.plan.ring, 3))
     moving = [triple for triple in triples if _freedoms(network, triple)[0]]

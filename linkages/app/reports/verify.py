@@ -91,6 +91,17 @@ class ErratumCheck:
         return self.printed > MISPRINT and self.corrected < HOLDS
 
 
+def _of_members(faults: Sequence[Sequence[str]], missing: str) -> list[str]:
+    """The faults of each member, numbered from 1; what is ``missing`` where there is no
+    member."""
+    if not faults:
+        return [missing]
+    sentences = []
+    for number, texts in enumerate(faults, start=1):
+        sentences += [f"member {number}: {text}" for text in texts]
+    return sentences
+
+
 @dataclass(frozen=True)
 class Verification:
     """Everything checked about one linkage; ``expected`` is the mobility that is
@@ -113,11 +124,8 @@ class Verification:
         for erratum in self.errata:
             if not erratum.reproduced:
                 sentences.append(f"erratum {erratum.equation}: not reproduced")
-        real = [member for member in self.members if member.real]
-        for number, member in enumerate(real, start=1):
-            sentences += [f"member {number}: {text}" for text in self._faults(member)]
-        if not real:
-            sentences.append("no member with a real configuration")
+        faults = [self._faults(one) for one in self.members if one.real]
+        sentences += _of_members(faults, "no member with a real configuration")
         return tuple(sentences)
 
     def _faults(self, member: MemberCheck) -> list[str]:
@@ -267,13 +275,8 @@ class NetworkVerification:
     @property
     def failures(self) -> tuple[str, ...]:
         """What does not hold, in words; empty when all is well."""
-        sentences = []
-        real = [member for member in self.members if not member.refused]
-        for number, member in enumerate(real, start=1):
-            sentences += [f"member {number}: {text}" for text in self._faults(member)]
-        if not real:
-            sentences.append("no member that is not refused")
-        return tuple(sentences)
+        faults = [self._faults(one) for one in self.members if not one.refused]
+        return tuple(_of_members(faults, "no member that is not refused"))
 
     def _faults(self, member: NetworkMember) -> list[str]:
         """What is wrong with one member."""
