@@ -121,13 +121,13 @@ def _folded(mechanism: Mechanism, angles: Mapping[str, float]) -> Mechanism:
     """The mechanism in the closed state nearest to fold ``angles`` (rad), by joint,
     from the flat one."""
     problem = MechanismClosure(mechanism)
-    start = np.array([angles[name] for name in problem.names])
+    start = np.array([angles[name] for name in problem.domain.names])
     points, gaps = problem.project(start[None])
     if not is_start_solved(float(gaps[0])):
         value = f"folded such that a gap of {gaps[0]:.3g} is left"
         raise GeometryError("edges_foldAngle", value, "near a closed state")
     gap = float(np.linalg.norm(problem.residuals(start[None])))
-    check_moved("edges_foldAngle", start, points[0], gap, problem.names)
+    check_moved("edges_foldAngle", start, points[0], gap, problem.domain.names)
     poses = Poses(problem.structure).at(points)[0]
     joints = []
     for joint in mechanism.joints:

@@ -36,7 +36,7 @@ def in_loop_angles(atlas: Atlas, readout: Readout) -> Atlas:
     single = readout.single_loop
     if single is None:
         return atlas
-    names = LoopClosure(single.loop).names
+    names = LoopClosure(single.loop).domain.names
     recounted = _recount(atlas, to_loop_angles(readout), names)
     return replace(recounted, subject=subject_of(single.loop))
 
