@@ -20,7 +20,7 @@ from bifurc.decisions import (
 from bifurc.domain import Domain
 from bifurc.equations.evaluation import Equations
 from bifurc.equations.recording import Recording, record
-from bifurc.equations.system import ScaledTape
+from bifurc.equations.system import CompiledSystem, ScaledTape
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.bordered import as_dense
@@ -66,34 +66,27 @@ class NumericalProblem(Problem):
     """A problem that gives its ``domain``, `residuals` and `jacobians`, and nothing else:
     second derivatives by differences, pieces by collocation, solutions by least squares.
 
-    Where it has its equations as a ``scaled_tape``, these come of that: exact
-    derivatives, pieces by Taylor series, and all in compiled code as far as that is
-    fast.
+    Where it has its equations ``compiled``, these come of that: exact derivatives, pieces
+    by Taylor series, and all in compiled code as far as that is fast.
     """
 
-    scaled_tape: ScaledTape | None = None
+    compiled: CompiledSystem | None = None
 
     @property
     def shortcuts(self) -> Shortcuts:
-        """What a tape does in one call."""
-        tape = self.scaled_tape
-        if tape is None:
-            return NO_SHORTCUTS
-        return Shortcuts(
-            jacobian=tape.sparse_jacobian if tape.has_sparse_jacobian else None,
-            valley_corrector=tape.valley_points_at_nodes if tape.is_small else None,
-        )
+        """What compiled code does in one call."""
+        return NO_SHORTCUTS if self.compiled is None else self.compiled.shortcuts
 
     def precise_residual(self) -> PreciseResidual | None:
-        """F over mpmath numbers where there is a tape; its constants are the doubles that
-        it computes with. Raises `ValueError` where F is not real."""
-        return None if self.scaled_tape is None else self.scaled_tape.precise_residual
+        """F over mpmath numbers where it is compiled; the constants of a tape are the
+        doubles that it computes with. Raises `ValueError` where F is not real."""
+        return None if self.compiled is None else self.compiled.precise_residual
 
     def hessians(self, points: np.ndarray) -> np.ndarray:
-        """F'' (k, m, n, n) at points (k, n): exact by the tape, else by central
+        """F'' (k, m, n, n) at points (k, n): exact where they are compiled, else by central
         differences of F'."""
-        if self.scaled_tape is not None:
-            return self.scaled_tape.hessians(points)
+        if self.compiled is not None:
+            return self.compiled.hessians(points)
         return np.array([self._hessian_by_differences(point) for point in points])
 
     def _hessian_by_differences(self, point: np.ndarray) -> np.ndarray:
@@ -113,17 +106,17 @@ class NumericalProblem(Problem):
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
     ) -> March:
         """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,): Taylor series
-        of the tape, else by collocation, no more than `AT_ONCE`, as they do not end
+        where it is compiled, else by collocation, no more than `AT_ONCE`, as they do not end
         where the curve does."""
-        if self.scaled_tape is not None and self.scaled_tape.is_marched:
-            return self.scaled_tape.march(start, tangent, settings)
+        if self.compiled is not None and self.compiled.is_marched:
+            return self.compiled.march(start, tangent, settings)
         return march_by_collocation(self, start, tangent, settings)
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solutions (k, n) near starts (k, n) and the relative residual (k,) that is
         left at each, by least squares."""
-        if self.scaled_tape is not None and self.scaled_tape.is_marched:
-            return self.scaled_tape.project(starts)
+        if self.compiled is not None and self.compiled.is_marched:
+            return self.compiled.project(starts)
         return project_by_least_squares(self, starts)
 
     def project_to_sphere(
@@ -131,8 +124,8 @@ class NumericalProblem(Problem):
     ) -> SphereProjection:
         """Solutions near starts (k, n) at distance ``radius`` from ``center`` (n,), by
         Newton's method."""
-        if self.scaled_tape is not None and self.scaled_tape.is_small:
-            return self.scaled_tape.project_to_sphere(starts, center, radius)
+        if self.compiled is not None and self.compiled.is_small:
+            return self.compiled.project_to_sphere(starts, center, radius)
         return project_to_sphere_by_newton(self, starts, center, radius)
 
     def seeds(
@@ -157,7 +150,7 @@ class EquationProblem(NumericalProblem):
         self.magnitude = magnitude
         tape = self.equations.tape
         if tape is not None:
-            self.scaled_tape = ScaledTape(tape, magnitude, self.domain, region)
+            self.compiled = ScaledTape(tape, magnitude, self.domain, region)
 
     @property
     def recording(self) -> Recording:
@@ -167,7 +160,7 @@ class EquationProblem(NumericalProblem):
     @property
     def shortcuts(self) -> Shortcuts:
         """What a tape does in one call; F' where it is given as a sparse matrix."""
-        if self.scaled_tape is None and self.equations.is_sparse:
+        if self.compiled is None and self.equations.is_sparse:
             return Shortcuts(jacobian=self.equations.jacobian_as_given)
         return super().shortcuts
 
@@ -272,15 +265,15 @@ class FunctionProblem(EquationProblem):
         size = max(size, float(np.abs(known_ends).max(initial=0.0)))
         half = np.where(np.isfinite(periods), 0.5 * periods, size)
         about_zero = half[:, None] * np.array([-1.0, 1.0])
-        low, high = np.where(np.isfinite(bounds), bounds, about_zero).T
+        near = np.where(np.isfinite(bounds), bounds, about_zero)
         self.domain = replace(
             self.domain,
             bounds=np.where(is_open, FARTHEST * about_zero, bounds),
-            scale=float(np.median(high - low)) / 4.0,
+            scale=_quarter_of_width(near),
             has_assumed_bounds=is_open,
         )
         rng = np.random.default_rng(0)
-        points = rng.uniform(low, high, (PROBES, self.n))
+        points = rng.uniform(*near.T, (PROBES, self.n))
         self._measure(self._probes_with_value(points))
 
     def _size_of_solutions(self, is_open: np.ndarray) -> float:
@@ -378,32 +371,28 @@ class FunctionProblem(EquationProblem):
     def _check_jacobian(self, probe: np.ndarray) -> None:
         """Raise `ProblemError` unless F' has its shape and is finite at a probe (n,),
         and agrees with the recording or with differences where it is given."""
+        if self.equations.given_jacobian is None:
+            return
         shape = (len(self.equations.value(probe)), self.n)
-        given = self.equations.given_jacobian
-        if given is None:
-            jacobian = self.jacobians(probe[None])[0]
-        else:
-            jacobian = as_dense(self.equations.jacobian_as_given(probe))
+        jacobian = as_dense(self.equations.jacobian_as_given(probe))
         if jacobian.shape != shape:
             raise ProblemError("shape of the jacobian", jacobian.shape, str(shape))
-        if given is not None and not np.all(np.isfinite(jacobian)):
+        if not np.all(np.isfinite(jacobian)):
             raise ProblemError("jacobian", jacobian, "finite")
-        if given is None or self.n > LARGEST_COMPARED:
+        if self.n > LARGEST_COMPARED:
             return
+        is_recorded = self.equations.tape is not None
         expected = self.equations.central_difference(probe)
-        origin = "by differences"
-        if self.equations.tape is not None:
+        if is_recorded:
             expected = self.jacobians(probe[None])[0]
-            origin = "as recorded"
         if not np.all(np.isfinite(expected)):
             return  # at the rim of where the function is defined
         gaps = np.abs(jacobian - expected)
         if not is_derivative(float(gaps.max()), 1.0 + float(np.abs(expected).max())):
             row, column = np.unravel_index(np.argmax(gaps), gaps.shape)
-            allowed = (
-                f"the derivative of the function, {expected[row, column]:.6g} "
-                f"{origin} at {probe}"
-            )
+            origin = "as recorded" if is_recorded else "by differences"
+            value = f"{expected[row, column]:.6g} {origin} at {probe}"
+            allowed = f"the derivative of the function, {value}"
             name = f"jacobian[{row}, {column}]"
             raise ProblemError(name, jacobian[row, column], allowed)
 
@@ -453,8 +442,14 @@ def _described_domain(
         raise ProblemError("periods", own_periods.tolist(), allowed)
     ends = _without_limits_of_circles(ends, own_periods)
     domain = Domain(own_names, own_units, own_periods, ends)
-    low, high = _finite_bounds(domain)
-    return replace(domain, scale=float(np.median(high - low)) / 4.0)
+    finite = np.column_stack(_finite_bounds(domain))
+    return replace(domain, scale=_quarter_of_width(finite))
+
+
+def _quarter_of_width(bounds: np.ndarray) -> float:
+    """The typical size of unknowns within finite bounds (n, 2)."""
+    low, high = bounds.T
+    return float(np.median(high - low)) / 4.0
 
 
 def _finite_bounds(domain: Domain) -> tuple[np.ndarray, np.ndarray]:

@@ -1,7 +1,6 @@
 from .axes import loop_from_axes as loop_from_axes
 from .catalogue import UnknownLinkageError as UnknownLinkageError
-from .closure.loop_closure import LoopClosure as LoopClosure
-from .closure.mechanism_closure import MechanismClosure as MechanismClosure
+from .closure.closure import Closure as Closure
 from .entry import UnknownParameterError as UnknownParameterError
 from .file import LinkageFileError as LinkageFileError
 from .labels import FormLabels as FormLabels

@@ -15,7 +15,7 @@ from bifurc.decisions import unit_over_rounding
 from bifurc.numerics.blur import change_by_rounding
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.decisions import keeps_angle
 from linkages.forms import name_forms
 from linkages.labels import FormLabels, largest_residual, subject_of
@@ -24,8 +24,8 @@ from linkages.loop import LARGEST, SMALLEST, Loop
 from linkages.values import GeometryError
 
 if TYPE_CHECKING:
-    from linkages.closure.mechanism_closure import MechanismClosure
     from linkages.mechanisms.mechanism import Mechanism
+    from linkages.readout.readout import Readout
 
 DEFAULT_SEARCH = SearchSettings()
 
@@ -64,7 +64,7 @@ def _map_loop(linkage: Linkage, search: Callable[..., Atlas]) -> Atlas:
     if not SMALLEST < size < LARGEST:
         allowed = f"between {SMALLEST:g} and {LARGEST:g}; choose another unit"
         raise GeometryError("characteristic length", f"{size:.1g}", allowed)
-    return name_atlas(search(LoopClosure(linkage.loop)), linkage)
+    return name_atlas(search(Closure(linkage.loop)), linkage)
 
 
 def _map_mechanism(mechanism: Mechanism, search: Callable[..., Atlas]) -> Atlas:
@@ -84,13 +84,13 @@ def _map_mechanism(mechanism: Mechanism, search: Callable[..., Atlas]) -> Atlas:
     if readout.single_loop is not None:
         atlas = _map_loop(Linkage(readout.single_loop.loop), search)
         return in_joint_variables(atlas, readout)
-    return _label_mechanism(search(readout.closure), readout.closure)
+    return _label_mechanism(search(readout.closure), readout)
 
 
 def name_atlas(atlas: Atlas, linkage: Linkage) -> Atlas:
     """The atlas of a linkage with the names of its forms, their labels, and the loop as
     its subject."""
-    problem = LoopClosure(linkage.loop)
+    problem = Closure(linkage.loop)
     branches = [form.branch for form in atlas.forms]
     samples = [branch.sample(SAMPLES) for branch in branches]
     changes = [change_by_rounding(problem, branch) for branch in branches]
@@ -103,21 +103,24 @@ def name_atlas(atlas: Atlas, linkage: Linkage) -> Atlas:
     return replace(named, subject=subject_of(linkage.loop))
 
 
-def _label_mechanism(atlas: Atlas, problem: MechanismClosure) -> Atlas:
+def _label_mechanism(atlas: Atlas, readout: Readout) -> Atlas:
     """The atlas with labels on its forms, and the mechanism as its subject."""
     from linkages.mechanisms.subject import mechanism_subject
     from linkages.turns.translates import with_translates
+    from linkages.turns.turn_lattice import turn_lattice
+
+    structure = readout.structure
 
     names = [form.name for form in atlas.forms]
-    labels = [_labels(problem, form.branch).as_values() for form in atlas.forms]
-    subject = mechanism_subject(problem.mechanism)
+    labels = [_labels(readout.closure, form.branch).as_values() for form in atlas.forms]
+    subject = mechanism_subject(readout.mechanism)
     # what unknowns are multiplied with to be in rad and in the user's unit
-    subject["scale"] = problem.structure.scales.tolist()
+    subject["scale"] = structure.scales.tolist()
     labelled = replace(atlas.renamed(names, labels), subject=subject)
-    return with_translates(labelled, problem.structure, problem.lattice)
+    return with_translates(labelled, structure, turn_lattice(structure))
 
 
-def _labels(problem: MechanismClosure, branch: Branch) -> FormLabels:
+def _labels(problem: Closure, branch: Branch) -> FormLabels:
     """The unknowns, from 1, that keep their values along a branch, these values, and
     the largest closure error."""
     samples = branch.sample(SAMPLES)

@@ -10,7 +10,7 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.loop import Loop
 
 STEPS = 60  # of damped Gauss-Newton
@@ -47,7 +47,7 @@ class Survey:
 def survey(loop: Loop, starts: int = 40, seed: int = 0) -> Survey:
     """What exploring ``loop`` from complete slices and from ``starts`` random starts
     finds."""
-    problem = LoopClosure(loop)
+    problem = Closure(loop)
     seeds = problem.seeds(np.random.default_rng(seed), starts)
     # neither whether a motion is missing is asked, nor what nearly moves
     settings = SearchSettings(prove=False, near_motions=False)
@@ -61,7 +61,7 @@ def survey(loop: Loop, starts: int = 40, seed: int = 0) -> Survey:
     )
 
 
-def _stiffness(problem: LoopClosure, assemblies: np.ndarray) -> float:
+def _stiffness(problem: Closure, assemblies: np.ndarray) -> float:
     """The smallest singular value number n at configurations (k, n), nan for none."""
     if not len(assemblies):
         return float("nan")
@@ -78,7 +78,7 @@ def held_gap(loop: Loop, angle: float = 1.0, starts: int = 60, seed: int = 0) ->
     converge slowly, from one that moves. Damped Gauss-Newton from random starts of the
     other joints.
     """
-    problem = LoopClosure(loop)
+    problem = Closure(loop)
     rng = np.random.default_rng(seed)
     theta = rng.uniform(-np.pi, np.pi, (starts, loop.n))
     theta[:, 0] = angle
@@ -89,7 +89,7 @@ def held_gap(loop: Loop, angle: float = 1.0, starts: int = 60, seed: int = 0) ->
     return float(np.linalg.norm(residuals, axis=1).min())
 
 
-def _damped_step(problem: LoopClosure, theta: np.ndarray) -> np.ndarray:
+def _damped_step(problem: Closure, theta: np.ndarray) -> np.ndarray:
     """Steps (k, n - 1) of Gauss-Newton from configurations (k, n), joint 1 held."""
     residual = problem.residuals(theta)
     jacobian = problem.jacobians(theta)[:, :, 1:]

@@ -8,9 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from bifurc.problem import Problem
+from linkages.closure.closure import Closure
 from linkages.closure.errors import draw_errors
-from linkages.closure.loop_closure import LoopClosure
-from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.loop import Loop
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.structure.structure import Structure
@@ -28,9 +27,9 @@ def closure_with_errors(
     Raises `GeometryError` for an ``error`` that is negative or not finite.
     """
     if isinstance(linkage, Loop):
-        return LoopClosure(make_with_errors(linkage, error, rng))
+        return Closure(make_with_errors(linkage, error, rng))
     structure = Structure(linkage)
-    return MechanismClosure(linkage, draw_errors(structure, error, rng), structure)
+    return Closure(linkage, draw_errors(structure, error, rng), structure)
 
 
 def make_with_errors(loop: Loop, error: float, rng: np.random.Generator) -> Loop:

@@ -32,7 +32,7 @@ from bifurc import (
     trace_branch,
 )
 from bifurc.curves.continuation import DEFAULT_SETTINGS
-from linkages import LoopClosure, load_linkage, map_linkage
+from linkages import Closure, load_linkage, map_linkage
 from linkages.app.options import FILE
 from linkages.catalogue import entry
 from linkages.slices.elimination import slice_configurations
@@ -78,7 +78,7 @@ def benchmarks() -> dict[str, float]:
 
 def _tracing_benchmarks() -> dict[str, float]:
     """One form of the linkage, traced again and again."""
-    problem = LoopClosure(entry(LINKAGE).build())
+    problem = Closure(entry(LINKAGE).build())
     form = explore(problem, settings=UNPROVED).forms[0].branch
     point, tangent = form(0.3), form(0.3, 1)
 
@@ -106,7 +106,7 @@ def _search_benchmarks() -> dict[str, float]:
     """The steps of a search for all forms of the linkage, and the whole of it."""
     linkage = load_linkage(LINKAGE)
     loop = linkage.loop
-    problem = LoopClosure(loop)
+    problem = Closure(loop)
     starts = np.random.default_rng(0).uniform(-np.pi, np.pi, (200, loop.n))
     angles = np.linspace(0, 6, 24)
     work: dict[str, Callable[[], object]] = {

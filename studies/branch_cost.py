@@ -26,7 +26,7 @@ from matplotlib.figure import Figure
 from bifurc import Branch, MarchSettings, trace_branch
 from bifurc.curves.continuation import DEFAULT_SETTINGS
 from bifurc.curves.monitor import profile_branch
-from linkages import GeometryError, Loop, LoopClosure
+from linkages import Closure, GeometryError, Loop
 from linkages.app.options import FOLDER
 from linkages.catalogue import entry
 from studies.bench import median_time
@@ -54,7 +54,7 @@ PARTS: dict[str, Callable[[Cost], float]] = {
 }
 
 
-def cost_of(series: str, problem: LoopClosure) -> list[Cost]:
+def cost_of(series: str, problem: Closure) -> list[Cost]:
     """Cost of the closed branches through a few random closed configurations."""
     rng = np.random.default_rng(1)
     points, gaps = problem.project(rng.uniform(-np.pi, np.pi, (8, problem.n)))
@@ -69,7 +69,7 @@ def cost_of(series: str, problem: LoopClosure) -> list[Cost]:
 
 def _measure(
     series: str,
-    problem: LoopClosure,
+    problem: Closure,
     point: np.ndarray,
     branch: Branch,
 ) -> Cost:
@@ -84,7 +84,7 @@ def _measure(
     march = partial(problem.march, branch(0.0), branch(0.0, 1), settings)
     return Cost(
         series=series,
-        joints=problem.loop.n,
+        joints=problem.n,
         length=branch.length,
         pieces=len(branch.pieces),
         gap=float(profile_branch(problem, branch).smallest.min()),
@@ -93,13 +93,13 @@ def _measure(
     )
 
 
-def random_loop(joints: int, rng: np.random.Generator) -> LoopClosure:
+def random_loop(joints: int, rng: np.random.Generator) -> Closure:
     """A general loop."""
     lengths = rng.uniform(0.5, 1.5, joints)
     twists = rng.uniform(0.6, 2.5, joints)
     offsets = rng.uniform(0.0, 0.4, joints)
     loop = Loop(tuple(lengths), tuple(twists), tuple(offsets), f"general {joints}R")
-    return LoopClosure(loop)
+    return Closure(loop)
 
 
 def cost_of_loops(rng: np.random.Generator) -> list[Cost]:
@@ -113,7 +113,7 @@ def cost_of_loops(rng: np.random.Generator) -> list[Cost]:
                 loop = family.build(**family.draw(rng))
             except GeometryError:  # the constructor refuses these parameters
                 continue
-            costs += cost_of("loops", LoopClosure(loop))
+            costs += cost_of("loops", Closure(loop))
     for _ in range(12):
         costs += cost_of("loops", random_loop(MOST_JOINTS, rng))
     return costs
@@ -123,7 +123,7 @@ def cost_against_gap() -> list[Cost]:
     """The four-bar 2, 1, 2, 1 with its last link too long by 1e-1 to 1e-10."""
     family = entry("four-bar")
     loops = [family.build(a=2.0, b=1.0, c=2.0, d=1.0 + 10.0**-k) for k in range(1, 11)]
-    return [cost for loop in loops for cost in cost_of("gap", LoopClosure(loop))]
+    return [cost for loop in loops for cost in cost_of("gap", Closure(loop))]
 
 
 def line(costs: list[Cost], seconds: Callable[[Cost], float]) -> np.ndarray:

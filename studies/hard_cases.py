@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from bifurc import Curvature, FunctionProblem, Problem, trace_branch
-from linkages import Loop, LoopClosure
+from linkages import Closure, Loop
 from linkages.catalogue import entry
 
 Test = Callable[[np.ndarray], bool]
@@ -115,7 +115,7 @@ def near_parallelogram(e: float) -> Ladder:
     any e > 0.
     """
     zero = (0.0,) * 4
-    problem = LoopClosure(Loop((1.0, 2.0, 1.0 + e, 2.0), zero, zero))
+    problem = Closure(Loop((1.0, 2.0, 1.0 + e, 2.0), zero, zero))
     angle = 0.7  # the parallelogram itself, then corrected
     start = problem.project(np.array([[angle, np.pi - angle, angle, np.pi - angle]]))[
         0
@@ -228,7 +228,7 @@ LOOPS: tuple[tuple[str, str, int, dict[str, float]], ...] = (
 def _loop(title: str, name: str, count: int, values: dict[str, float]) -> Crossing:
     """A linkage of the catalogue, once around the first form that random starts reach
     far from singular points."""
-    problem = LoopClosure(entry(name).build(**values))
+    problem = Closure(entry(name).build(**values))
     n = problem.n
     rng = np.random.default_rng(0)
     points, gaps = problem.project(rng.uniform(-3, 3, (60, n)))

@@ -27,7 +27,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from bifurc import trace_branch
-from linkages import Mechanism, MechanismClosure
+from linkages import Closure, Mechanism
 from linkages.files.fold import read_fold
 from studies.bennett_lattice import locked_lattice
 from studies.miura import miura
@@ -78,7 +78,7 @@ def cost_of_form(family: str, side: int) -> FormCost:
     begin = time.process_time()
     mechanism = FAMILIES[family](side)
     read = time.process_time()
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     problem.residuals(problem.reference[None])
     written = time.process_time()
     branch = trace_branch(problem, problem.reference)

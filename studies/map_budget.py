@@ -26,7 +26,7 @@ import numpy as np
 
 from bifurc import MarchSettings, trace_branch
 from bifurc.curves.continuation import DEFAULT_SETTINGS
-from linkages import Linkage, LoopClosure, load_linkage, map_linkage
+from linkages import Closure, Linkage, load_linkage, map_linkage
 from linkages.app.options import FOLDER
 
 LINKAGE = "special-double-subtractive-goldberg"
@@ -37,7 +37,7 @@ SIZE = 300  # of the matrices whose product gives the rate of the processor
 # The step of the method that a function is: module, function, name of the step.
 STEPS = (
     ("slices.elimination", "slice_configurations", "complete slices"),
-    ("closure.loop_closure", "project", "projections"),
+    ("closure.loop_parts", "project", "projections"),
     ("search.components", "components_of_seeds", "components of seeds"),
     ("curves.continuation", "trace_branch", "tracing"),
     ("curves.misclosure", "largest_misclosure", "misclosure of forms"),
@@ -155,7 +155,7 @@ def series_operations(joints: int, order: int) -> int:
 def seconds_of_series(linkage: Linkage) -> tuple[float, int]:
     """Seconds that a march takes for a piece of the first form, the least of some runs,
     and the operations of its series."""
-    problem = LoopClosure(linkage.loop)
+    problem = Closure(linkage.loop)
     form = map_linkage(linkage).forms[0].branch
     start, tangent = form(0.0), form(0.0, 1)
     pieces = len(trace_branch(problem, start, tangent).pieces)

@@ -31,10 +31,10 @@ import linkages.decisions
 from bifurc import FunctionProblem, Problem, SearchSettings, Seeds, explore
 from bifurc.decisions import Decision, Margins, Role, record_margins
 from linkages import (
+    Closure,
     GeometryError,
     Joint,
     Loop,
-    LoopClosure,
     Mechanism,
     load,
     map_linkage,
@@ -227,8 +227,8 @@ def _surfaces() -> Iterator[Case]:
     zeros = (0.0,) * 5
     lengths, twists = (1.0, 1.0, 1.2, 0.9, 1.1), (1.0, 1.1, 1.2, 0.9, 0.8)
     problems: dict[str, Problem] = {
-        "planar loop of five": LoopClosure(Loop(lengths, zeros, zeros)),
-        "spherical loop of five": LoopClosure(Loop(zeros, twists, zeros)),
+        "planar loop of five": Closure(Loop(lengths, zeros, zeros)),
+        "spherical loop of five": Closure(Loop(zeros, twists, zeros)),
         "sphere": FunctionProblem(lambda u: [u @ u - 0.5], BOX),
         "cone": FunctionProblem(lambda u: [u[2] ** 2 - u[0] ** 2 - u[1] ** 2], BOX),
         "two planes": FunctionProblem(lambda u: [u[0] * u[1]], BOX),

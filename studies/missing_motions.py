@@ -22,7 +22,7 @@ import numpy as np
 
 from bifurc import Atlas, Level, SearchSettings, explore
 from bifurc.tables import table
-from linkages import GeometryError, Loop, LoopClosure
+from linkages import Closure, GeometryError, Loop
 from linkages.catalogue import catalogue, entry
 
 FIRST = SearchSettings(starts=1, prove=True)
@@ -90,7 +90,7 @@ def main(count: int, seed: int) -> None:
     seconds = []
     for name, loop in islice(linkages(np.random.default_rng(seed)), count):
         kind = name if name == AT_BIRTH else "catalogue"
-        problem = LoopClosure(loop)
+        problem = Closure(loop)
         start = time.process_time()
         atlas = explore(problem, settings=FIRST, seed=1)
         seconds.append(time.process_time() - start)

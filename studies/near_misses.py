@@ -29,7 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bifurc import Branch
-from linkages import GeometryError, Loop, LoopClosure
+from linkages import Closure, GeometryError, Loop
 from linkages.catalogue import entry
 from studies.half_turn import HalfTurn, never_at, samples
 
@@ -50,12 +50,12 @@ class NearMiss:
 
     family: str
     size: float
-    problem: LoopClosure
+    problem: Closure
     start: Floats
     stays: Test
 
 
-def _starts(problem: LoopClosure, rng: np.random.Generator) -> Floats:
+def _starts(problem: Closure, rng: np.random.Generator) -> Floats:
     """Closed configurations (k, n) on curves, away from singular points."""
     n = problem.n
     points, gaps = problem.project(rng.uniform(-np.pi, np.pi, (TRIED, n)))
@@ -74,7 +74,7 @@ def _four_bar(rng: np.random.Generator, size: float) -> NearMiss | None:
     a, b = rng.uniform(0.5, 2.0, 2)
     errors = size * rng.choice([-1.0, 1.0], 4) * rng.uniform(0.1, 1.0, 4)
     lengths = np.array([a, b, a, b]) * (1 + errors)
-    problem = LoopClosure(Loop(tuple(lengths), (0.0,) * 4, (0.0,) * 4))
+    problem = Closure(Loop(tuple(lengths), (0.0,) * 4, (0.0,) * 4))
     starts = _starts(problem, rng)
     if not len(starts):
         return None
@@ -115,7 +115,7 @@ def _double_goldberg(rng: np.random.Generator, size: float) -> NearMiss | None:
     special = math.atan(tangents["beta"] * tangents["delta"] / tangents["alpha"])
     gamma = 2 * special * (1 + size * rng.choice([-1.0, 1.0]))
     family = entry("double-subtractive-goldberg")
-    problem = LoopClosure(family.build(**values, gamma=gamma))
+    problem = Closure(family.build(**values, gamma=gamma))
     for start in _starts(problem, rng):
         motion = _goldberg_motion(start)
         if motion is not None and motion.is_near_another_arc(size):
@@ -209,7 +209,7 @@ def _goldberg_motion(start: Floats) -> _GoldbergMotion | None:
 def _line_symmetric(
     family: str, loop: Loop, rng: np.random.Generator, size: float
 ) -> NearMiss | None:
-    problem = LoopClosure(loop)
+    problem = Closure(loop)
     for start in _starts(problem, rng):
         off = np.abs(np.sin((start[3:] - start[:3]) / 2)).max()
         if off < 1e-9:

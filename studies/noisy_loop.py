@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from bifurc.noisy_problem import NoisyMethods, RoundingNoise
-from linkages import Loop, LoopClosure
+from linkages import Closure, Loop
+from linkages.closure.loop_parts import ScrewSystem
 from linkages.kinematics import LinkTable, link_geometry
 
 
@@ -29,26 +30,32 @@ class NoisyLoop(Loop):
         return self.noise.relative(geometry)
 
 
-class NoisyLoopClosure(NoisyMethods, LoopClosure):
-    """The closure of a noisy loop: each call of a kernel gets a geometry of its own."""
+class NoisyScrews(ScrewSystem):
+    """The screws of a noisy loop: each call of a kernel gets a geometry of its own."""
 
     loop: NoisyLoop
 
-    def __init__(self, loop: NoisyLoop):
-        super().__init__(loop)
-        self.noise = loop.noise
-
     @property
-    def _geometry(self) -> np.ndarray:
+    def geometry(self) -> np.ndarray:
+        """What the kernels read of the links, with errors."""
         return self.loop.link_geometry
 
-    @_geometry.setter
-    def _geometry(self, geometry: np.ndarray) -> None:
+    @geometry.setter
+    def geometry(self, geometry: np.ndarray) -> None:
         """The geometry without errors is not used."""
 
 
-def noisy_closure(loop: Loop, seed: int) -> LoopClosure:
+class NoisyClosure(NoisyMethods, Closure):
+    """The closure of a noisy loop."""
+
+    def __init__(self, loop: NoisyLoop):
+        super().__init__(loop)
+        self.compiled = NoisyScrews(loop, self.domain)
+        self.noise = loop.noise
+
+
+def noisy_closure(loop: Loop, seed: int) -> Closure:
     """The closure of ``loop`` seen through rounding noise drawn with ``seed``."""
     noisy = NoisyLoop(loop.lengths, loop.twists, loop.offsets, loop.name)
     object.__setattr__(noisy, "noise", RoundingNoise(seed))
-    return NoisyLoopClosure(noisy)
+    return NoisyClosure(noisy)

@@ -29,7 +29,7 @@ from bifurc import Atlas, SearchSettings
 from bifurc.problem import relative_gaps
 from bifurc.singular.dimension import local_dimensions
 from bifurc.tables import count_of, section
-from linkages import Mechanism, MechanismClosure, map_linkage
+from linkages import Closure, Mechanism, map_linkage
 from linkages.app.options import FOLDER
 from studies.known_mechanisms import WAYS, KnownMechanism, known_mechanisms
 
@@ -114,7 +114,7 @@ def differences(one: Answer, other: Answer, *, same_measure: bool) -> tuple[str,
 
 def fact_misses(known: KnownMechanism) -> tuple[str, ...]:
     """Where the configuration in which a mechanism is given is not what is known."""
-    problem = MechanismClosure(known.mechanism)
+    problem = Closure(known.mechanism)
     reference = problem.reference[None]
     gap = float(relative_gaps(problem, reference)[0])
     about = local_dimensions(problem, reference)

@@ -7,7 +7,7 @@ from functools import cache
 from bifurc.atlas import Atlas
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.linkage import Linkage, load
 from linkages.loop import Loop
 from linkages.mapping import map_linkage
@@ -61,4 +61,4 @@ def _map(
 def _curves(
     loop: Loop, besides: tuple[str, ...], settings: SearchSettings, seed: int
 ) -> Atlas:
-    return explore(LoopClosure(loop), settings=settings, seed=seed)
+    return explore(Closure(loop), settings=settings, seed=seed)

@@ -11,7 +11,7 @@ import bifurc
 import linkages
 from bifurc import BifurcError, FunctionProblem, SearchSettings, TraceSettings
 from bifurc.seeds import Seeds
-from linkages import Loop, LoopClosure
+from linkages import Closure, Loop
 
 NAN = float("nan")
 INF = float("inf")
@@ -106,19 +106,19 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
     "half a turn": (lambda: BRANCH.moved_by_periods([0.5, 0]), "turns"),
     "turns of other unknowns": (lambda: BRANCH.moved_by_periods([1]), "turns"),
     "one configuration for many": (
-        lambda: LoopClosure(BENNETT.loop).residuals([1.0, 2.0, 3.0, 4.0]),
+        lambda: Closure(BENNETT.loop).residuals([1.0, 2.0, 3.0, 4.0]),
         "shape of points",
     ),
     "configurations of another loop": (
-        lambda: LoopClosure(BENNETT.loop).jacobians([[1.0, 2.0]]),
+        lambda: Closure(BENNETT.loop).jacobians([[1.0, 2.0]]),
         "shape of points",
     ),
     "starts of nothing": (
-        lambda: LoopClosure(BENNETT.loop).project(None),
+        lambda: Closure(BENNETT.loop).project(None),
         "shape of starts",
     ),
     "a sphere of no size": (
-        lambda: LoopClosure(BENNETT.loop).project_to_sphere(
+        lambda: Closure(BENNETT.loop).project_to_sphere(
             np.zeros((1, 4)), np.zeros(4), 0.0
         ),
         "radius",
@@ -302,7 +302,7 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
         lambda: linkages.loop_from_axes(np.full((4, 3), NAN), np.ones((4, 3))),
         "points",
     ),
-    "no loop to close": (lambda: LoopClosure(None), "loop"),
+    "no loop to close": (lambda: Closure(None), "loop"),
     "no linkage to map": (lambda: linkages.map_linkage(None), "linkage"),
     "a name to map": (lambda: linkages.map_linkage("bennett"), "linkage"),
     "settings of another type for a map": (

@@ -13,7 +13,7 @@ from bifurc.search.explore import explore
 from bifurc.seeds import Seeds
 from bifurc.settings import SearchSettings
 from linkages.catalogue import catalogue, entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.values import GeometryError
 from tests.maps import curves_of
 
@@ -107,14 +107,14 @@ def test_the_atlas_is_the_same_from_a_single_start_on_every_component(atlases, n
     starts = np.array([*points, *atlas.rigid])
     none = np.empty((0, starts.shape[1]))
     seeds = Seeds(starts, np.zeros(len(starts), dtype=bool), np.empty(0), none)
-    assert_same_atlas(atlas, explore(LoopClosure(entry(name).build()), seeds=seeds))
+    assert_same_atlas(atlas, explore(Closure(entry(name).build()), seeds=seeds))
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_atlas_is_the_same_with_starts_in_reverse(atlases, name):
     # the first direction followed is that of an SVD and changes with the turn of a
     # start by whole turns and its order
-    problem = LoopClosure(entry(name).build())
+    problem = Closure(entry(name).build())
     drawn = problem.seeds(np.random.default_rng(0), 200)
     turns = 2 * np.pi * np.random.default_rng(2).integers(-1, 2, drawn.points.shape)
     seeds = Seeds(
@@ -174,7 +174,7 @@ def members(name, count):
 @pytest.mark.parametrize("name", FAMILIES)
 def test_random_members_are_traced_whole_with_closure_and_the_same_from_two_seeds(name):
     for loop in members(name, 2):
-        problem = LoopClosure(loop)
+        problem = Closure(loop)
         one, other = (
             explore(problem, seed=0),
             explore(problem, settings=SearchSettings(starts=300), seed=1),

@@ -9,7 +9,7 @@ from bifurc.settings import SearchSettings
 from bifurc.singular.classify import classify_singular_point
 from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.point import Kind
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.loop import Loop
 from tests.bifurc.known_curves import double_watt
 
@@ -19,7 +19,7 @@ def test_cyclohexane_has_one_flexible_form_and_two_rigid_chairs():
     # line-symmetric octahedral linkage of Bricard
     twist = np.arccos(1 / 3)
     atlas = explore(
-        LoopClosure(Loop((0,) * 6, (twist,) * 6, (1,) * 6, "cyclohexane")),
+        Closure(Loop((0,) * 6, (twist,) * 6, (1,) * 6, "cyclohexane")),
         settings=SearchSettings(starts=300, prove=True),
     )
     assert len(atlas.forms) == 1
@@ -35,7 +35,7 @@ def test_a_flat_folding_vertex_has_four_half_branches_flat_and_folded():
     # folds flat (Kawasaki)
     sectors = tuple(np.radians([60.0, 90.0, 120.0, 90.0]))
     atlas = explore(
-        LoopClosure(Loop((0,) * 4, sectors, (0,) * 4, "vertex of four creases")),
+        Closure(Loop((0,) * 4, sectors, (0,) * 4, "vertex of four creases")),
         settings=SearchSettings(prove=True),
     )
     assert len(atlas.forms) == 2

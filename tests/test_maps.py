@@ -10,7 +10,7 @@ import pytest
 
 from bifurc.graphs import arc_graph
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.loop import Loop
 from tests.maps import curves_of
 
@@ -376,7 +376,7 @@ def test_the_general_line_symmetric_bricard_has_the_known_near_misses(maps):
     assert [form.min_singular_value for form in atlas.forms] == pytest.approx(
         smallest, abs=1e-9
     )
-    problem = LoopClosure(maps["general line-symmetric Bricard 6R"][1])
+    problem = Closure(maps["general line-symmetric Bricard 6R"][1])
     for form, least in zip(atlas.forms, smallest, strict=True):
         dense = np.linalg.svd(
             problem.jacobians(form.branch.sample(20_000)), compute_uv=False

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -166,9 +167,7 @@ class Equations:
         """How far off F (m,) at a point (n,) is where its coefficients are rounded to
         doubles; None where it is not recorded."""
         tape = self.tape
-        return (
-            None if tape is None else lambda point: rounding_of_constants(tape, point)
-        )
+        return None if tape is None else partial(rounding_of_constants, tape)
 
 
 def _contiguous(values: np.ndarray) -> np.ndarray:

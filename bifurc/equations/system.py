@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -23,6 +23,8 @@ from bifurc.problem import (
     March,
     MarchSettings,
     MarchStatus,
+    PreciseResidual,
+    Shortcuts,
     Solver,
     SphereProjection,
 )
@@ -55,6 +57,43 @@ SOLVED = 1e-9  # residual of a solution
 SMALLEST_SHARE = 1e-8  # of the magnitude, with which a curve is followed
 
 
+class CompiledSystem(Protocol):
+    """A system of equations as compiled code: what `bifurc.problem.Problem` asks of a
+    system, in the words of that.
+
+    Compiled marches and projections are fast enough where it ``is_marched``, and sections
+    with spheres where it ``is_small``.
+    """
+
+    @property
+    def is_small(self) -> bool: ...
+
+    @property
+    def is_marched(self) -> bool: ...
+
+    @property
+    def shortcuts(self) -> Shortcuts: ...
+
+    @property
+    def precise_residual(self) -> PreciseResidual: ...
+
+    def residuals(self, points: np.ndarray) -> np.ndarray: ...
+
+    def jacobians(self, points: np.ndarray) -> np.ndarray: ...
+
+    def hessians(self, points: np.ndarray) -> np.ndarray: ...
+
+    def march(
+        self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
+    ) -> March: ...
+
+    def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]: ...
+
+    def project_to_sphere(
+        self, starts: np.ndarray, center: np.ndarray, radius: float
+    ) -> SphereProjection: ...
+
+
 class _Pattern(NamedTuple):
     """Where F' has entries: the ``order`` (e,) by columns of those by rows, their
     ``rows`` (e,), and the ``starts`` (n + 1,) of the columns."""
@@ -70,7 +109,8 @@ class ScaledTape:
     unless given. Immutable.
 
     It ``is_small`` where compiled methods with dense matrices are fast enough: up to
-    the unknowns ``largest_dense``; with sparse ones up to ``largest_sparse``.
+    the unknowns ``largest_dense``; with sparse ones up to ``largest_sparse``. Where it
+    ``is_bordered`` sparse systems with F' and a row under it are solved in compiled code.
     """
 
     def __init__(
@@ -81,10 +121,12 @@ class ScaledTape:
         region: np.ndarray | None = None,
         largest_dense: float = LARGEST_DENSE,
         largest_sparse: float = LARGEST_SPARSE,
+        is_bordered: bool = False,
     ):
         self.tape = tape
         self.is_small = tape.n <= largest_dense
         self._largest_sparse = largest_sparse
+        self._is_bordered = is_bordered
         self._domain = domain
         self._scale = domain.scale
         self._magnitude = magnitude
@@ -104,9 +146,17 @@ class ScaledTape:
         return self.tape.compiled.jacobians(_contiguous(points))
 
     @property
-    def has_sparse_jacobian(self) -> bool:
-        """Whether F' is so large and has so few entries that it is best sparse."""
-        return self.tape.n > LARGEST_DENSE and self._has_few_entries
+    def shortcuts(self) -> Shortcuts:
+        """What is done in one call; F' is made sparse where it is large and has few
+        entries."""
+        is_sparse = self.tape.n > LARGEST_DENSE and self._has_few_entries
+        is_bordered = self._is_bordered and self.is_factored_sparse
+        return Shortcuts(
+            m=self.tape.m,
+            jacobian=self.sparse_jacobian if is_sparse else None,
+            bordered_solver=self.bordered_solver if is_bordered else None,
+            valley_corrector=self.valley_points_at_nodes if self.is_small else None,
+        )
 
     def sparse_jacobian(self, point: np.ndarray) -> csc_array:
         """F' (m, n) at one point (n,), by columns, as it is factored."""

@@ -184,9 +184,9 @@ class LoopSubject(Subject):
 
     def equations(self) -> Problem:
         """The closure of the loop."""
-        from linkages.closure.loop_closure import LoopClosure
+        from linkages.closure.closure import Closure
 
-        return LoopClosure(self.table)
+        return Closure(self.table)
 
     def still(self, index: int, value: float) -> str:
         return f"{index + 1} at {in_degrees(value)}"

@@ -1,4 +1,4 @@
-"""The closure of a loop over mpmath numbers: the residual of `LoopClosure` at
+"""The closure of a loop over mpmath numbers: the residual of `Closure` at
 any precision."""
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ def precise_residual(loop: Loop) -> Callable[[Sequence[Number]], list[Number]]:
     """The six closure equations of a loop as a function of its n joint angles (rad),
     mpmath numbers.
 
-    The same equations as `linkages.closure.loop_closure.LoopClosure.residuals`: (2
+    The same equations as `linkages.closure.loop_parts.ScrewSystem.residuals`: (2
     sign(q_0) q_v, p / characteristic length), with q the quaternion and p the
     translation of the loop product. Floats in the geometry are taken as exact.
     """

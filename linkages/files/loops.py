@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from bifurc.decisions import is_start_solved
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.decisions import is_parallel_axis, meets_in_one_point
 from linkages.files.figures import check_joined_names, joined_name
 from linkages.files.misfits import check_moved
@@ -252,7 +252,7 @@ def _closed(
 ) -> np.ndarray:
     """The closed configuration (n,) nearest to these angles (n,), rad, of ``joints``;
     raises `GeometryError` where they were not closed but for rounding."""
-    closure = LoopClosure(loop)
+    closure = Closure(loop)
     points, gaps = closure.project(angles[None])
     if not is_start_solved(float(gaps[0])):
         value = f"{np.degrees(angles).round(6).tolist()} degrees, from which a gap of"

@@ -13,7 +13,7 @@ from bifurc.numerics.blur import change_by_rounding
 from linkages.decisions import is_dependent_constraint, keeps_angle
 from linkages.readout.ranges import VariableRange, variable_ranges
 from linkages.readout.readout import Readout
-from linkages.structure.structure import ClosureKind
+from linkages.structure.structure import ClosureKind, Structure
 
 SAMPLES = 400  # of a form
 IN_PLANE = 3  # constraints of a cycle in a plane
@@ -46,13 +46,13 @@ def loop_facts(readout: Readout, point: np.ndarray) -> list[LoopFacts]:
     jacobian = problem.jacobians(point[None])[0]
     facts = []
     for closure, rows in zip(
-        problem.structure.closures, problem.rows_of_closures, strict=True
+        problem.structure.closures, problem.parts.rows, strict=True
     ):
         block = jacobian[rows]
         rank = _rank(block)
         dependent = []
         for joint in dict.fromkeys(closure.joints):
-            columns = problem.columns_of_joint(joint)
+            columns = _columns_of_joint(problem.structure, joint)
             if columns and _rank(np.delete(block, columns, axis=1)) == rank:
                 dependent.append(joint)
         constraints = CONSTRAINTS[closure.kind]
@@ -67,6 +67,18 @@ def loop_facts(readout: Readout, point: np.ndarray) -> list[LoopFacts]:
             )
         )
     return facts
+
+
+def _columns_of_joint(structure: Structure, name: str) -> list[int]:
+    """The numbers of the unknowns that move a joint."""
+    columns: list[int] = []
+    for number, pair in enumerate(structure.mechanism.pairs):
+        if pair.joint != name:
+            continue
+        free = [k for k in pair.variables if k in structure.column_of]
+        columns += [structure.column_of[k] for k in free]
+        columns += structure.embedded.get(number, ())
+    return sorted(set(columns))
 
 
 def _rank(matrix: np.ndarray) -> int:

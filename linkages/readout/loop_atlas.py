@@ -15,7 +15,7 @@ import numpy as np
 from bifurc.atlas import Atlas, Form
 from bifurc.isometry import Isometry, recount_atlas
 from bifurc.torus import wrap
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.labels import FormLabels, subject_of
 from linkages.mechanisms.subject import mechanism_subject
 from linkages.readout.readout import Readout
@@ -36,7 +36,7 @@ def in_loop_angles(atlas: Atlas, readout: Readout) -> Atlas:
     single = readout.single_loop
     if single is None:
         return atlas
-    names = LoopClosure(single.loop).domain.names
+    names = Closure(single.loop).domain.names
     recounted = _recount(atlas, to_loop_angles(readout), names)
     return replace(recounted, subject=subject_of(single.loop))
 

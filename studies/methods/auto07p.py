@@ -16,7 +16,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from linkages import LoopClosure
+from linkages import Closure, Loop
 from studies.methods.cases import Case
 from studies.methods.curve import Curve, MethodFailure, through_points
 from studies.methods.linear import mixtures
@@ -114,12 +114,12 @@ def _problem_data(case: Case, parameter: int) -> str:
     problem = case.problem
     n = problem.n
     rows = len(problem.residuals(case.start[None])[0])
-    is_loop = isinstance(problem, LoopClosure)
+    loop = problem.subject if isinstance(problem, Closure) else None
     named = "other" if case.fortran else case.name.partition("-")[0]
-    kind = KINDS["loop" if is_loop else named]
+    kind = KINDS["loop" if isinstance(loop, Loop) else named]
     mixed = mixtures(rows, n - 1) if rows != n - 1 else np.empty((0, rows))
     lines = [np.array([case.length]), case.start, *mixed]
-    if isinstance(problem, LoopClosure):
-        lines += list(problem._geometry)
+    if isinstance(loop, Loop):
+        lines += list(loop.link_geometry)
     numbers = "\n".join(" ".join(f"{x:.17g}" for x in line) for line in lines)
     return f"{kind} {rows} {n} {parameter + 1} {len(mixed)}\n{numbers}\n"

@@ -16,7 +16,7 @@ from bifurc import Branch, FunctionProblem, Problem, TraceSettings, trace_branch
 from bifurc.curves.monitor import dead_points
 from bifurc.numerics.null_spaces import null_vector
 from bifurc.problem import jacobian_at
-from linkages import Loop, LoopClosure
+from linkages import Closure, Loop
 from linkages.catalogue import entry
 
 Numbers: TypeAlias = list[mpmath.mpf]
@@ -156,7 +156,7 @@ def _seven() -> Case:
 
 def _loop_case(name: str, title: str, exact: Loop) -> Case:
     lengths, twists, offsets = (values.tolist() for values in exact.arrays)
-    problem = LoopClosure(Loop(lengths, twists, offsets, exact.name))
+    problem = Closure(Loop(lengths, twists, offsets, exact.name))
     closed = [branch for branch in _branches(problem) if branch.closed]
     branch = max(closed, key=lambda branch: round(branch.length, 6))
     s = 0.1234 * branch.length  # not at a symmetric configuration
@@ -170,7 +170,7 @@ def _loop_case(name: str, title: str, exact: Loop) -> Case:
     )
 
 
-def _branches(problem: LoopClosure) -> list[Branch]:
+def _branches(problem: Closure) -> list[Branch]:
     """The first four branches through the seeds of a linkage, or fewer."""
     branches: list[Branch] = []
     for seed in problem.seeds(np.random.default_rng(0), 30).points:
@@ -182,7 +182,7 @@ def _branches(problem: LoopClosure) -> list[Branch]:
 
 
 def loop_residual(loop: Loop, theta: Sequence[mpmath.mpf]) -> Numbers:
-    """Closure of a loop in mpmath numbers, in the order of `LoopClosure`: exact to
+    """Closure of a loop in mpmath numbers, in the order of `Closure`: exact to
     first order next to closure."""
     total = mpmath.eye(4)
     for angle, length, twist, offset in zip(

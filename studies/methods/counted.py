@@ -27,7 +27,7 @@ class Counted(NumericalProblem):
         self.accuracy = problem.accuracy
         # by collocation F and F' are evaluated through the methods below
         is_own = type(problem).march is not NumericalProblem.march
-        self._compiled = is_own or getattr(problem, "scaled_tape", None) is not None
+        self._compiled = is_own or getattr(problem, "compiled", None) is not None
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""

@@ -132,16 +132,18 @@ def test_a_function_without_a_finite_vector_is_refused(function):
 
 def test_a_problem_says_whether_its_equations_are_recorded_and_why_not():
     recorded = FunctionProblem(circle, BOX)
-    assert recorded.derivatives == "recorded"
-    assert recorded.equations == "recorded (4 operations)"
+    assert recorded.accuracy.derivatives == "recorded"
+    assert recorded.accuracy.equations == "recorded (4 operations)"
     refused = FunctionProblem(silently_wrong, BOX)
-    assert refused.derivatives == "central differences"
-    assert refused.equations.startswith("not recorded: it takes an absolute value")
+    assert refused.accuracy.derivatives == "central differences"
+    assert refused.accuracy.equations.startswith(
+        "not recorded: it takes an absolute value"
+    )
     without = FunctionProblem(circle, BOX, is_recorded=False)
-    assert without.equations == "not recorded: not asked for"
+    assert without.accuracy.equations == "not recorded: not asked for"
     atlas = explore(recorded, settings=SearchSettings(starts=5))
     assert atlas.provenance.derivatives == "recorded"
-    assert atlas.provenance.equations == recorded.equations
+    assert atlas.provenance.equations == recorded.accuracy.equations
 
 
 def test_a_given_jacobian_is_compared_with_the_recorded_one():
@@ -151,7 +153,9 @@ def test_a_given_jacobian_is_compared_with_the_recorded_one():
     def wrong(u):
         return np.array([[2 * u[0], 3 * u[1]]])
 
-    assert FunctionProblem(circle, BOX, jacobian=right).derivatives == "recorded"
+    assert (
+        FunctionProblem(circle, BOX, jacobian=right).accuracy.derivatives == "recorded"
+    )
     with pytest.raises(ProblemError, match=r"jacobian\[0, 1\].* as recorded at"):
         FunctionProblem(circle, BOX, jacobian=wrong)
 

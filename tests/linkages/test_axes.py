@@ -5,7 +5,7 @@ import pytest
 
 from linkages.axes import loop_from_axes
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.values import GeometryError
 
 SQUARE = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
@@ -18,7 +18,7 @@ def replaced(vectors, i, vector):
 
 
 def closed_configuration(loop):
-    return LoopClosure(loop).seeds(np.random.default_rng(0), 1).points[0]
+    return Closure(loop).seeds(np.random.default_rng(0), 1).points[0]
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.construction.constructions import isomerize, lock
 from linkages.identification.equivalence import as_loop, table
 from linkages.loop import Loop
@@ -27,7 +27,7 @@ NAMES = [
 
 
 def closed_configuration(loop):
-    return LoopClosure(loop).seeds(np.random.default_rng(0), 1).points[0]
+    return Closure(loop).seeds(np.random.default_rng(0), 1).points[0]
 
 
 def gap(loop, theta):

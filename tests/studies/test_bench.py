@@ -6,7 +6,7 @@ import json
 import pytest
 
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from studies.bench import machine, median_time
 from studies.branch_cost import Cost, cost_of, exponent, line
 
@@ -28,7 +28,7 @@ def test_a_median_takes_one_run_to_warm_up_and_at_least_three_more():
 
 
 def test_the_branch_of_a_bennett_linkage_is_costed_once():
-    (cost,) = cost_of("loops", LoopClosure(entry("bennett").build()))
+    (cost,) = cost_of("loops", Closure(entry("bennett").build()))
     assert (cost.joints, cost.series) == (4, "loops")
     assert cost.pieces > 4
     assert cost.gap > 1e-3

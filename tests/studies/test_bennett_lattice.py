@@ -5,7 +5,7 @@ import pytest
 
 from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.placement import PlacedNetwork
 from studies.bennett_lattice import STATE, lattice, lattice_kinks
@@ -30,7 +30,7 @@ def test_a_lattice_has_a_freedom_less_than_columns_and_rows(shape):
 
 def test_the_equations_hold_at_every_state_of_the_closed_form():
     network, states = placed(4, 3, lattice_kinks(4, 3))
-    problem = MechanismClosure(network.mechanism)
+    problem = Closure(network.mechanism)
     free = list(problem.structure.column_of)
     points = network.variables(states)[:, free]
     assert np.abs(problem.residuals(points)).max() < 1e-13
@@ -41,7 +41,7 @@ def test_the_equations_hold_at_every_state_of_the_closed_form():
 
 def test_the_form_passes_all_states_of_the_closed_form():
     network, states = placed(4, 3, lattice_kinks(4, 3))
-    problem = MechanismClosure(network.mechanism)
+    problem = Closure(network.mechanism)
     branch = trace_branch(problem, problem.reference)
     assert branch.outcome is Outcome.CLOSED
     free = list(problem.structure.column_of)

@@ -6,7 +6,7 @@ from click.testing import CliRunner
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from studies.missing_motions import linkages, main, same_motions
 
 
@@ -18,7 +18,7 @@ def test_every_second_linkage_has_a_small_motion_beside_a_large_one():
         small, large = sorted(
             form.branch.length
             for form in explore(
-                LoopClosure(loop), settings=SearchSettings(starts=20, prove=True)
+                Closure(loop), settings=SearchSettings(starts=20, prove=True)
             ).forms
         )
         assert small < 1.0 < 5.0 < large
@@ -26,7 +26,7 @@ def test_every_second_linkage_has_a_small_motion_beside_a_large_one():
 
 def test_a_motion_that_is_missing_is_noticed():
     one, other = (
-        explore(LoopClosure(entry(name).build()), settings=SearchSettings(starts=20))
+        explore(Closure(entry(name).build()), settings=SearchSettings(starts=20))
         for name in ("bennett", "parallelogram")
     )
     assert same_motions(one, one)

@@ -6,7 +6,7 @@ import pytest
 
 from bifurc.curves.continuation import trace_branch
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.linkage import load
 from linkages.mapping import map_linkage
 from studies.half_turn import SHIFT, HalfTurn
@@ -68,7 +68,7 @@ def test_a_double_goldberg_that_goes_straight_through_the_bifurcation_is_seen():
     near, crossing = (family(np.random.default_rng(4), size) for size in (1e-6, 1e-9))
     special = entry("special-double-subtractive-goldberg")
     loop = special.build(**special.draw(np.random.default_rng(4)))
-    straight = trace_branch(LoopClosure(loop), crossing.start)
+    straight = trace_branch(Closure(loop), crossing.start)
     assert near.stays(trace_branch(near.problem, near.start))
     assert not near.stays(straight)
 

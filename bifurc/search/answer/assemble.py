@@ -275,8 +275,8 @@ def near_misses_of(
             )
             if is_at_point or is_at_pass:
                 continue
-            value, error = near_miss_value(problem, branch.branch, rank, s)
-            events.append(Event(form, s, places[k], value, error))
+            size = near_miss_value(problem, branch.branch, rank, s)
+            events.append(Event(form, s, places[k], *size))
     return tuple(events)
 
 

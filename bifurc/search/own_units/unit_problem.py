@@ -267,8 +267,7 @@ class UnitProblem(EquationProblem):
 
         def home(samples: np.ndarray) -> np.ndarray:
             assert seeds.home is not None
-            shift: np.ndarray = seeds.home(units.outwards(samples)) / units.sizes
-            return shift
+            return np.divide(seeds.home(units.outwards(samples)), units.sizes)
 
         def more(rng: np.random.Generator, count: int, deadline: Deadline) -> Seeds:
             assert seeds.more is not None

@@ -19,7 +19,7 @@ from linkages.catalogue import entry
 from linkages.closed_forms.closed_form import ClosedForm
 from linkages.closed_forms.comparison import compare
 from linkages.closed_forms.proof import prove
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.entry import Entry
 from linkages.errata.erratum import HOLDS
 from linkages.errata.misprints import errata_of
@@ -183,7 +183,7 @@ def check_member(family: Entry, values: Mapping[str, float], seed: int) -> Membe
         starts, has_surfaces = _surveyed_starts(loop, seed)
     if not len(starts):
         return MemberCheck(values, mobility=2 if has_surfaces else 0)
-    problem = LoopClosure(loop)
+    problem = Closure(loop)
     branches = [trace_branch(problem, start) for start in starts]
     corank = min(_nullities(problem, starts))
     distances = []
@@ -222,7 +222,7 @@ def _surveyed_starts(loop: Loop, seed: int) -> tuple[Floats, bool]:
     return starts.reshape(-1, loop.n), bool(atlas.surfaces)
 
 
-def _nullities(problem: LoopClosure, points: Floats) -> list[int]:
+def _nullities(problem: Closure, points: Floats) -> list[int]:
     """How many singular values vanish at each of the points (k, n)."""
     return [
         int(np.count_nonzero(values < SINGULAR))
@@ -236,7 +236,7 @@ def _mobility(branches: Sequence[Branch], corank: int) -> int:
     return min(corank, 1) if shortest > TRACED else 0
 
 
-def _closure_error(problem: LoopClosure, branch: Branch) -> float:
+def _closure_error(problem: Closure, branch: Branch) -> float:
     """The largest residual along a branch."""
     residuals = problem.residuals(branch.sample(SAMPLES))
     return float(np.linalg.norm(residuals, axis=1).max())
@@ -311,7 +311,7 @@ def _check_network(
 ) -> NetworkMember:
     """Build a member, and look at configurations of its closed form in space."""
     # they import networkx, which a loop does not need
-    from linkages.closure.mechanism_closure import MechanismClosure
+    from linkages.closure.closure import Closure
     from linkages.decisions import is_dependent_constraint
     from linkages.networks.assembly import assemble, motion_at
     from linkages.networks.mechanism import lock_network
@@ -322,7 +322,7 @@ def _check_network(
     except GeometryError as refusal:
         return NetworkMember(values, refused=str(refusal))
     placed = mechanism.placed
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     states = rng.permutation(assemble(network, {}))[:CONFIGURATIONS]
     states = np.concatenate([placed.reference[None], states])
     free = list(problem.structure.column_of)

@@ -80,7 +80,7 @@ def plane(polynomial):
 
 def double_watt_lengths():
     problem, _ = double_watt(1.0, 0.2, 2.0)
-    return problem._function
+    return problem.equations.function
 
 
 FUNCTIONS = {

@@ -47,13 +47,7 @@ def on_curve(angle):
 
 
 def scaled_tape(problem):
-    return ScaledTape(
-        problem.recording.tape,
-        problem.magnitude,
-        problem.domain.scale,
-        problem.domain.bounds,
-        problem.domain.periods,
-    )
+    return ScaledTape(problem.recording.tape, problem.magnitude, problem.domain)
 
 
 def test_redundant_equations_are_solved_in_the_least_squares_sense():

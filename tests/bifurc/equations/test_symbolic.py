@@ -73,7 +73,7 @@ def test_a_symbolic_problem_is_copied_and_pickled():
     points = np.array([[0.1, 0.2]])
     for twin in (pickle.loads(pickle.dumps(problem)), copy.deepcopy(problem)):
         assert np.array_equal(twin.residuals(points), problem.residuals(points))
-        assert np.array_equal(twin.periods, problem.domain.periods)
+        assert np.array_equal(twin.domain.periods, problem.domain.periods)
 
 
 def test_the_sides_of_an_equation_are_not_cancelled_where_they_are_not_defined():

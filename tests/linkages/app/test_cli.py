@@ -14,7 +14,7 @@ from linkages.app import start
 from linkages.app.cli import main
 from linkages.app.exit_codes import ExitCode
 from linkages.catalogue import catalogue
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.loop import Loop
 from linkages.networks.entries import NETWORKS
 
@@ -194,9 +194,7 @@ def test_a_map_without_certificates_has_none():
 
 def closure_of(document):
     geometry = document["linkage"]
-    return LoopClosure(
-        Loop(geometry["lengths"], geometry["twists"], geometry["offsets"])
-    )
+    return Closure(Loop(geometry["lengths"], geometry["twists"], geometry["offsets"]))
 
 
 def test_parameters_of_kind_angle_are_given_in_degrees():

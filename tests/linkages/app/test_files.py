@@ -9,7 +9,7 @@ import bifurc.search.tracing
 from linkages.app.cli import main
 from linkages.app.files import write_data
 from linkages.app.output import prepare_folder
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.linkage import load
 from linkages.mapping import map_linkage
 
@@ -68,7 +68,7 @@ def test_a_search_interrupted_before_anything_is_found_ends_with_130(monkeypatch
     def seeds(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(LoopClosure, "seeds", seeds)
+    monkeypatch.setattr(Closure, "seeds", seeds)
     result = run("map", "rhombus")
     assert result.exit_code == 130
     assert "interrupted" in result.stdout

@@ -13,7 +13,7 @@ from click.testing import CliRunner
 from bifurc.problem import jacobian_at, relative_gaps
 from bifurc.torus import SEAM
 from linkages.app.cli import main
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.formats.table import mechanism_text
 from linkages.linkage import load
 from linkages.loop import Loop
@@ -106,7 +106,7 @@ def test_points_of_the_dataset_are_the_variables_of_the_text_and_json(
 def test_json_has_the_angles_of_the_loop(document, readout):
     table = document["linkage"]
     loop = Loop(table["lengths"], table["twists"], table["offsets"])
-    problem = LoopClosure(loop)
+    problem = Closure(loop)
     to_unknowns = readout.single_loop.to_unknowns(readout.structure)
     places = ("bifurcations", "near_misses", "dead_points")
     points = [one for key in places for one in document[key]]
@@ -159,7 +159,7 @@ def test_the_saved_atlas_is_routed_shown_and_exported(folder, tmp_path):
 
 def test_clearance_is_that_of_the_links_of_the_loop(path, document):
     table = document["linkage"]
-    problem = LoopClosure(Loop(table["lengths"], table["twists"], table["offsets"]))
+    problem = Closure(Loop(table["lengths"], table["twists"], table["offsets"]))
     forms = json.loads(run("clearance", path, "--json").stdout)
     for form in forms:
         for approach in form["approaches"]:

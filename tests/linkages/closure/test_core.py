@@ -12,7 +12,7 @@ from bifurc.singular.classify import classify_singular_point
 from bifurc.singular.locate import locate_singular_point
 from linkages import _core
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.families.four_bar import four_bar
 from linkages.linkage import load
 from linkages.loop import Loop
@@ -39,7 +39,7 @@ def loop(request):
 
 
 def geometry(loop):
-    return LoopClosure(loop)._geometry
+    return Closure(loop)._geometry
 
 
 def march(start, tangent, geometry, order, tolerance, shortest, longest, count):
@@ -255,7 +255,7 @@ def exact_series(loop, center, tangent, order):
 )
 def test_taylor_coefficients_of_the_motion_agree_with_40_digits(name):
     loop, order = LOOPS[name], 9
-    problem = LoopClosure(loop)
+    problem = Closure(loop)
     starts, gaps = problem.project(
         np.random.default_rng(3).uniform(-np.pi, np.pi, (60, loop.n))
     )
@@ -278,7 +278,7 @@ def test_taylor_coefficients_of_the_motion_agree_with_40_digits(name):
 
 def test_pieces_overlap_and_follow_each_other_at_the_stated_arclengths():
     loop = LOOPS["special double-subtractive Goldberg 6R"]
-    problem = LoopClosure(loop)
+    problem = Closure(loop)
     start = np.array(
         [
             -1.3705021688108496,
@@ -321,7 +321,7 @@ def test_a_march_from_an_open_loop_says_by_how_much_it_is_open():
 
 def test_a_march_says_the_smallest_regular_singular_value():
     linkage = load("special-double-subtractive-goldberg", alpha=2, beta=1, delta=1.0001)
-    problem = LoopClosure(linkage.loop)
+    problem = Closure(linkage.loop)
     points = problem.seeds(np.random.default_rng(0), 20).points
     point = points[np.argmin(singular_values(problem, points)[:, 4])]
     tangent = null_vector(problem, point)
@@ -343,7 +343,7 @@ def test_a_march_beside_a_surface_goes_through_a_bifurcation(decades):
         beta=1,
         delta=1 + 10.0**-decades,
     )
-    problem = LoopClosure(linkage.loop)
+    problem = Closure(linkage.loop)
     crossing = np.array([0, np.pi, np.pi, np.pi, 0, np.pi])
     located = locate_singular_point(problem, crossing, 2, 0.1)
     point = classify_singular_point(problem, located)
@@ -357,7 +357,7 @@ def test_a_march_beside_a_surface_goes_through_a_bifurcation(decades):
 def test_a_march_through_a_narrow_near_miss_does_not_turn_back():
     # a rhombus but for 1e-11: the next centre lies beyond the reach of the series, on
     # the curve, with its tangent backwards
-    problem = LoopClosure(four_bar(1.0, 1.0 + 1e-11, 1.0, 1.0 - 5e-12))
+    problem = Closure(four_bar(1.0, 1.0 + 1e-11, 1.0, 1.0 - 5e-12))
     for seed in range(3):
         points = problem.seeds(np.random.default_rng(seed), 20).points
         values = singular_values(problem, points)[:, 2]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bifurc.problem import hessian_at, relative_gaps
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from tests.linkages.mechanisms.frameworks import OCTAHEDRON, framework, places_of
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 from tests.linkages.mechanisms.spatial_mechanisms import (
@@ -65,7 +65,7 @@ def largest_value(hessian, rng):
 
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=str)
 def test_the_bound_near_solutions_holds_and_is_of_the_right_size(mechanism):
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     rng = np.random.default_rng(4)
     near = near_solutions(problem, rng)[:16]
     bound = problem.curvature.bound
@@ -76,7 +76,7 @@ def test_the_bound_near_solutions_holds_and_is_of_the_right_size(mechanism):
 
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=str)
 def test_the_bound_at_complex_points_holds(mechanism):
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     rng = np.random.default_rng(5)
     for reach in (1e-3, 0.3):
         bound = problem.curvature.at_complex_points(np.array([reach]))[0]

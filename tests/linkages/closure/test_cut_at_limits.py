@@ -11,12 +11,12 @@ from bifurc import SearchSettings
 from bifurc.branch import Outcome
 from bifurc.completeness import Level
 from bifurc.curves.continuation import trace_branch
+from linkages.closure.closure import Closure
 from linkages.closure.cut_at_limits import (
     cut_motions,
     for_subject,
     loop_without_limits,
 )
-from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.families.four_bar import four_bar
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.of_loop import mechanism_of_loop
@@ -92,7 +92,7 @@ def test_that_nothing_is_within_limits_is_certified():
 
 def cut_of(mechanism):
     """What is held against the forms of a mechanism."""
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     rng = np.random.default_rng(0)
     return for_subject(problem, problem.structure, rng, 50)
 
@@ -100,7 +100,7 @@ def cut_of(mechanism):
 def test_parts_that_are_not_listed_are_starts_and_take_the_level():
     mechanism = line_symmetric_loop(R0=(-2.5, -2.45))
     audit = cut_of(mechanism)([], 60.0)
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     assert len(audit.starts) >= 2
     assert np.all(problem.domain.are_inside(audit.starts))
     assert np.abs(problem.residuals(audit.starts)).max() < 1e-9
@@ -132,7 +132,7 @@ def test_each_combination_of_whole_turns_has_its_stretches():
     "mechanism", [line_symmetric_loop(), rccc((-1.0, 1.0))], ids=["free", "slides"]
 )
 def test_what_has_no_limits_or_slides_is_no_loop_to_be_cut(mechanism):
-    assert loop_without_limits(MechanismClosure(mechanism).structure) is None
+    assert loop_without_limits(Closure(mechanism).structure) is None
 
 
 def kite_within_limits():
@@ -155,7 +155,7 @@ def test_a_form_is_followed_through_a_bifurcation_from_however_near_it():
     atlas = map_of(mechanism, settings=PLAIN)
     assert {form.branch.outcome for form in atlas.forms} == {Outcome.LEFT_REGION}
     assert len(atlas.bifurcations) == 2
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     for bifurcation in atlas.bifurcations:
         for tangent in bifurcation.point.tangents:
             steps = np.outer(DISTANCES, tangent)

@@ -6,8 +6,8 @@ from scipy.spatial.transform import Rotation
 
 from bifurc.curves.valley import correct_to_valley
 from bifurc.problem import relative_gaps
+from linkages.closure.closure import Closure
 from linkages.closure.errors import draw_errors, no_errors
-from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.displacements import transforms
 from linkages.structure.structure import ClosureKind, Structure
 from linkages.values import GeometryError
@@ -27,7 +27,7 @@ def case(name):
 
 def with_errors(mechanism, error, seed=1):
     errors = draw_errors(Structure(mechanism), error, np.random.default_rng(seed))
-    return MechanismClosure(mechanism, errors), errors
+    return Closure(mechanism, errors), errors
 
 
 def displacement(errors, pair, side, unit):
@@ -86,7 +86,7 @@ def test_the_equations_are_those_of_joints_that_are_off_on_their_bodies(mechanis
     for point in 0.5 * samples(problem, rng, 5):
         (values,) = problem.residuals(point[None])
         for number, closure in enumerate(structure.closures):
-            residual = values[problem.rows_of_closures[number]]
+            residual = values[problem.parts.rows[number]]
             transform = chain_transform(problem, errors, closure, point)
             off = unit * errors.points[number]
             first, second = closure.first + off[0], closure.second + off[1]
@@ -112,7 +112,7 @@ def test_the_equations_are_those_of_joints_that_are_off_on_their_bodies(mechanis
     ids=["RCCC", "RSSP", "six legs, one driven"],
 )
 def test_what_is_not_overconstrained_closes_with_errors_as_well(mechanism):
-    nominal = MechanismClosure(mechanism)
+    nominal = Closure(mechanism)
     problem, _ = with_errors(mechanism, 1e-3)
     starts = nominal.reference + 0.1 * np.random.default_rng(0).normal(
         size=(8, nominal.n)
@@ -138,7 +138,7 @@ def test_what_is_not_overconstrained_closes_with_errors_as_well(mechanism):
 )
 def test_the_gap_of_what_is_overconstrained_grows_as_the_error(name):
     mechanism = case(name)
-    nominal = MechanismClosure(mechanism)
+    nominal = Closure(mechanism)
     gaps = []
     for error in (1e-4, 1e-6):
         problem, _ = with_errors(mechanism, error)
@@ -150,7 +150,7 @@ def test_the_gap_of_what_is_overconstrained_grows_as_the_error(name):
 
 def test_errors_of_zero_change_nothing():
     mechanism = case("Bennett geometry with joints CRCR")
-    nominal = MechanismClosure(mechanism)
+    nominal = Closure(mechanism)
     problem, errors = with_errors(mechanism, 0.0)
     assert errors.are_none and no_errors(problem.structure).are_none
     points = samples(nominal, np.random.default_rng(0), 4)

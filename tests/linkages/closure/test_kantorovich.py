@@ -11,7 +11,7 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.kantorovich import Joints, check_arcs
 from bifurc.numerics.chebyshev import CHEBYSHEV
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.loop import Loop
 
 DENSE = 400
@@ -21,7 +21,7 @@ NEAR_A_SURFACE = {"alpha": 2.0, "beta": 1.0, "delta": 1.0 + 1e-3}
 
 def traced(loop: Loop):
     """A problem, its curve from a fixed start, and the arcs of the pieces."""
-    problem = LoopClosure(loop)
+    problem = Closure(loop)
     rng = np.random.default_rng(3)
     points, gaps = problem.project(rng.uniform(-np.pi, np.pi, (20, problem.n)))
     branch = trace_branch(problem, points[np.argmin(gaps)])
@@ -208,7 +208,7 @@ def closure(loop, theta):
 @pytest.mark.parametrize("reach", [0.1, 1.0, 2.0])
 def test_the_bound_on_second_derivatives_holds_at_complex_points(name, reach):
     loop = entry(name).build()
-    problem = LoopClosure(loop)
+    problem = Closure(loop)
     (bound,) = problem.curvature.at_complex_points(np.array([reach]))
     rng = np.random.default_rng(0)
     step = 1e-4

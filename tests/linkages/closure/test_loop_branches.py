@@ -7,13 +7,13 @@ from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.jumps import changes_of_course, kinks
 from bifurc.curves.misclosure import largest_misclosure
-from bifurc.function_problem import NumericalProblem
+from bifurc.numerics.collocation import march_by_collocation
 from bifurc.problem import relative_gaps
 from bifurc.search.branches.canonical_course import canonical_course
 from bifurc.search.explore import explore
 from bifurc.settings import TraceSettings
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.loop import Loop
 from tests.maps import curves_of
 
@@ -23,7 +23,7 @@ from tests.maps import curves_of
     ["serial-goldberg-6r", "double-goldberg-type-iv", "syncopated-l-shape-goldberg-6r"],
 )
 def test_a_configuration_of_lower_rank_on_a_smooth_branch_is_passed(name):
-    problem = LoopClosure(entry(name).build())
+    problem = Closure(entry(name).build())
     seeds = problem.seeds(np.random.default_rng(1), 1).points
     values = np.linalg.svd(problem.jacobians(seeds), compute_uv=False)[:, 4]
     lengths = []
@@ -36,7 +36,7 @@ def test_a_configuration_of_lower_rank_on_a_smooth_branch_is_passed(name):
 
 @pytest.mark.parametrize("order", [4, 8, 16, 24])
 def test_every_order_meets_the_tolerance(order):
-    problem = LoopClosure(entry("bricard-line-symmetric").build())
+    problem = Closure(entry("bricard-line-symmetric").build())
     start = problem.seeds(np.random.default_rng(0), 1).points[0]
     branch = trace_branch(
         problem, start, None, TraceSettings(order=order, tolerance=1e-10)
@@ -46,7 +46,7 @@ def test_every_order_meets_the_tolerance(order):
 
 
 def test_forms_through_bifurcations_keep_their_course():
-    problem = LoopClosure(entry("special-double-subtractive-goldberg").build())
+    problem = Closure(entry("special-double-subtractive-goldberg").build())
     atlas = explore(problem)
     for index, form in enumerate(atlas.forms):
         cuts = [s for p in atlas.bifurcations for i, s in p.passes if i == index]
@@ -55,16 +55,17 @@ def test_forms_through_bifurcations_keep_their_course():
         assert not len(changes) and not len(kinks(form.branch))
 
 
-class WithoutSeries(LoopClosure):
+class WithoutSeries(Closure):
     """The closure of a loop as any other problem: no Taylor series."""
 
-    march = NumericalProblem.march
+    def march(self, start, tangent, settings):
+        return march_by_collocation(self, start, tangent, settings)
 
 
 @pytest.mark.parametrize("name", ["bennett", "bricard-line-symmetric"])
 def test_a_motion_traced_without_series_is_the_one_traced_with_it(name):
     loop = entry(name).build()
-    problem = LoopClosure(loop)
+    problem = Closure(loop)
     start = problem.seeds(np.random.default_rng(0), 1).points[0]
     series, plain = (
         trace_branch(problem, start),
@@ -82,7 +83,7 @@ def test_a_motion_traced_without_series_is_the_one_traced_with_it(name):
     ["parallelogram", "bricard-line-symmetric", "bricard-octahedral-line-symmetric"],
 )
 def test_forms_begin_at_one_place_and_run_one_way_whatever_the_seed(name):
-    problem = LoopClosure(entry(name).build())
+    problem = Closure(entry(name).build())
     one, other = (explore(problem, seed=seed) for seed in (0, 1))
     for left, right in zip(one.forms, other.forms, strict=True):
         s = np.linspace(0.0, left.branch.length, 50)
@@ -100,7 +101,7 @@ def test_a_form_winds_forwards_and_begins_within_half_a_turn():
 @pytest.mark.parametrize("begin", [0.0, 0.3, 0.77])
 @pytest.mark.parametrize("turn_round", [False, True])
 def test_a_curve_has_one_course_wherever_it_was_begun(begin, turn_round):
-    problem = LoopClosure(entry("bennett").build())
+    problem = Closure(entry("bennett").build())
     start = problem.seeds(np.random.default_rng(0), 1).points[0]
     branch = trace_branch(problem, start)
     course = canonical_course(problem, branch)
@@ -113,7 +114,7 @@ def test_a_curve_has_one_course_wherever_it_was_begun(begin, turn_round):
 
 
 def test_the_course_of_a_curve_takes_nothing_from_its_accuracy():
-    problem = LoopClosure(entry("special-double-subtractive-goldberg").build())
+    problem = Closure(entry("special-double-subtractive-goldberg").build())
     for form in explore(problem).forms:
         gaps = relative_gaps(problem, form.branch.sample(3000))
         assert gaps.max() < 1e-12
@@ -123,7 +124,7 @@ def bennett_off(error):
     loop = entry("bennett").build()
     lengths, twists, offsets = loop.arrays
     twists[0] += error
-    return LoopClosure(Loop(tuple(lengths), tuple(twists), tuple(offsets)))
+    return Closure(Loop(tuple(lengths), tuple(twists), tuple(offsets)))
 
 
 @pytest.mark.parametrize("error", [1e-6, 1e-10, 1e-12, 1e-13, 2e-14])

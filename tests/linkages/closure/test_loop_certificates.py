@@ -11,7 +11,7 @@ from bifurc.problem import hessian_at
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.families.bricard import bricard_line_symmetric
 from linkages.loop import Loop
 from tests.maps import curves_of
@@ -29,7 +29,7 @@ from tests.maps import curves_of
 def test_the_curvature_bound_exceeds_every_second_derivative_near_closed_configurations(
     name,
 ):
-    problem = LoopClosure(entry(name).build())
+    problem = Closure(entry(name).build())
     bound, rng, worst = problem.curvature.bound, np.random.default_rng(1), 0.0
     for form in explore(problem, settings=SearchSettings(starts=20)).forms:
         for theta in form.branch.sample(40) + rng.normal(
@@ -44,7 +44,7 @@ def test_the_curvature_bound_exceeds_every_second_derivative_near_closed_configu
 
 
 def test_a_form_without_singular_points_is_certified_all_along():
-    problem = LoopClosure(entry("bennett").build())
+    problem = Closure(entry("bennett").build())
     (form,) = certify_atlas(problem, explore(problem)).forms
     certificate = form.certificate
     assert certificate.status is CertificateStatus.CERTIFIED
@@ -52,13 +52,13 @@ def test_a_form_without_singular_points_is_certified_all_along():
 
 
 def test_forms_that_cross_are_certified_up_to_the_crossings():
-    problem = LoopClosure(entry("special-double-subtractive-goldberg").build())
+    problem = Closure(entry("special-double-subtractive-goldberg").build())
     for form in certify_atlas(problem, explore(problem)).forms:
         assert form.certificate.status is CertificateStatus.UP_TO_SINGULAR_POINTS
 
 
 def test_a_crossing_that_is_not_handed_over_is_named_as_singular():
-    problem = LoopClosure(Loop([2, 1, 2, 1], [0] * 4, [0] * 4))
+    problem = Closure(Loop([2, 1, 2, 1], [0] * 4, [0] * 4))
     atlas = explore(problem)
     branch = atlas.forms[0].branch
     certificate = certify_branch(problem, branch, profile_branch(problem, branch))

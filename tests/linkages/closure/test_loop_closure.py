@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.loop import Loop
 from linkages.statements import LinkageClaim
 
@@ -32,7 +32,7 @@ def test_the_residual_measures_the_whole_rotation_and_the_translation(case):
     # identity alone, largest for half turns
     loop, theta = case
     gap = loop.frames(theta)[-1] - np.eye(4)
-    residual = LoopClosure(loop).residuals(theta[None])[0]
+    residual = Closure(loop).residuals(theta[None])[0]
     # sqrt(1e-16) next to a half turn would not show here: the norm of q_v is exact to
     # rounding everywhere
     rotation = np.linalg.norm(gap[:3, :3]) / np.sqrt(2)
@@ -45,7 +45,7 @@ def test_a_half_turn_is_no_closed_configuration():
     # all axes along z through one point: the loop product is the rotation by the sum of
     # the angles
     loop = Loop((0.0,) * 4, (0.0,) * 4, (0.0,) * 4)
-    problem = LoopClosure(loop)
+    problem = Closure(loop)
     half, whole = np.array([np.pi, 0.0, 0.0, 0.0]), np.array([np.pi, np.pi, 0.0, 0.0])
     # the skew part, used in the sources, does not see it
     rotation = loop.frames(half)[-1][:3, :3]
@@ -65,7 +65,7 @@ def test_a_half_turn_is_no_closed_configuration():
 )
 def test_projection_ends_in_closed_configurations_or_says_the_gap(name):
     loop = entry(name).build()
-    problem = LoopClosure(loop)
+    problem = Closure(loop)
     starts = np.random.default_rng(0).uniform(-np.pi, np.pi, (400, loop.n))
     points, gaps = problem.project(starts)
     residuals = np.linalg.norm(problem.residuals(points), axis=1)
@@ -81,7 +81,7 @@ def test_projection_ends_in_closed_configurations_or_says_the_gap(name):
 @given(loops(), st.sampled_from([1e-6, 1e-3, 1e3, 1e9]))
 def test_nothing_depends_on_the_unit_of_length(case, factor):
     loop, theta = case
-    one, other = LoopClosure(loop), LoopClosure(loop.scaled(factor))
+    one, other = Closure(loop), Closure(loop.scaled(factor))
     # the characteristic length is scaled, too: only its rounding and that of the
     # lengths is left
     residuals, jacobians = one.residuals(theta[None]), one.jacobians(theta[None])
@@ -91,7 +91,7 @@ def test_nothing_depends_on_the_unit_of_length(case, factor):
 
 def test_the_jacobian_is_the_joint_screws_where_the_loop_is_closed():
     loop = entry("bricard-line-symmetric").build()
-    problem = LoopClosure(loop)
+    problem = Closure(loop)
     theta = problem.seeds(np.random.default_rng(0), 5).points[0]
     screws = loop.joint_screws(theta)
     screws[3:] /= loop.characteristic_length
@@ -99,7 +99,7 @@ def test_the_jacobian_is_the_joint_screws_where_the_loop_is_closed():
 
 
 def test_solutions_on_a_sphere_are_closed_and_at_the_radius():
-    problem = LoopClosure(entry("bricard-line-symmetric").build())
+    problem = Closure(entry("bricard-line-symmetric").build())
     center = problem.seeds(np.random.default_rng(0), 5).points[0]
     tangent = np.linalg.svd(problem.jacobians(center[None])[0])[2][-1]
     starts = center + 0.05 * np.array([tangent, -tangent])
@@ -115,7 +115,7 @@ def test_solutions_on_a_sphere_of_a_loop_with_more_unknowns_than_equations_are_c
 ):
     rng = np.random.default_rng(joints)
     lengths, offsets = rng.uniform(0.5, 1.0, joints), rng.uniform(-0.3, 0.3, joints)
-    problem = LoopClosure(Loop(lengths, rng.uniform(-3, 3, joints), offsets))
+    problem = Closure(Loop(lengths, rng.uniform(-3, 3, joints), offsets))
     points, gaps = problem.project(rng.uniform(-np.pi, np.pi, (20, joints)))
     center = points[np.argmin(gaps)]
     null_space = np.linalg.svd(problem.jacobians(center[None])[0])[2][6:]
@@ -125,7 +125,7 @@ def test_solutions_on_a_sphere_of_a_loop_with_more_unknowns_than_equations_are_c
 
 
 def test_seeds_of_a_short_loop_are_closed_and_come_from_complete_slices_and_random_starts():
-    problem = LoopClosure(entry("special-double-subtractive-goldberg").build())
+    problem = Closure(entry("special-double-subtractive-goldberg").build())
     seeds = problem.seeds(np.random.default_rng(4), 30)
     # the slices hold configurations, and there are no motions yet
     assert seeds.audit([], 0.0).level == "estimated"
@@ -138,7 +138,7 @@ def test_seeds_of_a_long_loop_are_random_and_claim_nothing_complete():
     lengths = rng.uniform(0.5, 1, 7)
     twists = rng.uniform(-3, 3, 7)
     offsets = rng.uniform(-0.5, 0.5, 7)
-    problem = LoopClosure(Loop(lengths, twists, offsets))
+    problem = Closure(Loop(lengths, twists, offsets))
     seeds = problem.seeds(rng, 40)
     assert seeds.random.all()
     assert seeds.audit is None
@@ -147,7 +147,7 @@ def test_seeds_of_a_long_loop_are_random_and_claim_nothing_complete():
 
 def test_seeds_of_a_surface_do_not_claim_completeness():
     planar = Loop((1.0, 1.2, 0.9, 1.1, 0.8), (0.0,) * 5, (0.0,) * 5)
-    seeds = LoopClosure(planar).seeds(np.random.default_rng(0), 10)
+    seeds = Closure(planar).seeds(np.random.default_rng(0), 10)
     audit = seeds.audit([], 1.0)
     assert audit.level == "estimated"
     assert LinkageClaim.SLICES_INCOMPLETE.is_kind_of(audit.claims[0])

@@ -11,7 +11,7 @@ from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings, TraceSettings
 from bifurc.singular.point import Kind
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.families.four_bar import four_bar, kite
 from linkages.loop import Loop
 from tests.maps import curves_of, map_of
@@ -70,7 +70,7 @@ def test_seven_joints_at_random_move_in_closed_curves_without_bifurcation():
         lengths = rng.uniform(0.5, 1, 7)
         twists = rng.uniform(-3, 3, 7)
         offsets = rng.uniform(-0.5, 0.5, 7)
-        problem = LoopClosure(Loop(lengths, twists, offsets))
+        problem = Closure(Loop(lengths, twists, offsets))
         one, other = (explore(problem, seed=seed) for seed in (0, 1))
         assert one.forms
         assert all(form.branch.outcome is Outcome.CLOSED for form in one.forms)
@@ -92,7 +92,7 @@ def test_seven_joints_at_random_move_in_closed_curves_without_bifurcation():
     ],
 )
 def test_mobility_two_is_a_surface_and_not_a_heap_of_forms(loop):
-    problem = LoopClosure(loop)
+    problem = Closure(loop)
     atlas = explore(problem, settings=SearchSettings(starts=30))
     assert not atlas.forms
     assert not len(atlas.rigid)
@@ -124,7 +124,7 @@ def test_an_interrupted_search_keeps_what_was_found():
             raise KeyboardInterrupt
 
     atlas = explore(
-        LoopClosure(entry("bricard-line-symmetric").build()), progress=interrupt
+        Closure(entry("bricard-line-symmetric").build()), progress=interrupt
     )
     assert atlas.provenance.interrupted is True
     assert atlas.completeness.level == "interrupted"
@@ -134,7 +134,7 @@ def test_an_interrupted_search_keeps_what_was_found():
 
 def test_the_same_seed_gives_the_same_atlas_to_the_last_bit():
     one, other = (
-        explore(LoopClosure(entry("reconfigurable-bricard-1").build()), seed=3)
+        explore(Closure(entry("reconfigurable-bricard-1").build()), seed=3)
         for _ in range(2)
     )
     for left, right in zip(one.forms, other.forms, strict=True):
@@ -171,7 +171,7 @@ def test_nothing_is_proved_of_an_atlas_with_a_form_that_was_cut_off():
 def test_where_near_motions_are_not_asked_for_their_points_are_isolated():
     loop = entry("bricard-line-symmetric").build()
     lengths = (loop.lengths[0] + 1e-3, *loop.lengths[1:])
-    problem = LoopClosure(Loop(lengths, loop.twists, loop.offsets))
+    problem = Closure(Loop(lengths, loop.twists, loop.offsets))
     with_them = explore(problem, seed=0)
     without = explore(problem, settings=SearchSettings(near_motions=False), seed=0)
     assert with_them.near_motions and not without.near_motions
@@ -206,7 +206,7 @@ def test_mirror_images_and_events_of_a_loop_keep_their_places(seed):
     for left, right in zip(one.forms, other.forms, strict=True):
         assert right.branch.nearest(left.branch.sample(9))[0].max() < 1e-9
     for left, right in zip(one.points, other.points, strict=True):
-        gap = LoopClosure(loop).difference(left.point.u, right.point.u)
+        gap = Closure(loop).difference(left.point.u, right.point.u)
         assert (left.name, left.kind) == (right.name, right.kind)
         assert np.abs(gap).max() < 1e-9
         assert [form for form, _ in left.passes] == [form for form, _ in right.passes]
@@ -237,12 +237,12 @@ import os, signal, threading
 signal.signal(signal.SIGINT, signal.default_int_handler)
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.linkage import load
 
 linkage = load("bricard-line-symmetric")
 
-class Pressed(LoopClosure):
+class Pressed(Closure):
     pressed = False  # the second Ctrl-C would act at once
 
     def project(self, starts):

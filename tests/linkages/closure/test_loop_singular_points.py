@@ -11,7 +11,7 @@ from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings, TraceSettings
 from bifurc.singular.point import Kind
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.loop import Loop
 from tests.maps import curves_of, map_of
 
@@ -19,7 +19,7 @@ from tests.maps import curves_of, map_of
 @pytest.mark.parametrize("longest", [0.1, 0.5])
 @pytest.mark.parametrize("error", [1e-1, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10])
 def test_a_near_parallelogram_is_followed_on_its_true_circuit(error, longest):
-    problem = LoopClosure(Loop((1.0, 2.0, 1.0 + error, 2.0), (0.0,) * 4, (0.0,) * 4))
+    problem = Closure(Loop((1.0, 2.0, 1.0 + error, 2.0), (0.0,) * 4, (0.0,) * 4))
     start = problem.project(np.array([[1.0, -0.7, 1.0, -0.9]]))[0][0]
     branch = trace_branch(problem, start, settings=TraceSettings(longest=longest))
     # the long link on one side lets one crank turn fully: the parallelogram's two
@@ -35,7 +35,7 @@ def test_a_near_parallelogram_is_followed_on_its_true_circuit(error, longest):
 @pytest.mark.parametrize("longest", [0.1, 2.0])
 @pytest.mark.parametrize("error", [1e-1, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10])
 def test_a_near_parallelogram_is_certified(error, longest):
-    problem = LoopClosure(Loop((1.0, 2.0, 1.0 + error, 2.0), (0.0,) * 4, (0.0,) * 4))
+    problem = Closure(Loop((1.0, 2.0, 1.0 + error, 2.0), (0.0,) * 4, (0.0,) * 4))
     start = problem.project(np.array([[1.0, -0.7, 1.0, -0.9]]))[0][0]
     branch = trace_branch(problem, start, settings=TraceSettings(longest=longest))
     assert (
@@ -48,7 +48,7 @@ def test_a_near_parallelogram_is_certified(error, longest):
 def test_below_the_resolution_of_doubles_a_wrong_circuit_is_never_called_certified(
     error,
 ):
-    problem = LoopClosure(Loop((1.0, 2.0, 1.0 + error, 2.0), (0.0,) * 4, (0.0,) * 4))
+    problem = Closure(Loop((1.0, 2.0, 1.0 + error, 2.0), (0.0,) * 4, (0.0,) * 4))
     branch = trace_branch(
         problem, problem.project(np.array([[1.0, -0.7, 1.0, -0.9]]))[0][0]
     )
@@ -74,7 +74,7 @@ def test_a_form_that_another_nearly_crosses_to_rounding_is_followed_whole(longes
         ),
     )
     offsets = (-0.1860767779601384, -0.52734918464006, 0.3064219516890632)
-    problem = LoopClosure(Loop(lengths * 2, twists * 2, offsets * 2))
+    problem = Closure(Loop(lengths * 2, twists * 2, offsets * 2))
     start = problem.project(
         np.array(
             [[1.38539007, 4.4886844, 3.27712703, 1.38539007, -1.7945009, -3.00605828]]
@@ -94,7 +94,7 @@ def test_neighbouring_pieces_overlap_also_where_a_bridge_was_laid():
     rng = np.random.default_rng(0)
     for _ in range(22):
         values = found.draw(rng)
-    problem = LoopClosure(found.build(**values))
+    problem = Closure(found.build(**values))
     for form in explore(problem, settings=SearchSettings(starts=60)).forms:
         for start in form.branch(form.branch.length * np.linspace(0, 1, 6)):
             branch = trace_branch(problem, start)

@@ -17,7 +17,7 @@ from bifurc.singular.point import Kind
 from bifurc.surfaces.chart_atlas import Covering
 from bifurc.surfaces.covering import cover_surface
 from bifurc.surfaces.geodesic import shortest_path
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.loop import Loop
 from tests.bifurc.known_surfaces import seeds
 from tests.linkages.loops_with_surfaces import (
@@ -134,7 +134,7 @@ def test_a_path_on_a_torus_of_angles_has_no_jump_where_a_period_ends() -> None:
     assert path[-1, 0] == pytest.approx(2 * np.pi - 3)
 
 
-COINCIDENT_AXES = LoopClosure(Loop((0, 1, 0, 1), (0, 0.7, 0, 0.7), (0, 0, 0, 0)))
+COINCIDENT_AXES = Closure(Loop((0, 1, 0, 1), (0, 0.7, 0, 0.7), (0, 0, 0, 0)))
 
 
 LOOPS = {  # name: loop, its mobility

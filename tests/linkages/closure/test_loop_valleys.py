@@ -12,7 +12,7 @@ from bifurc.noisy_problem import with_rounding_noise
 from bifurc.numerics.collocation import march_by_collocation
 from bifurc.numerics.null_spaces import null_vector
 from bifurc.problem import CurveNodes, MarchSettings
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.linkage import load
 from linkages.loop import Loop
 from tests.bifurc.known_curves import contradictory
@@ -30,7 +30,7 @@ def nearly_bennett():
     """A loop of four joints that misses the condition of its motion by 1e-4."""
     lengths, twists, offsets = load("bennett").loop.arrays
     twists = twists + np.array([1e-4, 0, 0, 0])
-    return LoopClosure(Loop(lengths, twists, offsets))
+    return Closure(Loop(lengths, twists, offsets))
 
 
 def on_the_valley(problem, start):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 
 
@@ -11,7 +11,7 @@ from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 def test_a_known_mechanism_has_the_counts_of_its_source(name):
     case = cases()[name]
     mechanism = mechanism_of_case(case)
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     reference = problem.reference[None]
     assert np.abs(problem.residuals(reference)).max() < 1e-15
     rank = np.linalg.matrix_rank(problem.jacobians(reference)[0], 1e-8)

@@ -6,7 +6,7 @@ import pytest
 
 from bifurc.singular.confirm import Convergence, confirm_singular_point
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.closure.precise import precise_residual
 
 
@@ -25,7 +25,7 @@ def test_residuals_agree_with_the_compiled_ones(name):
     with mpmath.workdps(50):
         residual = precise_residual(precise_member(name))
         precise = [float(x) for x in residual([mpmath.mpf(t) for t in theta])]
-    compiled = LoopClosure(entry(name).build()).residuals(theta[None])[0]
+    compiled = Closure(entry(name).build()).residuals(theta[None])[0]
     # a few roundings of numbers of size one
     assert np.abs(compiled - precise).max() < 5e-15
 
@@ -35,7 +35,7 @@ def test_the_flat_bifurcation_of_the_special_linkage_is_exact():
     with mpmath.workdps(180):
         residual = precise_residual(precise_member(name))
     flat = np.pi * np.array([0.0, 1, 0, 0, 1, 0])
-    jacobian = LoopClosure(entry(name).build()).jacobians(flat[None])[0]
+    jacobian = Closure(entry(name).build()).jacobians(flat[None])[0]
     null_space = np.linalg.svd(jacobian)[2][4:].T
     point = confirm_singular_point(residual, flat, null_space)
     with mpmath.workdps(60):

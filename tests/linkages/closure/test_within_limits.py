@@ -8,7 +8,7 @@ import pytest
 import linkages
 from bifurc import SearchSettings
 from linkages.closure import within_limits
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.closure.within_limits import brought_within_limits
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
@@ -86,31 +86,31 @@ def test_a_form_is_found_within_narrow_limits_of_three_joints():
 
 
 def test_what_is_held_stays_and_the_rest_closes():
-    problem = MechanismClosure(line_symmetric_loop(R0=(1.0, 1.05)))
+    problem = Closure(line_symmetric_loop(R0=(1.0, 1.05)))
     starts = np.random.default_rng(0).uniform(-np.pi, np.pi, (40, 6))
     starts[:, 0] = 1.02
-    points, gaps = problem.scaled_tape.project(starts, np.arange(6) == 0)
+    points, gaps = problem.compiled.project(starts, np.arange(6) == 0)
     assert np.abs(points[:, 0] - 1.02).max() < 1e-12
     assert np.count_nonzero(gaps < 1e-12) > 10
 
 
 def test_what_is_brought_within_limits_is_closed_there():
-    problem = MechanismClosure(line_symmetric_loop(R0=(1.0, 1.05)))
+    problem = Closure(line_symmetric_loop(R0=(1.0, 1.05)))
     rng = np.random.default_rng(0)
     starts = rng.uniform(-np.pi, np.pi, (40, 6))
     points, gaps = problem.project(starts)
     beyond = points[gaps < 1e-12]
-    inside = brought_within_limits(problem, problem.scaled_tape.project, beyond, rng)
+    inside = brought_within_limits(problem, problem.compiled.project, beyond, rng)
     assert len(inside) > 10
     assert np.all(problem.domain.are_inside(inside))
     assert np.abs(problem.residuals(inside)).max() < 1e-9
 
 
 def test_nothing_is_brought_from_nowhere():
-    problem = MechanismClosure(line_symmetric_loop(R0=(1.0, 1.05)))
+    problem = Closure(line_symmetric_loop(R0=(1.0, 1.05)))
     rng = np.random.default_rng(0)
     assert brought_within_limits(
-        problem, problem.scaled_tape.project, np.empty((0, 6)), rng
+        problem, problem.compiled.project, np.empty((0, 6)), rng
     ).shape == (0, 6)
 
 
@@ -120,14 +120,14 @@ def test_the_way_along_solutions_leads_within_many_limits(monkeypatch):
     branch = linkages.map_linkage(free, settings=FEW).forms[0].branch
     (place,) = Readout(free).values(branch(0.3 * branch.length)[None])
     limits = {f"R{k}": (place[k] - 0.02, place[k] + 0.03) for k in range(5)}
-    problem = MechanismClosure(line_symmetric_loop(**limits))
+    problem = Closure(line_symmetric_loop(**limits))
     rng = np.random.default_rng(0)
     starts = np.column_stack([rng.uniform(*pair, 40) for pair in limits.values()])
     starts = np.column_stack([starts, rng.uniform(-np.pi, np.pi, 40)])
     points, gaps = problem.project(starts)
     beyond = points[(gaps < 1e-12) & ~problem.domain.are_inside(points)]
     inside = within_limits.brought_within_limits(
-        problem, problem.scaled_tape.project, beyond, rng
+        problem, problem.compiled.project, beyond, rng
     )
     assert len(inside) > 0.2 * len(beyond) > 2
     assert np.all(problem.domain.are_inside(inside))

@@ -9,7 +9,7 @@ import linkages
 from bifurc.completeness import Level
 from bifurc.problem import relative_gaps
 from bifurc.settings import SearchSettings
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.dyads.slices import SLICES, for_subject
 from linkages.files.arcs import read_arcs
 from linkages.mechanisms.joint import Joint
@@ -74,14 +74,14 @@ def sliced(mechanism):
 
 
 def sliced_structure(structure):
-    problem = MechanismClosure(structure.mechanism)
+    problem = Closure(structure.mechanism)
     return for_subject(problem, structure, np.random.default_rng(0), 0)
 
 
 @pytest.mark.parametrize("name", BUILT)
 def test_all_that_is_built_closes(name):
     slices = sliced(BUILT[name])
-    problem = MechanismClosure(BUILT[name])
+    problem = Closure(BUILT[name])
     assert len(slices.starts) > SLICES
     assert relative_gaps(problem, slices.starts).max() < 1e-12
 
@@ -175,7 +175,7 @@ def test_what_is_geared_to_the_driver_is_known_with_it():
     slices = sliced(mechanism)
     labels = [slices.structure.unknowns[driver].label for driver in slices.drivers]
     assert labels == ["A"]
-    assert relative_gaps(MechanismClosure(mechanism), slices.starts).max() < 1e-12
+    assert relative_gaps(Closure(mechanism), slices.starts).max() < 1e-12
 
 
 def test_slides_that_are_locked_stay_slides():
@@ -198,7 +198,7 @@ def test_slides_that_are_locked_stay_slides():
     structure = Structure(mechanism)
     slices = sliced_structure(structure)
     assert slices is not None
-    closure = MechanismClosure(mechanism)
+    closure = Closure(mechanism)
     assert len(slices.starts)
     assert relative_gaps(closure, slices.starts).max() < 1e-11
 
@@ -223,7 +223,7 @@ def test_slices_hold_every_whole_turn_within_the_limits():
         points = sliced_structure(structure).starts
         values = points[:, structure.column_of[0]]
         assert np.all((values >= low) & (values <= low + turns * turn))
-        problem = MechanismClosure(structure.mechanism)
+        problem = Closure(structure.mechanism)
         assert relative_gaps(problem, points).max() < 1e-9
         counts.append(len(points))
     assert counts == [counts[0], 2 * counts[0], 5 * counts[0]]

@@ -9,7 +9,7 @@ import linkages
 from bifurc.problem import jacobian_at
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.file import LinkageFileError
 from linkages.readout.poses import Poses
 from studies.miura import SECTOR, miura
@@ -40,7 +40,7 @@ def test_a_sheet_with_fold_angles_is_folded_first(fold, tmp_path):
     mechanism = read(tmp_path, miura(4, 4, fold))
     assert mechanism.independent_loops == 9
     assert mechanism.gruebler == -30
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     assert np.abs(problem.residuals(problem.reference[None])).max() < 1e-14
     values = np.linalg.svd(jacobian_at(problem, problem.reference), compute_uv=False)
     assert np.count_nonzero(values > 1e-9) == problem.n - 1  # it folds one way
@@ -58,7 +58,7 @@ def test_a_sheet_with_fold_angles_is_folded_first(fold, tmp_path):
 def test_folded_coordinates_are_the_same_state_as_fold_angles(tmp_path):
     flat = read(tmp_path, miura(3, 3))
     folded = read(tmp_path, miura(3, 3, 0.8))
-    problem = MechanismClosure(flat)
+    problem = Closure(flat)
     content = miura(3, 3, 0.8)
     angles = dict(
         zip(
@@ -91,7 +91,7 @@ def test_folded_coordinates_are_the_same_state_as_fold_angles(tmp_path):
 
 def test_a_valley_is_a_positive_angle_that_lifts_the_panel(tmp_path):
     mechanism = read(tmp_path, miura(2, 2))
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     content = miura(2, 2, 0.3)
     angles = {
         f"{a}-{b}": np.radians(angle)
@@ -153,7 +153,7 @@ def test_two_parts_of_one_crease_are_one_joint(tmp_path):
 def test_fold_angles_that_are_rounded_are_moved_with_a_warning(tmp_path, caplog):
     content = miura(3, 3, 0.8)
     content["edges_foldAngle"] = [round(a, 1) for a in content["edges_foldAngle"]]
-    problem = MechanismClosure(read(tmp_path, content))
+    problem = Closure(read(tmp_path, content))
     assert np.abs(problem.residuals(problem.reference[None])).max() < 1e-12
     assert "edges_foldAngle: moved by up to 0.0" in caplog.text
 

@@ -7,7 +7,7 @@ import linkages
 from bifurc.problem import jacobian_at
 from bifurc.settings import SearchSettings
 from linkages.axes import loop_from_axes
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.file import LinkageFileError
 from tests.linkages.mechanisms.known_mechanisms import cases
 
@@ -61,7 +61,7 @@ def test_four_tables_of_bennett_linkages_are_the_network(tmp_path):
     assert mechanism.independent_loops == 4
     assert mechanism.gruebler == -9
     assert set(mechanism.joint("0").bodies) == {"0-2", "0-4", "0-6", "8-0"}
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     assert np.abs(problem.residuals(problem.reference[None])).max() < 1e-14
     values = np.linalg.svd(jacobian_at(problem, problem.reference), compute_uv=False)
     assert np.count_nonzero(values > 1e-9) == problem.n - 3  # mobility 3
@@ -104,7 +104,7 @@ def test_configurations_are_closed_first(tmp_path):
     (names, loop, angles), *_ = network_loops()
     other = [(names, loop, angles + np.array([1e-3, 0, 0, 0]))]
     text = text_of([*other, (["0", "x", "y", "z"], loop, angles)])
-    problem = MechanismClosure(read(tmp_path, text))
+    problem = Closure(read(tmp_path, text))
     assert np.abs(problem.residuals(problem.reference[None])).max() < 1e-12
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from linkages import load
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.file import LinkageFileError
 from linkages.files.mechanism_file import mechanism_toml
 from linkages.formats.mjcf_writing import mechanism_mjcf
@@ -112,7 +112,7 @@ def test_a_broken_file_is_read_or_refused_in_one_line(ending, tmp_path):
                 warnings.simplefilter("error")
                 mechanism = load(path)
                 if isinstance(mechanism, Mechanism):
-                    MechanismClosure(mechanism)
+                    Closure(mechanism)
         except LinkageFileError as error:
             assert path.name in str(error)
             assert "\n" not in str(error)

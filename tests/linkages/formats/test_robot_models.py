@@ -6,7 +6,7 @@ import pytest
 
 from bifurc.settings import SearchSettings
 from linkages import load, map_linkage
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from tests.linkages.formats.robot_models import (
     MJCF,
     SDF,
@@ -44,7 +44,7 @@ def test_a_model_of_others_is_read_and_mapped(name, tmp_path):
 @pytest.mark.parametrize("name", MJCF)
 def test_the_mobility_is_that_of_mujoco(name, tmp_path):
     mechanism = read(name, tmp_path)
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     points, gaps = problem.project(problem.reference[None])
     assert gaps[0] < 1e-12
     ours = np.linalg.svd(problem.jacobians(points)[0], compute_uv=False)

@@ -9,7 +9,7 @@ import pytest
 
 from bifurc.settings import SearchSettings
 from linkages.catalogue import entry
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.identification.identify import identify
 from linkages.identification.locked_networks import locked_state, locked_states
 from linkages.networks.assembly import assemble, motion_at
@@ -72,7 +72,7 @@ def test_the_equations_of_the_mechanism_agree_with_the_closed_form(count):
     """The nullity of the Jacobian of all loops, with nothing of the closed form."""
     found = network()
     free = lock_network(found, {})
-    problem = MechanismClosure(free)
+    problem = Closure(free)
     jacobian = problem.jacobians(np.zeros((1, problem.n)))[0]
     labels = {axis: free.placed.label(axis) for axis in found.plan.ring}
     columns = [one.label for one in problem.structure.unknowns]

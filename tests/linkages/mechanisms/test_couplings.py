@@ -8,9 +8,9 @@ import pytest
 import linkages
 from bifurc.problem import hessian_at
 from bifurc.settings import SearchSettings
+from linkages.closure.closure import Closure
 from linkages.closure.curvature import CurvatureBounds
 from linkages.closure.driving import joints_to_hold
-from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.file import LinkageFileError
 from linkages.files.mechanism_file import mechanism_toml
 from linkages.mechanisms.couplings import Coupling
@@ -73,7 +73,7 @@ def test_cranks_geared_one_to_minus_one_keep_a_five_bar_symmetric():
 # turns of the faster crank
 def test_a_form_closes_when_all_gears_are_back():
     mechanism = five_bar(E=Coupling("A", 0.5, 0.3))
-    assert MechanismClosure(mechanism).periods[0] == pytest.approx(4 * np.pi)
+    assert Closure(mechanism).periods[0] == pytest.approx(4 * np.pi)
     atlas = map_of(mechanism, settings=FEW)
     assert len(atlas.forms) == 2
     for number, form in enumerate(atlas.forms):
@@ -150,7 +150,7 @@ TAKEN = {
 
 @pytest.mark.parametrize("name", TAKEN)
 def test_derivatives_agree_with_differences_and_bounds(name):
-    problem = MechanismClosure(TAKEN[name])
+    problem = Closure(TAKEN[name])
     rng = np.random.default_rng(3)
     points = problem.reference + 0.1 * rng.normal(size=(5, problem.n))
     step = 1e-6
@@ -183,8 +183,8 @@ def test_a_coupling_of_a_slide_and_a_turn_does_not_depend_on_units(way):
     turn = next(joint for joint in joints if joint.kind == "revolute").name
     mechanism = Mechanism(tuple(joints))
     mechanism = with_coupling(mechanism, first, None, Coupling(turn, 0.2, 0.01))
-    expected = MechanismClosure(mechanism)
-    problem = MechanismClosure(WAYS[way](mechanism))
+    expected = Closure(mechanism)
+    problem = Closure(WAYS[way](mechanism))
     points = np.random.default_rng(1).normal(size=(3, problem.n))
     images = points
     if way == "mirrored":  # slides along axes that are turned round change their sign

@@ -12,7 +12,7 @@ from bifurc.curves.certificate import Certificate, certify_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.search.branches.branch_parts import followed_by, part_of
 from bifurc.settings import SearchSettings
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from tests.linkages.mechanisms.frameworks import flexible_octahedron
@@ -76,9 +76,9 @@ def test_forms_of_platforms_are_certified_all_along(name):
 
 def test_the_bound_is_the_same_in_other_units_and_frames():
     mechanism = PLATFORMS["6-SPS"]
-    bound = MechanismClosure(mechanism).curvature.bound
+    bound = Closure(mechanism).curvature.bound
     for other in (mechanism.scaled(1e3), mechanism.scaled(1e-3), mechanism.mirrored()):
-        assert MechanismClosure(other).curvature.bound == pytest.approx(bound)
+        assert Closure(other).curvature.bound == pytest.approx(bound)
 
 
 # --- a crossing of two forms, and beside it -------------------------------------------
@@ -94,14 +94,14 @@ def crossed_forms() -> tuple[Branch, list[float]]:
     return form.branch, [s for _, s in point.passes]
 
 
-def certificate_of(problem: MechanismClosure, branch: Branch) -> Certificate:
+def certificate_of(problem: Closure, branch: Branch) -> Certificate:
     return certify_branch(problem, branch, profile_branch(problem, branch))
 
 
 @pytest.mark.parametrize("gap", [1e-5, -1e-7, 1e-9, -1e-10])
 def test_a_form_that_runs_straight_across_a_near_miss_is_not_certified(gap):
     branch, passes = crossed_forms()
-    problem = MechanismClosure(crossing_platform(gap))
+    problem = Closure(crossing_platform(gap))
     certificate = certificate_of(problem, branch)
     assert certificate.status.value == "not certified"
     middles = certificate.gaps.mean(axis=1)
@@ -110,10 +110,10 @@ def test_a_form_that_runs_straight_across_a_near_miss_is_not_certified(gap):
 
 
 @cache
-def sheets_beside_the_crossing(gap: float) -> tuple[MechanismClosure, Branch, Branch]:
+def sheets_beside_the_crossing(gap: float) -> tuple[Closure, Branch, Branch]:
     """The problem with a ``gap``, and two arcs whose middles are where they pass each
     other, in the same direction."""
-    problem = MechanismClosure(crossing_platform(gap))
+    problem = Closure(crossing_platform(gap))
     forms = map_of(crossing_platform(gap), settings=FEW).forms
     assert all(form.certificate.holds for form in forms)
     branch, passes = crossed_forms()
@@ -133,7 +133,7 @@ def sheets_beside_the_crossing(gap: float) -> tuple[MechanismClosure, Branch, Br
     return problem, first, second
 
 
-def status_of(problem: MechanismClosure, branch: Branch) -> str:
+def status_of(problem: Closure, branch: Branch) -> str:
     open_branch = replace(branch, outcome=Outcome.LEFT_REGION)
     return certificate_of(problem, open_branch).status.value
 

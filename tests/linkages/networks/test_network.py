@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.networks.assembly import assemble
 from linkages.networks.entries import NETWORKS
 from linkages.networks.mechanism import lock_network
@@ -50,7 +50,7 @@ def test_the_mechanism_closes_at_every_state(name):
     found = network(name)
     states = states_of(found)
     placed = PlacedNetwork(found, states[1])
-    problem = MechanismClosure(placed.mechanism)
+    problem = Closure(placed.mechanism)
     variables = placed.variables(states)
     assert np.abs(problem.residuals(variables)).max() < 1e-13
 
@@ -58,7 +58,7 @@ def test_the_mechanism_closes_at_every_state(name):
 @every_network
 def test_the_mobility_is_three(name):
     found = network(name)
-    problem = MechanismClosure(lock_network(found, {}))
+    problem = Closure(lock_network(found, {}))
     jacobian = problem.jacobians(np.zeros((1, problem.n)))[0]
     values = np.linalg.svd(jacobian, compute_uv=False)
     assert problem.n - np.count_nonzero(values > 1e-9) == 3

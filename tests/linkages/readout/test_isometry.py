@@ -10,7 +10,7 @@ from bifurc.isometry import Isometry, recount_atlas
 from bifurc.problem import jacobian_at, relative_gaps
 from bifurc.torus import difference
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from tests.maps import map_of
 
 TURN = 2 * np.pi
@@ -64,7 +64,7 @@ def test_what_is_no_isometry_is_refused():
 
 def test_forms_and_points_are_the_same_in_other_unknowns(crossing_forms, isometry):
     atlas = recount_atlas(crossing_forms, isometry, list("abcdef"))
-    problem = LoopClosure(entry("special-double-subtractive-goldberg").build())
+    problem = Closure(entry("special-double-subtractive-goldberg").build())
     for form, before in zip(atlas.forms, crossing_forms.forms, strict=True):
         branch = form.branch
         places = np.linspace(0.0, branch.length, 200)

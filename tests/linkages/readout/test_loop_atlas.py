@@ -11,8 +11,7 @@ from bifurc.files.dataset import load_atlas, save_atlas
 from bifurc.problem import jacobian_at, relative_gaps
 from bifurc.routes.route import find_route
 from bifurc.torus import SEAM
-from linkages.closure.loop_closure import LoopClosure
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.labels import FormLabels, subject_of
 from linkages.readout.loop_atlas import in_loop_angles
 from linkages.readout.readout import Readout
@@ -55,7 +54,7 @@ def points_of(atlas):
 @pytest.mark.parametrize("name", SINGLE_LOOPS)
 def test_unknowns_are_the_joint_variables_and_close_the_mechanism(name):
     mechanism, atlas = mapped(name)
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     assert atlas.names == problem.domain.names
     assert set(atlas.names) == {joint.name for joint in mechanism.joints}
     assert atlas.units == problem.domain.units
@@ -86,7 +85,7 @@ def test_in_the_angles_of_its_loop_it_closes_the_loop(name):
     mechanism, atlas = mapped(name)
     loop = Readout(mechanism).single_loop.loop
     of_loop = in_loop_angles(atlas, Readout(mechanism))
-    problem = LoopClosure(loop)
+    problem = Closure(loop)
     assert of_loop.names == problem.domain.names
     assert linkages.loop_of(of_loop) == loop
     assert linkages.mechanism_of(of_loop) is None
@@ -117,7 +116,7 @@ def test_a_joint_that_is_held_is_no_unknown():
     assert Readout(mechanism).single_loop is not None
     atlas = map_of(mechanism, settings=FEW)
     assert "held" not in atlas.names
-    assert relative_gaps(MechanismClosure(mechanism), along_forms(atlas)).max() < CLOSED
+    assert relative_gaps(Closure(mechanism), along_forms(atlas)).max() < CLOSED
     values = Readout(mechanism).values(along_forms(atlas))
     assert values[:, 0].tolist() == [0.0] * len(values)
 
@@ -129,7 +128,7 @@ def test_a_dataset_has_the_variables_by_the_names_of_joints_and_is_read_back(tmp
     assert set(again.units) == {"rad"}
     assert linkages.mechanism_of(again) == mechanism
     first, last = again.forms[0].name, again.forms[-1].name
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     route = find_route(again, first, last, problem=problem)
     assert route.length == pytest.approx(
         find_route(atlas, first, last, problem=problem).length

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.readout.readout import Readout
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
 from tests.linkages.mechanisms.spatial_mechanisms import (
@@ -30,7 +30,7 @@ MECHANISMS = [
 
 @pytest.mark.parametrize("mechanism", MECHANISMS, ids=str)
 def test_at_closed_configurations_every_joint_holds(mechanism):
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     readout = Readout(mechanism)
     rng = np.random.default_rng(1)
     starts = np.concatenate(
@@ -73,7 +73,7 @@ def displacements(motion, values):
 
 def test_the_variables_of_a_spherical_joint_are_its_rotation_vector():
     mechanism = rsrs()
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     readout = Readout(mechanism)
     assert np.allclose(readout.variables(problem.reference)["S1"], 0.0)
     points, _ = problem.project(problem.reference[None] + 0.2)
@@ -85,7 +85,7 @@ def test_the_variables_of_a_spherical_joint_are_its_rotation_vector():
 
 def test_a_slide_counts_in_the_unit_of_the_file():
     mechanism = rods().scaled(7.0)
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     column = problem.domain.names.index("P")
     point = problem.reference.copy()
     point[column] = 0.3
@@ -94,7 +94,7 @@ def test_a_slide_counts_in_the_unit_of_the_file():
 
 
 def test_rods_and_legs_are_one_equation_each_and_idle():
-    problem = MechanismClosure(platform((None,) * 6))
+    problem = Closure(platform((None,) * 6))
     assert problem.residuals(problem.reference[None]).shape == (1, 6 + 3)
     assert problem.n == 6 + 9
     assert len(problem.structure.idle_bodies) == 12

@@ -8,7 +8,7 @@ import pytest
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.loop import Loop
 from linkages.slices import completeness
 from linkages.slices.assemblies import isolated_assemblies
@@ -32,7 +32,7 @@ NUMBERS_ALONE = SearchSettings(prove=False)
 
 
 def small_and_large(twist):
-    return LoopClosure(entry("bricard-plane-symmetric").build(alpha12=twist, **SMALL))
+    return Closure(entry("bricard-plane-symmetric").build(alpha12=twist, **SMALL))
 
 
 def extents(atlas):
@@ -65,7 +65,7 @@ def test_numbers_alone_prove_many_linkages_complete(name):
     ],
 )
 def test_following_proves_what_numbers_leave_open(name):
-    problem = LoopClosure(entry(name).build())
+    problem = Closure(entry(name).build())
     counted = explore(problem, settings=NUMBERS_ALONE)
     followed = explore(problem, settings=SearchSettings(prove=True))
     assert counted.completeness.level == "certified"
@@ -75,7 +75,7 @@ def test_following_proves_what_numbers_leave_open(name):
 
 
 def test_sheets_that_run_to_infinity_leave_the_statement_at_certified():
-    problem = LoopClosure(entry("wohlhart-symmetric").build())
+    problem = Closure(entry("wohlhart-symmetric").build())
     atlas = explore(problem, settings=SearchSettings(prove=True))
     assert atlas.completeness.level == "certified"
 
@@ -85,7 +85,7 @@ def test_sheets_that_run_to_infinity_leave_the_statement_at_certified():
     ["parallelogram", "special-double-subtractive-goldberg", "bricard-line-symmetric"],
 )
 def test_no_list_with_a_motion_left_out_is_called_complete(name):
-    problem = LoopClosure(entry(name).build())
+    problem = Closure(entry(name).build())
     branches = [form.branch for form in explore(problem).forms]
     audit = problem.seeds(np.random.default_rng(0), 10).audit
     assert audit(branches, np.inf).level == "proved"
@@ -154,7 +154,7 @@ def test_surfaces_and_long_loops_are_estimated():
 
 
 def test_little_time_ends_at_numbers_alone():
-    problem = LoopClosure(entry("bricard-plane-symmetric").build())
+    problem = Closure(entry("bricard-plane-symmetric").build())
     branches = [form.branch for form in explore(problem).forms]
     audit = problem.seeds(np.random.default_rng(0), 10).audit
     assert audit(branches, 1e-6).level == "certified"
@@ -173,7 +173,7 @@ def test_little_time_ends_at_numbers_alone():
 )
 def test_random_members_are_proved_and_other_seeds_find_the_same(name, seed):
     found = entry(name)
-    problem = LoopClosure(found.build(**found.draw(np.random.default_rng(seed))))
+    problem = Closure(found.build(**found.draw(np.random.default_rng(seed))))
     settings = SearchSettings(starts=20, prove=True)
     atlases = [explore(problem, settings=settings, seed=k) for k in range(2)]
     assert [a.completeness.level for a in atlases] == ["proved"] * 2
@@ -213,7 +213,7 @@ def test_a_budget_that_ends_at_any_moment_leaves_no_proof_of_half_a_list(budget)
 
 
 def test_without_time_isolated_assemblies_are_said_to_be_those_of_random_starts():
-    problem = LoopClosure(SIXTEEN)
+    problem = Closure(SIXTEEN)
     atlas = explore(problem, settings=NUMBERS_ALONE)
     assert "are those that random starts reached" in atlas.completeness.statement
     audit = problem.seeds(np.random.default_rng(0), 1).audit([], 1e-9)
@@ -227,7 +227,7 @@ def test_nothing_is_proved_where_a_path_to_an_assembly_is_lost(monkeypatch):
         return replace(found, complete=False, statement="1 stopped on the way")
 
     monkeypatch.setattr(completeness, "isolated_assemblies", lose_one)
-    atlas = explore(LoopClosure(entry("bennett").build()))
+    atlas = explore(Closure(entry("bennett").build()))
     assert atlas.completeness.level == "certified"
     assert "isolated assemblies may be missing" in atlas.completeness.statement
     assert "1 stopped on the way" in atlas.completeness.statement

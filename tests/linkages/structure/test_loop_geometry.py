@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import linkages
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.construction.constructions import lock
 from linkages.identification.equivalence import compare, readings, table
 from linkages.identification.identify import identify
@@ -22,7 +22,7 @@ from linkages.values import GeometryError
 def closed(name):
     """A loop of the catalogue and a configuration (n,) of it."""
     loop = linkages.load_linkage(name).loop
-    seeds = LoopClosure(loop).seeds(np.random.default_rng(0), 4)
+    seeds = Closure(loop).seeds(np.random.default_rng(0), 4)
     return loop, seeds.points[0]
 
 

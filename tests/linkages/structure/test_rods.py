@@ -8,7 +8,7 @@ import pytest
 
 from bifurc import SearchSettings
 from linkages.app.answer.mechanism_document import describe_mechanism
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.readout.poses import Poses
@@ -57,7 +57,7 @@ def _twist(motion):
 
 
 def mobility_at_reference(mechanism):
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     points, gaps = problem.project(problem.reference[None])
     assert gaps[0] < 1e-12
     values = np.linalg.svd(problem.jacobians(points)[0], compute_uv=False)
@@ -233,7 +233,7 @@ def test_a_plate_on_a_point_of_rods_moves_wherever_the_point_is_named(place):
 
 def test_bodies_of_a_figure_are_where_their_joints_are():
     mechanism = framework(places_of("ABCDEF", 2), OCTAHEDRON[1:])
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     starts = problem.reference + 0.2 * np.random.default_rng(0).normal(
         size=(20, problem.n)
     )
@@ -277,7 +277,7 @@ def test_a_body_that_hangs_in_one_point_by_two_joints_is_refused():
         Joint("c", "spherical", ("y", "frame"), (0, 0, 0)),
     )
     with pytest.raises(GeometryError, match="joints a and b of body x"):
-        MechanismClosure(Mechanism(joints))
+        Closure(Mechanism(joints))
 
 
 def test_a_joint_beside_a_rigid_one_closes_a_loop_also_in_a_rod() -> None:
@@ -303,7 +303,7 @@ def test_a_rod_without_length_is_refused_also_where_an_idle_turn_makes_it() -> N
         Joint("c", "universal", ("z", "frame"), elsewhere, (0, 0, 1), (1, 0, 0)),
     )
     with pytest.raises(GeometryError, match="joints a and b of body x: at one point"):
-        MechanismClosure(Mechanism(joints))
+        Closure(Mechanism(joints))
 
 
 @pytest.mark.parametrize("seed", range(30))

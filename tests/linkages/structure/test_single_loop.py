@@ -5,8 +5,7 @@ import pytest
 
 import linkages
 from bifurc.settings import SearchSettings
-from linkages.closure.loop_closure import LoopClosure
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.readout.readout import Readout
@@ -52,16 +51,16 @@ def test_the_atlas_is_that_of_the_loop(name):
 
 def test_variables_are_measured_from_the_reference_configuration():
     loop = linkages.load_linkage("special-double-subtractive-goldberg").loop
-    points = LoopClosure(loop).seeds(np.random.default_rng(2), 4).points
+    points = Closure(loop).seeds(np.random.default_rng(2), 4).points
     mechanism = mechanism_of(loop, points[0], is_turned=True)
     readout = Readout(mechanism)
     single = readout.single_loop
     to_unknowns = single.to_unknowns(readout.structure)
     assert np.abs(to_unknowns.points(single.reference)).max() < 1e-12
     # the general equations of the mechanism hold at the same variables
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     others = points[:20] - points[0] + single.reference
-    residuals = LoopClosure(single.loop).residuals(others)
+    residuals = Closure(single.loop).residuals(others)
     assert np.abs(residuals).max() < 1e-12
     unknowns = to_unknowns.points(others)
     assert np.abs(problem.residuals(unknowns)).max() < 1e-12
@@ -69,7 +68,7 @@ def test_variables_are_measured_from_the_reference_configuration():
 
 def test_limits_locks_and_coinciding_axes_take_the_general_way():
     loop = linkages.load_linkage("bennett").loop
-    theta = LoopClosure(loop).seeds(np.random.default_rng(0), 1).points[0]
+    theta = Closure(loop).seeds(np.random.default_rng(0), 1).points[0]
     mechanism = mechanism_of(loop, theta)
     assert Readout(mechanism).single_loop is not None
     assert Readout(mechanism.with_locks({"J1": 0.0})).single_loop is None

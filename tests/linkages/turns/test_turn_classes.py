@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bifurc.curves.continuation import trace_branch
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.turns.turn_classes import classes_of_assemblies, classes_of_forms
 from tests.linkages.turns.test_turn_lattice import four_bar
 
@@ -21,7 +21,7 @@ TURNING = (((0, 0, 0), (0.6, 0.8, 0), (0.6, 1.8, 0), (3, 0, 0)), 1)
 @cache
 def problem_of(case):
     places, joint = case
-    return MechanismClosure(four_bar(places, {joint: (-WIDE, WIDE)}))
+    return Closure(four_bar(places, {joint: (-WIDE, WIDE)}))
 
 
 def moved(branch, shift):

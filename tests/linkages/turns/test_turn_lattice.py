@@ -10,7 +10,7 @@ from bifurc.settings import SearchSettings
 from linkages.app.answer.mechanism_document import describe_mechanism
 from linkages.app.answer.verdict import judge
 from linkages.app.subject import subject_at
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
@@ -52,14 +52,14 @@ def whole_turns(problem):
     ],
 )
 def test_whole_turns_cancel_where_pitches_are_in_proportion(pitches, rank):
-    problem = MechanismClosure(screws(TRIANGLE, pitches))
+    problem = Closure(screws(TRIANGLE, pitches))
     assert len(problem.lattice) == rank
     assert np.allclose(whole_turns(problem) @ pitches, 0.0, atol=1e-12)
     assert np.array_equal(whole_turns(problem), np.round(whole_turns(problem)))
 
 
 def test_shifts_lead_from_closed_configurations_to_closed_ones():
-    problem = MechanismClosure(screws(FOUR_BAR, (1.0, -2.0, 0.5, 1.5)))
+    problem = Closure(screws(FOUR_BAR, (1.0, -2.0, 0.5, 1.5)))
     rng = np.random.default_rng(0)
     seeds = problem.seeds(rng, 40)
     turns = rng.integers(-3, 4, (len(seeds.points), len(problem.lattice)))
@@ -77,7 +77,7 @@ def test_a_slide_takes_up_what_a_screw_advances():
     pair = ("rocker", "screw")
     joints.append(Joint("H", "helical", pair, places[3], Z, pitch=0.4))
     joints.append(Joint("P", "prismatic", ("screw", "frame"), direction=Z))
-    problem = MechanismClosure(Mechanism(tuple(joints)))
+    problem = Closure(Mechanism(tuple(joints)))
     (shift,) = problem.lattice.basis
     unit = problem.structure.unit
     assert shift[problem.domain.names.index("H")] == pytest.approx(TURN)
@@ -91,7 +91,7 @@ def test_what_turns_between_two_screws_lets_no_advance_pass():
         Joint("H2", "helical", ("c", "d"), (1, 1, 0), Z, pitch=1.0),
         Joint("R2", "revolute", ("d", "a"), (0, 1, 0.3), X),
     )
-    assert len(MechanismClosure(Mechanism(joints)).lattice) == 0
+    assert len(Closure(Mechanism(joints)).lattice) == 0
 
 
 def test_a_turn_with_a_rack_on_it_is_not_free():
@@ -101,7 +101,7 @@ def test_a_turn_with_a_rack_on_it_is_not_free():
         Joint("C", "revolute", ("r", "s"), (3, 0, 0), Z),
         Joint("D", "prismatic", ("f", "s"), direction=X, coupled=(Coupling("A", 0.1),)),
     )
-    assert len(MechanismClosure(Mechanism(joints)).lattice) == 0
+    assert len(Closure(Mechanism(joints)).lattice) == 0
 
 
 @pytest.mark.parametrize("seed", one_in(3, range(3)))
@@ -122,7 +122,7 @@ def test_assemblies_of_screws_are_those_of_the_triangle(seed):
     mechanism = screws(TRIANGLE, (1.0, 1.0, 1.0))
     atlas = map_of(mechanism, settings=settings, seed=seed)
     assert len(atlas.rigid) == 2
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     most = int(problem.domain.bounds[0, 1] / TURN)
     turns = np.arange(-most - 1, most + 1)
     grid = np.stack(np.meshgrid(turns, turns, turns), axis=-1).reshape(-1, 3)
@@ -158,7 +158,7 @@ def test_what_closes_only_whole_turns_beside_its_reference_is_found():
     settings = SearchSettings(starts=4, certify=False)
     atlas = map_of(with_limits(mechanism, limits), settings=settings)
     assert len(atlas.rigid) >= 1
-    problem = MechanismClosure(with_limits(mechanism, limits))
+    problem = Closure(with_limits(mechanism, limits))
     assert np.all(problem.domain.are_inside(atlas.rigid))
     assert relative_gaps(problem, atlas.rigid).max() < 1e-12
 
@@ -228,7 +228,7 @@ def test_nothing_is_said_of_turns_where_no_other_fits(limit):
     mechanism = four_bar(crank_rocker, {3: (-narrow, narrow)})
     settings = SearchSettings(starts=60, certify=False)
     atlas = map_of(mechanism, settings=settings)
-    assert len(MechanismClosure(mechanism).lattice) == 1
+    assert len(Closure(mechanism).lattice) == 1
     assert atlas.forms
     assert translates_of(atlas) is None
     assert "whole turns" not in atlas.completeness.statement + judge(atlas).sentence

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bifurc.settings import SearchSettings
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.turns.turn_classes import passes_but_for_turns
 from linkages.turns.turn_lattice import TurnLattice
 from tests.linkages.turns.test_translates import (
@@ -30,7 +30,7 @@ CUT_OFF = [
 @pytest.mark.parametrize("mechanism", CUT_OFF)
 def test_all_that_is_within_limits_is_listed_but_for_whole_turns(mechanism):
     atlas = map_of(mechanism, settings=SETTINGS)
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     rng = np.random.default_rng(1)
     reach = np.where(
         np.isfinite(problem.domain.bounds[:, 1]), problem.domain.bounds[:, 1], np.pi
@@ -56,7 +56,7 @@ def test_the_inmost_translate_is_the_farthest_from_all_limits(high, place):
 def test_a_place_beside_the_end_of_a_form_is_on_it_whichever_end_is_next():
     mechanism = revolutes((-6.2, 0.4))
     atlas = map_of(mechanism, settings=SETTINGS)
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     for form in atlas.forms:
         length = form.branch.length
         beside = 10.0 ** np.arange(-6, -1)

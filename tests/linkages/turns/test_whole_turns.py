@@ -6,7 +6,7 @@ import pytest
 from bifurc.completeness import Level
 from bifurc.curves.continuation import trace_branch
 from bifurc.settings import SearchSettings
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
@@ -51,7 +51,7 @@ def test_a_form_is_listed_once_with_all_whole_turns(seed):
 
 def audit_of(number, seconds):
     """What is said beside so many forms."""
-    problem = MechanismClosure(nut_on_a_rocker(2.5))
+    problem = Closure(nut_on_a_rocker(2.5))
     branch = trace_branch(problem, problem.reference)
     rng = np.random.default_rng(0)
     judge = whole_turns.for_subject(problem, problem.structure, rng, 0)
@@ -73,7 +73,7 @@ def test_without_time_for_proofs_none_are_looked_for():
 def test_what_is_beside_a_form_is_moved_to_where_it_is_listed():
     audit = audit_of(1, 1.0)
     assert len(audit.starts)
-    problem = MechanismClosure(nut_on_a_rocker(2.5))
+    problem = Closure(nut_on_a_rocker(2.5))
     assert np.abs(problem.lattice.homes(audit.starts) - audit.starts).max() == 0.0
 
 
@@ -102,7 +102,7 @@ def assemblies_of_rack(ratio, low, high):
 @pytest.mark.parametrize("ratio", [0.1, -0.25])
 def test_a_rigid_mechanism_has_its_assemblies_at_every_turn(ratio, seed):
     mechanism = rack(ratio)
-    problem = MechanismClosure(mechanism)
+    problem = Closure(mechanism)
     column = problem.domain.names.index("A")
     expected = assemblies_of_rack(ratio, *problem.domain.bounds[column])
     assert len(expected) >= 5

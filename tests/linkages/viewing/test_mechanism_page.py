@@ -4,7 +4,7 @@ are, and map, choices and routes work as those of a loop."""
 import numpy as np
 import pytest
 
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.closure import Closure
 from linkages.mechanisms.joint import JointKind
 from linkages.mechanisms.subject import mechanism_of
 from linkages.readout.readout import Readout
@@ -158,7 +158,7 @@ def test_scripts_get_bodies_by_name(show_shared):
 @pytest.mark.parametrize("name", [*ALL, "rods", "geared"])
 def test_singular_values_in_the_browser_are_those_of_python(show_shared, name):
     shown = show_shared(name)
-    closure = MechanismClosure(mechanism_of(shown.atlas))
+    closure = Closure(mechanism_of(shown.atlas))
     for form in shown.atlas.forms:
         places = np.linspace(0.0, form.branch.length, 9)
         states = shown.page.evaluate(GO, [form.name, places.tolist()])

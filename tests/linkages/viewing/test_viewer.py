@@ -8,7 +8,7 @@ from bifurc.figures.style import form_style
 from bifurc.routes.route import find_route
 from bifurc.torus import wrap
 from linkages.app.texts.form_names import listed_forms
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.labels import loop_of
 from linkages.links.rods import place_links
 from linkages.mechanisms.subject import mechanism_of
@@ -60,7 +60,7 @@ def test_a_page_opens_from_disk_without_a_word_and_draws_the_linkage(show, name)
 )
 def test_the_axes_in_the_browser_are_those_of_python_everywhere(show_shared, name):
     shown = show_shared(name)
-    loop, problem = loop_of(shown.atlas), LoopClosure(loop_of(shown.atlas))
+    loop, problem = loop_of(shown.atlas), Closure(loop_of(shown.atlas))
     size = loop.characteristic_length
     for form in shown.atlas.forms:
         places = np.linspace(0.0, form.branch.length, 24)[:-1]
@@ -99,7 +99,7 @@ def test_a_loop_that_is_given_by_joints_has_their_names_and_its_axes(show_shared
     axes = np.array([state["axes"] for state in states])
     angles = np.array([state["angles"] for state in states])
     values = np.array([state["singular_values"] for state in states])
-    expected = np.linalg.svd(LoopClosure(loop).jacobians(theta))[1]
+    expected = np.linalg.svd(Closure(loop).jacobians(theta))[1]
     assert np.abs(angles - form.branch(places)).max() < 1e-12
     size = loop.characteristic_length
     assert np.abs(axes[:, :, 0] - frames[:, :-1, :3, 3]).max() < 1e-9 * size

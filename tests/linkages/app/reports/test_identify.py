@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from linkages.app.cli import main
 from linkages.app.exit_codes import ExitCode
 from linkages.catalogue import entry
-from linkages.closure.loop_closure import LoopClosure
+from linkages.closure.closure import Closure
 from linkages.files.mechanism_file import mechanism_toml
 from linkages.mechanisms.of_loop import mechanism_of_loop
 
@@ -68,7 +68,7 @@ def test_a_locked_joint_is_told():
 
 def test_a_mechanism_of_one_loop_is_named_whatever_its_limits(tmp_path):
     loop = entry("goldberg-5r").build()
-    seeds = LoopClosure(loop).seeds(np.random.default_rng(0), 4)
+    seeds = Closure(loop).seeds(np.random.default_rng(0), 4)
     mechanism = mechanism_of_loop(loop, seeds.points[0])
     first, *others = mechanism.joints
     limited = (replace(first, limits=((-0.5, 0.5),)), *others)

@@ -1,0 +1,63 @@
+"""The closure of what moves as a problem for `bifurc`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from linkages.closure.loop_parts import parts_of_loop
+from linkages.closure.parts import ClosureOfParts, ClosureParts
+from linkages.loop import Loop
+
+if TYPE_CHECKING:
+    # they import networkx, which a loop does not need
+    from linkages.closure.errors import JointErrors
+    from linkages.mechanisms.mechanism import Mechanism
+    from linkages.structure.structure import Structure
+
+
+class Closure(ClosureOfParts):
+    """The closure equations of a ``subject``: of a loop in its joint angles, of a
+    mechanism in the variables of its joints.
+
+    Angles are in radians, lengths in characteristic lengths. All derivatives are exact.
+    A mechanism with ``errors`` is that as it is made, in the same unknowns, and need not
+    close anywhere; ``structure`` is that of the mechanism, where it is there already.
+    """
+
+    def __init__(
+        self,
+        subject: Loop | Mechanism,
+        errors: JointErrors | None = None,
+        structure: Structure | None = None,
+    ):
+        super().__init__(_parts_of(subject, errors, structure))
+        self.subject = subject
+
+    @property
+    def structure(self) -> Structure:
+        """What is unknown in a mechanism, and which chains have to close; a loop has
+        none."""
+        assert self.parts.structure is not None
+        return self.parts.structure
+
+    @property
+    def reference(self) -> np.ndarray:
+        """The reference configuration (n,) of a mechanism: all variables 0. Where joints
+        are locked elsewhere it need not be closed."""
+        return self.structure.reference
+
+
+def _parts_of(
+    subject: Loop | Mechanism,
+    errors: JointErrors | None,
+    structure: Structure | None,
+) -> ClosureParts:
+    """What the closure of a ``subject`` is made of."""
+    if isinstance(subject, Loop):
+        return parts_of_loop(subject)
+    from linkages.closure.mechanism_parts import parts_of_structure
+    from linkages.structure.structure import Structure
+
+    return parts_of_structure(structure or Structure(subject), errors)
