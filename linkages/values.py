@@ -32,6 +32,12 @@ class GeometryError(BifurcError, ValueError):
         super().__init__(f"{name}: {value} is not allowed; it must be {allowed}")
 
 
+def require(is_met: bool, name: str, value: object, allowed: str) -> None:
+    """Raises `GeometryError` of these parts unless what must be ``is_met``."""
+    if not is_met:
+        raise GeometryError(name, value, allowed)
+
+
 def check_keys(what: str, keys: Iterable[object], allowed: Sequence[str]) -> None:
     """Raises `GeometryError` for a key of a table of a file that is not ``allowed``,
     with the one that is nearly it, if there is one."""

@@ -30,7 +30,7 @@ from linkages.formats.composites import with_joints_of_chains
 from linkages.formats.exact_poses import ExactPose, Origin
 from linkages.formats.xml_tree import Element
 from linkages.mechanisms.couplings import Coupling
-from linkages.mechanisms.joint import JointKind, Limits
+from linkages.mechanisms.joint import FACETS, JointKind, Limits
 from linkages.values import quoted
 
 OLDEST, NEWEST = (1, 5), (1, 11)
@@ -41,15 +41,7 @@ MIMIC_SINCE = (1, 11)
 AXES = ("axis", "axis2")
 WORLD, MODEL = "world", "__model__"
 UNLIMITED = 1e16  # SDF's word for no limit
-KINDS = {
-    "revolute": JointKind.REVOLUTE,
-    "continuous": JointKind.REVOLUTE,
-    "prismatic": JointKind.PRISMATIC,
-    "ball": JointKind.SPHERICAL,
-    "universal": JointKind.UNIVERSAL,
-    "screw": JointKind.HELICAL,
-    "fixed": JointKind.RIGID,
-}
+KINDS = {word: kind for kind, facets in FACETS.items() for word in facets.sdf}
 
 
 class _Gearbox(NamedTuple):
