@@ -207,7 +207,8 @@ class Joint:
 # --- motions --------------------------------------------------------------------------
 
 
-def _unit(vector: Sequence[float] | None) -> np.ndarray:
+def unit_vector(vector: Sequence[float] | np.ndarray | None) -> np.ndarray:
+    """The unit vector (3,) along a vector that is not 0, of whatever length."""
     array = np.array(vector, dtype=float)
     scaled = array / np.abs(array).max()
     unit: np.ndarray = scaled / np.linalg.norm(scaled)
@@ -217,14 +218,14 @@ def _unit(vector: Sequence[float] | None) -> np.ndarray:
 def _motion(joint: Joint, move: Move) -> Motion:
     """What a variable of a joint does; two slides and a turn are any motion in a plane,
     without a singular place."""
-    third = _unit(joint.direction)
+    third = unit_vector(joint.direction)
     if move is Move.TURN:
         advance = 0.0 if joint.pitch is None else joint.pitch / (2 * math.pi)
         return Motion(True, third, joint.place, advance)
     if move is Move.SECOND_TURN:
-        return Motion(True, _unit(joint.second_direction), joint.place)
+        return Motion(True, unit_vector(joint.second_direction), joint.place)
     along = np.array(joint.second_direction or np.eye(3)[np.argmin(np.abs(third))])
-    first = _unit((along - (along @ third) * third).tolist())
+    first = unit_vector((along - (along @ third) * third).tolist())
     axes = (first, np.cross(third, first), third)
     return Motion(False, axes[move.value], joint.place, 1.0)
 
@@ -349,7 +350,7 @@ def _checked_kind(joint: Joint) -> JointKind:
 
 def _checked_bodies(joint: Joint) -> tuple[str, ...]:
     what = f"bodies of joint {joint.name}"
-    bodies = checked_list(what, joint.bodies, "a list of two names or more")
+    bodies = _listed(what, joint.bodies, "a list of two names or more")
     for body in bodies:
         if not isinstance(body, str) or not body.strip():
             raise GeometryError(what, quoted(body), "names, texts in quotes")
@@ -360,7 +361,7 @@ def _checked_bodies(joint: Joint) -> tuple[str, ...]:
     return bodies
 
 
-def checked_list(what: str, given: object, allowed: str) -> tuple[Any, ...]:
+def _listed(what: str, given: object, allowed: str) -> tuple[Any, ...]:
     """What is given as a tuple; raises `GeometryError` where it is no list."""
     if isinstance(given, str) or not isinstance(given, Iterable):
         raise GeometryError(what, quoted(given), allowed)
@@ -391,7 +392,9 @@ def _check_geometry(joint: Joint) -> None:
     if joint.pitch is not None:
         check_number(f"pitch {owner}", joint.pitch)
     if joint.direction is not None and joint.second_direction is not None:
-        across = np.cross(_unit(joint.direction), _unit(joint.second_direction))
+        across = np.cross(
+            unit_vector(joint.direction), unit_vector(joint.second_direction)
+        )
         is_along = is_one_direction(float(np.linalg.norm(across)))
         value = list(joint.second_direction)
         allowed = "not parallel to its direction"
@@ -401,27 +404,26 @@ def _check_geometry(joint: Joint) -> None:
 def _checked_limits(joint: Joint) -> tuple[Limits | None, ...]:
     what = f"limits of joint {joint.name}"
     allowed = "a list with [low, high] or None for each variable"
-    checked_list(what, joint.limits, allowed)
+    _listed(what, joint.limits, allowed)
     limits: list[Limits | None] = []
     for pair, motion in _by_variable(joint, "limits", f"number of {what}", ""):
         if pair is None:
             limits.append(None)
             continue
-        ends = checked_list(what, pair, allowed)
+        ends = _listed(what, pair, allowed)
         require(len(ends) == 2, what, list(ends), allowed)
         for value in ends:
             check_value(what, value, motion)
-        check_order(what, list(ends), ends[0])
+        check_order(what, list(ends))
         limits.append((ends[0], ends[1]))
     return tuple(limits)
 
 
-def check_order(what: str, ends: list[Any], low: object) -> None:
-    """Raise `GeometryError` unless the first one of limits is smaller than the other;
-    ``low`` is what is said of it."""
+def check_order(what: str, ends: list[Any]) -> None:
+    """Raise `GeometryError` unless the first one of limits is smaller than the other."""
     allowed = "a smaller number and a larger one"
     if ends[0] == ends[1]:
-        allowed += f"; a joint that stands still has locked = {low}"
+        allowed += f"; a joint that stands still has locked = {ends[0]}"
     require(bool(ends[0] < ends[1]), what, ends, allowed)
 
 
