@@ -105,10 +105,8 @@ def make_angle_table(
 ) -> str:
     """A line for every configuration of a motion, with all digits: its arclength (k,)
     and the joint variables (k, v), below a line of their ``names``."""
-    heads = [_cell(name) for name in ("arclength", *names)]
-    lines = [",".join(heads)]
-    rows = np.column_stack([arclength, variables])
-    for row in rows:
+    lines = [",".join(_cell(name) for name in ("arclength", *names))]
+    for row in np.column_stack([arclength, variables]):
         lines.append(",".join(repr(float(value)) for value in row))
     return "\n".join(lines) + "\n"
 

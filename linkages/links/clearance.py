@@ -169,22 +169,18 @@ class Bodies:
     def closing_speed(self, pair: Pair) -> float:
         """How fast two bodies can near each other for each unit of arclength: no faster
         than the fastest end of a line of one, seen from the other, either way round."""
-        first, second = pair
-        speeds = [
-            self._largest_speed(first, second),
-            self._largest_speed(second, first),
-        ]
-        return MARGIN * min(speeds)
-
-    def _largest_speed(self, seen_from: int, body: int) -> float:
-        """The largest speed of an end of the lines of a body, seen from another one."""
-        before, after = (
-            _moved(
-                self.lines[body], np.linalg.inv(poses[:, seen_from]) @ poses[:, body]
+        speeds = []
+        for seen_from, body in (pair, pair[::-1]):
+            before, after = (
+                np.linalg.inv(poses[:, seen_from]) @ poses[:, body]
+                for poses in (self._before, self._after)
             )
-            for poses in (self._before, self._after)
-        )
-        return float(np.linalg.norm(after - before, axis=-1).max()) / (2 * STEP)
+            lines = self.lines[body]
+            change = np.linalg.norm(
+                _moved(lines, after) - _moved(lines, before), axis=-1
+            )
+            speeds.append(float(change.max()) / (2 * STEP))
+        return MARGIN * min(speeds)
 
 
 def approaches_of_bodies(structure: Structure, branch: Branch) -> list[Approach]:

@@ -218,30 +218,21 @@ def _places(structure: Structure) -> np.ndarray:
     mechanism = structure.mechanism
     places = structure.size.points / structure.unit
     for number, joint in enumerate(mechanism.joints):
-        if joint.kind.facets.place is Place.ANYWHERE and joint.point is not None:
+        if joint.kind.facets.place is not Place.ANYWHERE:
+            continue
+        if joint.point is not None:
             places[number] = joint.place / structure.unit
-        elif (
-            joint.kind.facets.place is Place.ANYWHERE
-            and mechanism.frame in joint.bodies
-        ):
-            places[number] = _place_on_slider(mechanism, number, places)
+        elif mechanism.frame in joint.bodies:
+            # the middle of the other joints of the body that slides in the frame
+            slider = next(body for body in joint.bodies if body != mechanism.frame)
+            others = [
+                k
+                for k, one in enumerate(mechanism.joints)
+                if slider in one.bodies and k != number
+            ]
+            places[number] = places[others].mean(axis=0)
     apart: np.ndarray = places + _steps_aside(mechanism, places)
     return apart
-
-
-def _place_on_slider(
-    mechanism: Mechanism, number: int, places: np.ndarray
-) -> np.ndarray:
-    """The middle (3,) of the other joints of the body that slides in the frame."""
-    joint = mechanism.joints[number]
-    slider = next(body for body in joint.bodies if body != mechanism.frame)
-    others = [
-        k
-        for k, one in enumerate(mechanism.joints)
-        if slider in one.bodies and k != number
-    ]
-    middle: np.ndarray = places[others].mean(axis=0)
-    return middle
 
 
 def _steps_aside(mechanism: Mechanism, places: np.ndarray) -> np.ndarray:

@@ -18,7 +18,7 @@ from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.entries import NETWORKS
 from linkages.networks.network import Network, wrap_angles
 from linkages.networks.placement import PlacedNetwork
-from linkages.values import GeometryError
+from linkages.values import require
 
 # What every cell turns by at its second axis in the reference configuration, rad, where
 # nothing is locked: in no special place.
@@ -43,8 +43,8 @@ class NetworkMechanism(Mechanism):
         those that are locked. Raises as `lock_network`."""
         kinks = self.kinks
         for axis in values:
-            if axis in kinks:
-                raise GeometryError("lock", axis, "a joint that is not locked yet")
+            is_free = axis not in kinks
+            require(is_free, "lock", axis, "a joint that is not locked yet")
         return lock_network(self.placed.network, {**kinks, **values})
 
     @property
@@ -111,17 +111,13 @@ def lock_network(network: Network, kinks: Mapping[str, float]) -> NetworkMechani
     assembled.
     """
     states = assemble(network, kinks)
-    if not len(states):
-        shown = ", ".join(f"{axis}={degrees(kink):g}" for axis, kink in kinks.items())
-        allowed = "kinks at which the network can be assembled"
-        raise GeometryError(f"locks of {network.name}", shown, allowed)
+    shown = ", ".join(f"{axis}={degrees(kink):g}" for axis, kink in kinks.items())
+    allowed = "kinks at which the network can be assembled"
+    require(len(states) > 0, f"locks of {network.name}", shown, allowed)
     gaps = wrap_angles(states - np.array(PRESET[: states.shape[1]]))
     # rounded, so that of those as near as each other the first one is taken
     distances = np.round(np.linalg.norm(gaps, axis=1), 9)
-    return _mechanism(PlacedNetwork(network, states[np.argmin(distances)], kinks))
-
-
-def _mechanism(placed: PlacedNetwork) -> NetworkMechanism:
+    placed = PlacedNetwork(network, states[np.argmin(distances)], kinks)
     plain = placed.mechanism
     return NetworkMechanism(plain.joints, plain.name, placed=placed)
 
