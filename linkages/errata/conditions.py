@@ -9,7 +9,7 @@ import numpy as np
 
 from linkages.catalogue import entry
 from linkages.construction.equations import evaluate, numbers_of
-from linkages.errata.equations import FUNCTIONS
+from linkages.errata.equations import FUNCTIONS, define
 from linkages.errata.erratum import Amounts
 from linkages.identification.equivalence import as_loop, table
 from linkages.loop import Loop
@@ -24,8 +24,7 @@ def compare_mobility(
     right = entry(linkage).build()
     numbers = numbers_of(table(right))
     names = {**FUNCTIONS, **numbers}
-    for name, text in where.items():
-        names[name] = evaluate(text, names)
+    define(names, where)
     changed = numbers | {name: evaluate(text, names) for name, text in changes.items()}
     printed = as_loop(np.reshape(list(changed.values()), (-1, 3)).T)
     return Amounts(immobility(printed), immobility(right))

@@ -3,7 +3,6 @@ formulas of what they leave, which is 0 where they hold."""
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping
 from math import nan, tan
 from types import SimpleNamespace
@@ -55,16 +54,13 @@ def compare_equations(
     with ``at`` at angles, rad. The largest is taken at each place; places where a formula
     is not a number do not count.
     """
-    owner = entry(linkage)
     values = {name: evaluate(text) for name, text in (along or {}).items()}
-    names = {**FUNCTIONS, **owner.defaults, **values}
-    theta = np.empty((1, 0))
-    loop = owner.build(**owner.defaults | values)
-    names |= numbers_of(table(loop))
+    parameters = entry(linkage).defaults | values
+    loop = entry(linkage).build(**parameters)
+    names = {**FUNCTIONS, **parameters, **numbers_of(table(loop))}
+    theta = np.empty((1, 0)) if at is None else np.array([at])
     if along is not None:
-        _, theta = path_along(linkage, **values)
-    elif at is not None:
-        theta = np.array([at])
+        theta = path_along(linkage, **values).theta
     if theta.size:
         names |= _names_along(loop, theta)
 
@@ -73,13 +69,18 @@ def compare_equations(
         largest = np.abs(np.concatenate(gaps, axis=1)).max(axis=1)
         return np.asarray(largest[~np.isnan(largest)])
 
-    with np.errstate(all="ignore"), warnings.catch_warnings():
-        for name, value in where.items():
-            if isinstance(value, str):
-                names[name] = evaluate(value, names)
-            else:
-                names[name] = np.array(value)
+    with np.errstate(all="ignore"):
+        define(names, where)
         return median_and_largest(left(printed), left(corrected))
+
+
+def define(
+    names: dict[str, Any], where: Mapping[str, str | float | list[float]]
+) -> None:
+    """Add to ``names`` what formulas or numbers define ``where``, one after the other."""
+    for name, value in where.items():
+        is_text = isinstance(value, str)
+        names[name] = evaluate(str(value), names) if is_text else np.array(value)
 
 
 def _names_along(loop: Loop, theta: np.ndarray) -> dict[str, np.ndarray]:
