@@ -163,7 +163,7 @@ def _pose(
     there[:3, 3] += ring.shift * axis.direction
     own = ring.axis(first)
     normal = _normal(ring, ring.joints.index(first))
-    pose = there @ np.linalg.inv(_frame(own.point, own.direction, normal))
+    pose: np.ndarray = there @ np.linalg.inv(_frame(own.point, own.direction, normal))
     return pose
 
 
