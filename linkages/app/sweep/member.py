@@ -21,10 +21,10 @@ from bifurc.atlas import Atlas
 from bifurc.graphs import arc_graph, transition_graph
 from bifurc.settings import SearchSettings
 from linkages.app.answer.verdict import is_without_gaps
-from linkages.app.subject import subject_at
 from linkages.app.sweep.subjects import JointName, Member, Subject
 from linkages.labels import FormLabels
 from linkages.mapping import map_linkage
+from linkages.subject import subject_at
 from linkages.values import GeometryError
 
 # values of `FIELDS` by name, and the message of a member that was refused or failed
