@@ -107,8 +107,13 @@ def read_figure(
     """The figure of these ``points`` that a file describes; raises `GeometryError`."""
     on_pieces = _read_points_on(content, kind, points)
     known = [*points, *on_pieces]
-    fixed = _read_fixed(content, known)
-    return Figure(kind, points, fixed, _read_pieces(content, kind, known), on_pieces)
+    given = content.get("fixed", [])
+    fixed = checked_list("fixed", given, "a list of names of points")
+    for name in fixed:
+        _check_point("fixed", name, known)
+        require(fixed.count(name) == 1, "fixed", quoted(name), "named once")
+    pieces = _read_pieces(content, kind, known)
+    return Figure(kind, points, tuple(fixed), pieces, on_pieces)
 
 
 def _read_points_on(
@@ -129,15 +134,6 @@ def _read_points_on(
         numbers = kind.read_numbers(what, row[2])
         on_pieces[name] = PointOnPiece(row[0], row[1], numbers)
     return on_pieces
-
-
-def _read_fixed(content: Mapping[str, object], known: Sequence[str]) -> tuple[str, ...]:
-    given = content.get("fixed", [])
-    fixed = checked_list("fixed", given, "a list of names of points")
-    for name in fixed:
-        _check_point("fixed", name, known)
-        require(fixed.count(name) == 1, "fixed", quoted(name), "named once")
-    return tuple(fixed)
 
 
 def _read_pieces(
