@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -55,6 +55,30 @@ class Pair(NamedTuple):
     center: np.ndarray | None = None
 
 
+class Lock(NamedTuple):
+    """What is locked by its name, at which ``value`` (rad, the unit of length)."""
+
+    name: str
+    value: float
+    is_angle: bool
+
+
+class OuterJoint(NamedTuple):
+    """A joint of the outer loop of a network: its ``name``, the ``label`` of its
+    variable, its Denavit-Hartenberg angle (rad) in the ``reference`` configuration, and
+    whether it is locked there."""
+
+    name: str
+    label: str
+    reference: float
+    is_locked: bool
+
+    def angle(self, value: float) -> float:
+        """The Denavit-Hartenberg angle at a value of the variable, rad."""
+        turned = self.reference + value
+        return float(np.remainder(turned + np.pi, 2 * np.pi) - np.pi)
+
+
 class Panel(NamedTuple):
     """A flat polygon of a body, by its ``corners`` in order."""
 
@@ -81,6 +105,8 @@ class Mechanism:
     origin: Vector = field(default=(0.0, 0.0, 0.0), compare=False)
     rounding: float = field(default=0.0, compare=False)
     panels: tuple[Panel, ...] = field(default=(), compare=False)
+    # what to do where a single loop is asked for, unless there is nothing to do
+    way_to_loop: ClassVar[str] = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "joints", _checked_joints(self.joints))
@@ -239,6 +265,35 @@ class Mechanism:
         """What the ``subject`` of an atlas says of it besides its joints, in values that
         JSON holds; nothing, unless a class is made of more."""
         return {}
+
+    def document_values(self) -> dict[str, Any]:
+        """The same for the JSON document of an atlas."""
+        return {}
+
+    @property
+    def outer_joints(self) -> tuple[OuterJoint, ...]:
+        """The joints of an outer loop, whose angles are shown as well; none, unless a
+        class has one."""
+        return ()
+
+    def holds_angle(self, name: str) -> bool:
+        """Whether a lock of this name holds an angle."""
+        return any(one.label == name and one.motion.is_turn for one in self.variables)
+
+    def held(self, values: Mapping[str, float]) -> Mechanism:
+        """The mechanism with what locks hold, by name, at ``values``: variables, unless
+        a class has other names for them."""
+        return self.with_locks(values)
+
+    @property
+    def locks(self) -> list[Lock]:
+        """What is locked by itself."""
+        locks = []
+        for joint in self.joints:
+            for label, value in zip(joint.labels, joint.locked, strict=True):
+                if value is not None:
+                    locks.append(Lock(label, value, self.holds_angle(label)))
+        return locks
 
     # --- other mechanisms -------------------------------------------------------------
 

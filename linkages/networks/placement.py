@@ -47,15 +47,6 @@ class PlacedNetwork:
         turns = dict(zip(self.network.plan.ring, angles, strict=True))
         return turns | self.kinks
 
-    def ring_values(self, values: Mapping[str, float]) -> dict[str, float]:
-        """The D-H angles (rad) of the outer joints, by name, for ``values`` (rad) of the
-        variables by label."""
-        angles = {}
-        for axis in self.network.plan.ring:
-            turned = self.turns[axis] + values[self.label(axis)]
-            angles[axis] = float(np.remainder(turned + np.pi, 2 * np.pi) - np.pi)
-        return angles
-
     @cached_property
     def mechanism(self) -> Mechanism:
         """The mechanism, its locks at 0."""
