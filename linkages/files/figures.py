@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Any, Generic, TypeVar
 
+import numpy as np
+
 from linkages.mechanisms.joint import Joint, JointKind, Vector
 from linkages.values import SOME, checked_list, checked_table, quoted, require
 
@@ -163,6 +165,28 @@ def _check_point(what: str, name: object, known: Sequence[str]) -> None:
     """Raise `GeometryError` for what is none of the ``known`` points."""
     allowed = f"one of the points {', '.join(known)}"
     require(name in known, what, quoted(name), allowed)
+
+
+# --- assembly -------------------------------------------------------------------------
+
+RANK = 1e-9  # singular value, over the largest, of a motion: no step along it
+
+
+def polished(
+    gaps: Callable[[np.ndarray], np.ndarray],
+    derivatives: Callable[[np.ndarray], np.ndarray],
+    values: np.ndarray,
+    steps: int,
+) -> np.ndarray:
+    """The ``values`` (n,) after so many steps of Newton's method at most, as long as
+    they make ``gaps`` (m,) with these ``derivatives`` (m, n) smaller."""
+    for _ in range(steps):
+        now = gaps(values)
+        trial = values - np.linalg.lstsq(derivatives(values), now, rcond=RANK)[0]
+        if not np.linalg.norm(gaps(trial)) < np.linalg.norm(now):
+            break
+        values = trial
+    return values
 
 
 # --- names ----------------------------------------------------------------------------

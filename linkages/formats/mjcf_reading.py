@@ -393,15 +393,15 @@ class _Anchor:
 
 def _read_ends(element: Element, model: _Model) -> tuple[_Placed, _Placed, bool]:
     """What an equality joins, two sites or two bodies; and whether they are sites."""
-    if "site1" in element.attributes or "site2" in element.attributes:
-        allowed = "the name of a site"
-        one = element.reference("site1", model.sites, allowed)
-        other = element.reference("site2", model.sites, allowed)
-        return model.sites[one], model.sites[other], True
+    are_sites = "site1" in element.attributes or "site2" in element.attributes
     allowed = f"one of the bodies {', '.join(model.elements)}"
-    one = element.reference("body1", model.elements, allowed)
-    other = element.reference("body2", model.elements, allowed, default=WORLD)
-    return model.elements[one], model.elements[other], False
+    noun, known, default = "body", model.elements, WORLD
+    if are_sites:
+        allowed = "the name of a site"
+        noun, known, default = "site", model.sites, ""
+    one = element.reference(f"{noun}1", known, allowed)
+    other = element.reference(f"{noun}2", known, allowed, default)
+    return known[one], known[other], are_sites
 
 
 def _read_connect(element: Element, name: str, model: _Model) -> _Anchor:

@@ -293,7 +293,9 @@ class Structure:
             chain = self._chain(*rod.ends)
             inner = tuple(self.mechanism.pairs[number].joint for number in rod.inner)
             joints = (rod.joints[0], *self._joints(chain), rod.joints[1], *inner)
-            closures.append(Closure(ClosureKind.ROD, chain, joints, *rod.centers, rod))
+            first, second = rod.centers
+            rod_closure = Closure(ClosureKind.ROD, chain, joints, first, second, rod)
+            closures.append(rod_closure)
         return tuple(closures)
 
     def _begun_at_a_joint(self, cycle: Chain) -> Chain:
