@@ -385,7 +385,7 @@ class SingleLoopSubject(MechanismSubject):
         return recount_labelled(named, back, self.unknowns, self.values)
 
     def in_loop_angles(self, atlas: Atlas) -> Atlas:
-        names, subject = self.traced.names, subject_of(self.table)
+        names, subject = self.traced.domain.names, subject_of(self.table)
         return recount_labelled(atlas, self.to_angles, names, subject)
 
     @cached_property

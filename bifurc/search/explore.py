@@ -68,8 +68,8 @@ def explore(
             "seed", repr(seed), f"a whole number from 0 to {LARGEST_SEED}"
         )
     if parameter is not None:
-        parameter_index(problem.names, parameter)
-    events_of({} if events is None else events, problem.names)
+        parameter_index(problem.domain.names, parameter)
+    events_of({} if events is None else events, problem.domain.names)
     request = _Request(settings, int(seed), seeds, progress)
     with one_thread(problem.n):
         atlas = _explored_in_any_units(problem, request)
@@ -132,8 +132,8 @@ def _explored(problem: Problem, request: _Request, began: float) -> Atlas:
         settings=request.settings,
         interrupted=interrupted,
         out_of_time=search.run.is_over and not interrupted,
-        derivatives=problem.derivatives,
-        equations=problem.equations,
+        derivatives=problem.accuracy.derivatives,
+        equations=problem.accuracy.equations,
         seconds=time.perf_counter() - began,
     )
     return assemble_atlas(problem, search.findings, provenance, search.run.deadline)

@@ -139,9 +139,9 @@ def _folded(mechanism: Mechanism, angles: Mapping[str, float]) -> Mechanism:
     """The mechanism in the closed state nearest to fold ``angles`` (rad), by joint,
     from the flat one."""
     problem = MechanismClosure(mechanism)
-    start = np.array([angles[name] for name in problem.names])
+    start = np.array([angles[name] for name in problem.domain.names])
     far = "folded such that a gap of {:.3g} is left; near a closed state"
-    point = closed_near(problem, "edges_foldAngle", start, problem.names, far)
+    point = closed_near(problem, "edges_foldAngle", start, problem.domain.names, far)
     poses = Poses(problem.structure).at(point[None])[0]
     joints = []
     for joint in mechanism.joints:
