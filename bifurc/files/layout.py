@@ -129,7 +129,7 @@ TABLES = _read_tables()
 # --- JSON -----------------------------------------------------------------------------
 
 
-def records_of(atlas: Atlas, owner: str) -> list[Any]:
+def records_of(atlas: Atlas, owner: str) -> list[dict[str, Any]]:
     """What an atlas has of a table, as values of JSON by their keys."""
     columns = [column for column in TABLES[owner].columns if column.key]
     return [

@@ -22,9 +22,7 @@ def make_document(atlas: Atlas) -> dict[str, Json]:
     key holds."""
     provenance = atlas.provenance
     of_forms = [_of_form(atlas, form) for form in atlas.forms]
-    of_surfaces: list[dict[str, Json]] = [
-        {"complete": surface.complete} for surface in atlas.surfaces
-    ]
+    of_surfaces = [{"complete": surface.complete} for surface in atlas.surfaces]
     of_points = [_of_point(atlas, point) for point in atlas.points]
     return {
         "name": str(atlas.subject.get("name", "")),
