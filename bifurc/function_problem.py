@@ -273,7 +273,7 @@ class FunctionProblem(EquationProblem):
             has_assumed_bounds=is_open,
         )
         rng = np.random.default_rng(0)
-        points = rng.uniform(*near.T, (PROBES, self.n))
+        points = rng.uniform(near[:, 0], near[:, 1], (PROBES, self.n))
         self._measure(self._probes_with_value(points))
 
     def _size_of_solutions(self, is_open: np.ndarray) -> float:

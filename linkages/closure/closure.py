@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from linkages.closure.errors import JointErrors
     from linkages.mechanisms.mechanism import Mechanism
     from linkages.structure.structure import Structure
+    from linkages.turns.turn_lattice import TurnLattice
 
 
 class Closure(ClosureOfParts):
@@ -47,6 +49,14 @@ class Closure(ClosureOfParts):
         """The reference configuration (n,) of a mechanism: all variables 0. Where joints
         are locked elsewhere it need not be closed."""
         return self.structure.reference
+
+    @cached_property
+    def lattice(self) -> TurnLattice:
+        """The whole turns after which every closed configuration of a mechanism is closed
+        again."""
+        from linkages.turns.turn_lattice import turn_lattice
+
+        return turn_lattice(self.structure)
 
 
 def _parts_of(

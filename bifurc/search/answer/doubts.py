@@ -261,8 +261,8 @@ def _ended_at_assumed_bounds(problem: Problem, branch: Branch) -> list[str]:
     if branch.outcome is not Outcome.LEFT_REGION:
         return []
     ends = branch(np.array([0.0, branch.length]))
-    are_at_bounds = _are_at_bounds(problem, ends).any(axis=0)
-    is_there: np.ndarray = are_at_bounds & problem.domain.has_assumed_bounds
+    is_at_bounds = np.asarray(_are_at_bounds(problem, ends).any(axis=0))
+    is_there: np.ndarray = is_at_bounds & problem.domain.has_assumed_bounds
     return [problem.domain.names[k] for k in np.flatnonzero(is_there.any(axis=1))]
 
 
