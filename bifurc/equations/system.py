@@ -145,7 +145,7 @@ class ScaledTape:
         """F' (k, m, n) at points (k, n)."""
         return self.tape.compiled.jacobians(_contiguous(points))
 
-    @property
+    @cached_property
     def shortcuts(self) -> Shortcuts:
         """What is done in one call; F' is made sparse where it is large and has few
         entries."""

@@ -4,7 +4,7 @@ from the lengths of its links, complete slices."""
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -120,7 +120,7 @@ class ScrewSystem:
 
         return precise_residual(self.loop)
 
-    @property
+    @cached_property
     def shortcuts(self) -> Shortcuts:
         """How points at the nodes of a piece of the valley are corrected along which the
         loop nearly closes."""
