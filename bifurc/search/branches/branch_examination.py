@@ -233,8 +233,11 @@ def _deep_places(profile: Profile, minima: np.ndarray) -> list[_Candidate]:
     """
     values = profile.smallest.ravel()
     arclengths = profile.arclength.ravel()
-    candidates = []
-    for k in np.flatnonzero(_are_lowest(values) & may_be_crossed(values)):
+    candidates: list[_Candidate] = []
+    is_small = may_be_crossed(values)
+    if not is_small.any():
+        return candidates
+    for k in np.flatnonzero(_are_lowest(values) & is_small):
         before = values[max(k - BESIDE, 0) : k].max(initial=0.0)
         after = values[k + 1 : k + 1 + BESIDE].max(initial=0.0)
         beside = arclengths[max(k - 1, 0) : k + 2]
