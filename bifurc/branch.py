@@ -346,14 +346,20 @@ class Branch:
         return largest
 
     @cached_property
-    def travel(self) -> np.ndarray:
-        """What each unknown (n,) gains from the begin to the end of the curve."""
+    def ends(self) -> np.ndarray:
+        """Where the curve begins and where it ends (2, n)."""
         ends = [0, -1]
         offsets = self.breaks[ends] - self.centers[ends]
         x = offsets / self.radii[ends]
         exponents = np.arange(self.pieces.shape[1])
         powers = x[:, None] ** exponents
-        begin, end = np.einsum("ek,ekn->en", powers, self.pieces[ends])
+        points: np.ndarray = np.einsum("ek,ekn->en", powers, self.pieces[ends])
+        return points
+
+    @property
+    def travel(self) -> np.ndarray:
+        """What each unknown (n,) gains from the begin to the end of the curve."""
+        begin, end = self.ends
         travel: np.ndarray = end - begin
         return travel
 

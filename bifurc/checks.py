@@ -57,6 +57,8 @@ def check_distance(name: str, value: float) -> None:
 
 def floats_of(name: str, value: ArrayLike) -> np.ndarray:
     """``value`` as an array of floats; raises `ProblemError` where it is none."""
+    if isinstance(value, np.ndarray) and value.dtype == float:
+        return value.copy()
     try:
         if np.iscomplexobj(value):
             raise TypeError("complex numbers")

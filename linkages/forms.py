@@ -137,7 +137,7 @@ def _labels(theta: np.ndarray, by_rounding: float) -> FormLabels:
     """The joints that keep their angle modulo 2 pi, these angles in (-pi, pi], and the
     symmetry."""
     full_turns = _full_turns(theta)
-    mean = np.angle(np.exp(1j * theta).mean(axis=0))
+    mean = np.arctan2(np.sin(theta).mean(axis=0), np.cos(theta).mean(axis=0))
     deviation = np.abs(torus.difference(theta, mean, full_turns))
     unit = unit_over_rounding(keeps_angle, by_rounding)
     is_still = keeps_angle(deviation.max(axis=0), unit)

@@ -64,6 +64,8 @@ class SeedBook:
     def open_seeds(self) -> list[int]:
         """Numbers of the seeds of which nothing is known yet, first those whose curve
         is far from singular."""
+        if len(self.fates) == len(self.seeds.points):
+            return []
         numbers = [k for k in range(len(self.seeds.points)) if k not in self.fates]
         values = self.values[numbers, max(self.problem.n - 2, 0)]
         return [numbers[k] for k in np.argsort(-values, kind="stable")]

@@ -50,7 +50,7 @@ def canonical_course(problem: Problem, branch: Branch) -> Branch:
             branch = branch.reversed()
     elif _begins_at_the_lower_end(problem, branch):
         branch = branch.reversed()
-    start = branch(0.0)
+    start = branch.ends[0]
     periods = wrapped_periods(problem.periods, problem.bounds)
     wrapped = wrap(start, periods, within=SEAM)
     return branch.moved_by_periods(whole_turns(wrapped - start, periods))
