@@ -343,7 +343,7 @@ public:
         Configuration after = z;
         for (std::size_t i = 0; i < n; ++i) after[i] += step / curve->slope * curve->tangent[i];
         after[joint_] = z[joint_].real() + step;
-        if (!correct_others(after)) return false;
+        if (!correct(after, of_joint_)) return false;
         Complex moved = 0.0;
         for (std::size_t i = 0; i < n; ++i) moved += std::conj(curve->tangent[i]) * (after[i] - z[i]);
         if (std::abs(moved) >= radius) return false;
@@ -374,38 +374,13 @@ public:
 private:
     // Newton's method at right angles to ``along``, in place; false where it does not converge.
     bool correct(Configuration& z, const Configuration& along) const {
-        return converges(z, [&](const Linearization& at) {
+        for (int i = 0; i < sheets::corrections; ++i) {
+            const Linearization at = linearize(z);
             auto columns = border(at.screws, along);
             const auto& [rotation, translation] = at.error;
             std::array<Complex, 7> error{rotation[0],    rotation[1],    rotation[2], translation[0],
                                          translation[1], translation[2], 0.0};
-            return bifurc::least_squares(columns, error, 0.0);
-        });
-    }
-
-    // The same where the joint stands still: of the other joints alone.
-    bool correct_others(Configuration& z) const {
-        return converges(z, [&](const Linearization& at) {
-            std::array<std::array<Complex, 6>, n - 1> columns;
-            for (std::size_t j = 0; j < n; ++j) {
-                if (j != joint_) columns[j < joint_ ? j : j - 1] = entries(at.screws[j]);
-            }
-            auto error = entries(at.error);
-            const auto moved = bifurc::least_squares(columns, error, 0.0);
-            Configuration step{};
-            for (std::size_t j = 0; j < n; ++j) {
-                if (j != joint_) step[j] = moved[j < joint_ ? j : j - 1];
-            }
-            return step;
-        });
-    }
-
-    // Whether the iteration with steps (n) from the linearization at a configuration, moved in place,
-    // converges.
-    template <class StepAt>
-    bool converges(Configuration& z, const StepAt& step_at) const {
-        for (int i = 0; i < sheets::corrections; ++i) {
-            const Configuration step = step_at(linearize(z));
+            const Configuration step = bifurc::least_squares(columns, error, 0.0);
             double largest = 0.0;
             for (std::size_t j = 0; j < n; ++j) {
                 const double square = std::norm(step[j]);
@@ -452,7 +427,7 @@ private:
         Configuration after = z, moved;
         for (std::size_t i = 0; i < n; ++i) after[i] += step * (slope[i] - 0.5 * step * bend[i]);
         after[joint_] = z[joint_] + step;
-        if (!correct_others(after)) return false;
+        if (!correct(after, of_joint_)) return false;
         for (std::size_t i = 0; i < n; ++i) moved[i] = after[i] - z[i];
         if (!(weighted_size(moved, ball) < ball.radius)) return false;  // in the ball there is only one
         z = after;
