@@ -21,11 +21,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bifurc.branch import Branch, Outcome
+from bifurc.branch import Branch
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.jumps import repeats_itself
 from bifurc.curves.misclosure import largest_of, misclosures
 from bifurc.curves.monitor import NODES
+from bifurc.curves.near_motion_trace import NearMotionTrace, NearSurface, bridges_of
 from bifurc.curves.valley import correct_to_valley
 from bifurc.curves.valley_problem import ValleyProblem
 from bifurc.decisions import (
@@ -51,10 +52,6 @@ PRECISION, FINEST, COARSEST = 1e-2, 1e-13, 1e-10
 # start, in scales, after so many steps onto it.
 BESIDE, CORRECTIONS = 0.1, 5
 CLEAR = 30.0  # square of the smallest regular singular value over the misclosure
-SPREAD = 4.0  # times the root of the residual: how far a point may lie beside it there
-# Times the tolerance over the smallest regular singular value: how far elsewhere. Times
-# the tolerance: residuals of pieces that are no bridges.
-KNOWN, EXACT = 20.0, 30.0
 # How far from a sample a solution may lie: times the distance of its neighbours, or over
 # the scale.
 REACH, NEARBY = 2.0, 1e-3
@@ -64,65 +61,11 @@ ROUNDS = 30  # of Newton's method for a place where the misclosure passes zero
 # Rounds in which the place on a bridge is looked for where most is singular, and the
 # places that are looked at in each.
 NARROWINGS, LOOKS = 5, 33
-UNFINISHED = (Outcome.STALLED, Outcome.STEP_LIMIT, Outcome.TIME_LIMIT)
 LOCATED = 1e-9  # over the scale: error of the places where the misclosure is extreme
 STEPS = 6  # of Newton's method across a surface
 FAR = 0.2  # of the scale: so far beside a point it is seen whether the surface goes on
 STAYS = 0.5  # share of that which correction must leave
 TRIED = 12  # points from which that is looked at
-
-
-@dataclass(frozen=True)
-class NearMotionTrace:
-    """A curve along which a system is nearly solved.
-
-    ``branch``: as far as it nearly closes, or all round if it is closed; where it
-    ``is_short`` it counts as none. The least residuals across it go up to
-    ``misclosure``, over the magnitude; where it passes a place at which the rank drops
-    it ``is_blurred`` there, and what it misses is looked for before and beyond. Where
-    it ``is_repeated`` it passes stretches twice, as no curve does: it went over to
-    another one, and its length is wrong. At the ``assemblies`` (k, n) on it the system
-    is solved. ``tolerance``: how closely it was followed.
-    """
-
-    branch: Branch
-    misclosure: float
-    is_short: bool
-    is_blurred: bool
-    is_repeated: bool
-    assemblies: np.ndarray
-    tolerance: float
-
-    @property
-    def has_loose_end(self) -> bool:
-        """Whether it stops where it neither closes nor misses too much."""
-        return self.branch.outcome in UNFINISHED
-
-    def runs_through(self, problem: Problem, points: np.ndarray) -> np.ndarray:
-        """Which of the points (k, n) lie on it, as far as it is known there."""
-        within = SPREAD * np.sqrt(self.misclosure * problem.domain.scale)
-        distance, s = self.branch.nearest(
-            points, within=max(within, problem.domain.scale)
-        )
-        number = np.searchsorted(self.branch.breaks, s, side="right") - 1
-        number = np.clip(number, 0, len(self.branch.pieces) - 1)
-        misses = self.branch.residuals[number]
-        is_bridge = bridges_of(self.branch, self.tolerance)[number]
-        weakest = singular_values(problem, points)[:, max(problem.n - 2, 0)]
-        known = KNOWN * self.tolerance / np.maximum(weakest, TINY)
-        reach = np.where(
-            is_bridge, SPREAD * np.sqrt(misses * problem.domain.scale), known
-        )
-        reach = np.clip(reach, is_same_point.threshold * problem.domain.scale, within)
-        is_on: np.ndarray = distance < reach
-        return is_on
-
-
-def bridges_of(branch: Branch, tolerance: float) -> np.ndarray:
-    """Which pieces (p,) of a near motion followed to a ``tolerance`` lead straight on
-    where the valley is not single."""
-    is_bridge: np.ndarray = branch.residuals > EXACT * tolerance
-    return is_bridge
 
 
 def trace_near_motion(
@@ -391,19 +334,6 @@ def _solve(problem: Problem, points: np.ndarray, longest: np.ndarray) -> np.ndar
 
 
 # --- near surfaces --------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class NearSurface:
-    """A component of a ``dimension`` all over which a system is nearly solved.
-
-    The least residuals across it, at the places looked at, go up to ``misclosure``,
-    over the magnitude. ``sample`` (n,) is one of these places.
-    """
-
-    dimension: int
-    misclosure: float
-    sample: np.ndarray
 
 
 def near_surfaces(

@@ -14,7 +14,8 @@ from bifurc.decisions import (
 )
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import relative_gaps, relative_jacobians
-from bifurc.search.findings import PointSighting, Run
+from bifurc.search.findings import Run
+from bifurc.search.records import PointSighting
 from bifurc.singular.classify import classify_from_nearby, classify_singular_point
 from bifurc.singular.locate import (
     MOST_FOR_GERM,

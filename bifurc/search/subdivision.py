@@ -28,7 +28,7 @@ from bifurc.equations.tape import Operation
 from bifurc.function_problem import EquationProblem
 from bifurc.problem import Problem, relative_gaps
 from bifurc.search.answer.completeness import SearchClaim
-from bifurc.search.findings import TracedBranch
+from bifurc.search.records import TracedBranch
 from bifurc.seeds import Audit
 from bifurc.singular.point import CROSSING, LONE_POINT, SingularPoint
 

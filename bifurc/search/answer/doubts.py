@@ -34,7 +34,8 @@ from bifurc.numerics.blur import (
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem, relative_gaps
 from bifurc.search.answer.completeness import SearchDoubt
-from bifurc.search.findings import Findings, TracedBranch
+from bifurc.search.findings import Findings
+from bifurc.search.records import TracedBranch
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
 
