@@ -71,6 +71,7 @@ def _map_mechanism(mechanism: Mechanism, search: Callable[..., Atlas]) -> Atlas:
     """The transition map of a mechanism in its own unknowns: solved as that of its loop,
     where it is a single one of revolute joints."""
     # they import networkx, which a loop does not need
+    from linkages.closure.mechanism_closure import MechanismClosure
     from linkages.mechanisms.mechanism import Mechanism
     from linkages.readout.loop_atlas import in_joint_variables
     from linkages.readout.readout import Readout
@@ -84,7 +85,8 @@ def _map_mechanism(mechanism: Mechanism, search: Callable[..., Atlas]) -> Atlas:
     if readout.single_loop is not None:
         atlas = _map_loop(Linkage(readout.single_loop.loop), search)
         return in_joint_variables(atlas, readout)
-    return _label_mechanism(search(readout.closure), readout.closure)
+    closure = MechanismClosure(mechanism, structure=readout.structure)
+    return _label_mechanism(search(closure), closure)
 
 
 def name_atlas(atlas: Atlas, linkage: Linkage) -> Atlas:

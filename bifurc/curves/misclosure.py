@@ -19,7 +19,7 @@ from bifurc.branch import Branch
 from bifurc.curves.monitor import NODES
 from bifurc.decisions import closes_to_rounding, is_plainly_closed
 from bifurc.numerics.null_spaces import Decomposition, decompose
-from bifurc.problem import PreciseResidual, Problem, relative_gaps, relative_residuals
+from bifurc.system import PreciseResidual, System, relative_gaps, relative_residuals
 
 if TYPE_CHECKING:
     import mpmath
@@ -33,7 +33,7 @@ ROUNDS = 3  # Gauss-Newton steps in many digits; each gains ten of them or more
 FLOOR = 1e-12  # singular values below this share of the largest are taken for that
 
 
-def misclosures(problem: Problem, points: np.ndarray) -> np.ndarray:
+def misclosures(problem: System, points: np.ndarray) -> np.ndarray:
     """The misclosure (k,), over the magnitude, at points (k, n) of a curve."""
     decomposition = decompose(problem, points)
     left_over = decomposition.left[:, :, problem.n - 1 :]
@@ -42,7 +42,7 @@ def misclosures(problem: Problem, points: np.ndarray) -> np.ndarray:
     return sizes
 
 
-def visible_misclosure(problem: Problem, points: np.ndarray) -> float:
+def visible_misclosure(problem: System, points: np.ndarray) -> float:
     """The largest misclosure that doubles see at points (k, n) of a curve, 0 where it
     is rounding."""
     if not len(points) or is_plainly_closed(
@@ -53,7 +53,7 @@ def visible_misclosure(problem: Problem, points: np.ndarray) -> float:
     return 0.0 if closes_to_rounding(largest) else largest
 
 
-def largest_misclosure(problem: Problem, branch: Branch) -> float:
+def largest_misclosure(problem: System, branch: Branch) -> float:
     """The largest misclosure along a curve; rounding, some 1e-15, where it is a curve
     of solutions.
 
@@ -69,7 +69,7 @@ def largest_misclosure(problem: Problem, branch: Branch) -> float:
     return largest_of(problem, candidates, misclosures(problem, candidates))
 
 
-def largest_of(problem: Problem, points: np.ndarray, seen: np.ndarray) -> float:
+def largest_of(problem: System, points: np.ndarray, seen: np.ndarray) -> float:
     """The largest misclosure at points (k, n), of which doubles see ``seen`` (k,);
     measured in more digits where these do not tell."""
     largest = float(seen.max(initial=0.0))
@@ -82,7 +82,7 @@ def largest_of(problem: Problem, points: np.ndarray, seen: np.ndarray) -> float:
     return max(_precise_misclosures(problem, residual, worst, problem.n - 1))
 
 
-def misclosure_at(problem: Problem, point: np.ndarray, rank: int) -> float:
+def misclosure_at(problem: System, point: np.ndarray, rank: int) -> float:
     """What no move removes of F near a point (n,) where F' has a ``rank``: in many
     digits where the problem has them, else the residual."""
     residual = problem.precise_residual()
@@ -92,7 +92,7 @@ def misclosure_at(problem: Problem, point: np.ndarray, rank: int) -> float:
 
 
 def _precise_misclosures(
-    problem: Problem, residual: PreciseResidual, points: np.ndarray, rank: int
+    problem: System, residual: PreciseResidual, points: np.ndarray, rank: int
 ) -> list[float]:
     """The misclosures next to points (k, n) where F' has a ``rank``, in `DIGITS`
     digits.
@@ -116,7 +116,7 @@ def _precise_misclosures(
 
 
 def _after_steps(
-    problem: Problem, residual: PreciseResidual, point: np.ndarray, inverse: np.ndarray
+    problem: System, residual: PreciseResidual, point: np.ndarray, inverse: np.ndarray
 ) -> np.ndarray:
     """F (m,), over the magnitude, after Gauss-Newton steps from a point (n,) by an
     ``inverse`` (n, m) of F'."""

@@ -27,7 +27,6 @@ from bifurc.curves.jumps import repeats_itself
 from bifurc.curves.misclosure import largest_of, misclosures
 from bifurc.curves.monitor import NODES
 from bifurc.curves.near_motion_trace import NearMotionTrace, NearSurface, bridges_of
-from bifurc.curves.valley import correct_to_valley
 from bifurc.curves.valley_problem import ValleyProblem
 from bifurc.decisions import (
     closes_to_rounding,
@@ -38,11 +37,16 @@ from bifurc.decisions import (
 )
 from bifurc.limits import Deadline
 from bifurc.numerics.corrector import correct_across
-from bifurc.numerics.null_spaces import decompose, newton_in_rank, null_spaces
+from bifurc.numerics.null_spaces import (
+    correct_to_valley,
+    decompose,
+    newton_in_rank,
+    null_spaces,
+)
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem, relative_gaps, relative_jacobians
 from bifurc.settings import TraceSettings
+from bifurc.system import System, relative_gaps, relative_jacobians
 
 LONGEST = 200.0  # scales along which a near motion is followed
 # Of the misclosure: tolerance of the pieces, within these bounds. Pieces that may miss as
@@ -69,7 +73,7 @@ TRIED = 12  # points from which that is looked at
 
 
 def trace_near_motion(
-    problem: Problem,
+    problem: System,
     start: np.ndarray,
     settings: TraceSettings,
     deadline: Deadline | None = None,
@@ -101,7 +105,7 @@ def trace_near_motion(
     )
 
 
-def _beside(problem: Problem, start: np.ndarray) -> np.ndarray:
+def _beside(problem: System, start: np.ndarray) -> np.ndarray:
     """Points (2, n) of the valley a little away from ``start`` (n,), to both sides."""
     _, right = null_spaces(problem, start[None])
     step = BESIDE * problem.domain.scale * right[0, -1]
@@ -234,9 +238,7 @@ def _course(valley: ValleyProblem, branch: Branch, tolerance: float) -> _Course:
     )
 
 
-def _slopes_at(
-    problem: Problem, points: np.ndarray, tangents: np.ndarray
-) -> np.ndarray:
+def _slopes_at(problem: System, points: np.ndarray, tangents: np.ndarray) -> np.ndarray:
     """Half the slope (k,) of the squared misclosure along a curve with unit
     ``tangents`` (k, n) at points (k, n)."""
     at = decompose(problem, points)
@@ -261,7 +263,7 @@ class _Zeros:
     blur: np.ndarray
 
 
-def _assemblies(problem: Problem, course: _Course) -> np.ndarray:
+def _assemblies(problem: System, course: _Course) -> np.ndarray:
     """Solutions (k, n) on a near motion. Between two of them the misclosure is more
     than rounding."""
     zeros = _zeros(problem, course)
@@ -282,7 +284,7 @@ def _assemblies(problem: Problem, course: _Course) -> np.ndarray:
     return separate
 
 
-def _zeros(problem: Problem, course: _Course) -> _Zeros:
+def _zeros(problem: System, course: _Course) -> _Zeros:
     """Solutions next to where the misclosure is least."""
     lowest = np.sort(course.roots_of_slope(1.0) % course.branch.length)
     if not len(lowest):
@@ -301,7 +303,7 @@ def _zeros(problem: Problem, course: _Course) -> _Zeros:
 
 
 def _are_apart(
-    problem: Problem, heights: np.ndarray, zeros: _Zeros, one: int, other: int
+    problem: System, heights: np.ndarray, zeros: _Zeros, one: int, other: int
 ) -> bool:
     """Whether two zeros, ``other`` being the next along the near motion, are two in
     doubles: there is a misclosure between them, and they are not one place."""
@@ -315,7 +317,7 @@ def _are_apart(
     return not is_one_place and not closes_to_rounding(wall)
 
 
-def _solve(problem: Problem, points: np.ndarray, longest: np.ndarray) -> np.ndarray:
+def _solve(problem: System, points: np.ndarray, longest: np.ndarray) -> np.ndarray:
     """Points (k, n) after Gauss-Newton steps of full rank, none longer than
     ``longest`` (k,)."""
     solutions = points.copy()
@@ -337,7 +339,7 @@ def _solve(problem: Problem, points: np.ndarray, longest: np.ndarray) -> np.ndar
 
 
 def near_surfaces(
-    problem: Problem, points: np.ndarray
+    problem: System, points: np.ndarray
 ) -> tuple[list[NearSurface], np.ndarray]:
     """The near surfaces, one for each dimension, on which some of the points (k, n) lie
     at which the system is nearly solved; and which of the points lie on none (k,)."""
@@ -356,7 +358,7 @@ def near_surfaces(
     return surfaces, is_left
 
 
-def _weak_directions(problem: Problem, points: np.ndarray) -> np.ndarray:
+def _weak_directions(problem: System, points: np.ndarray) -> np.ndarray:
     """How many singular values (k,) are small beside the root of what points (k, n)
     miss."""
     if not len(points):
@@ -370,7 +372,7 @@ def _weak_directions(problem: Problem, points: np.ndarray) -> np.ndarray:
     return counts
 
 
-def _is_surface(problem: Problem, places: np.ndarray, dimension: int) -> bool:
+def _is_surface(problem: System, places: np.ndarray, dimension: int) -> bool:
     """Whether about most of the places (k, n) the system is nearly solved in all weak
     directions, as far as `FAR`."""
     tried = places[:TRIED]

@@ -9,7 +9,7 @@ import numpy as np
 from bifurc.branch import Branch, Outcome
 from bifurc.decisions import is_same_point
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem
+from bifurc.system import System
 
 # Times the root of the residual: how far a point may lie beside a near motion on a bridge.
 SPREAD = 4.0
@@ -46,7 +46,7 @@ class NearMotionTrace:
         """Whether it stops where it neither closes nor misses too much."""
         return self.branch.outcome in UNFINISHED
 
-    def runs_through(self, problem: Problem, points: np.ndarray) -> np.ndarray:
+    def runs_through(self, problem: System, points: np.ndarray) -> np.ndarray:
         """Which of the points (k, n) lie on it, as far as it is known there."""
         within = SPREAD * np.sqrt(self.misclosure * problem.domain.scale)
         distance, s = self.branch.nearest(

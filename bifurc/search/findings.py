@@ -20,12 +20,13 @@ from bifurc.decisions import (
 )
 from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem, relative_gaps
+from bifurc.problem import Problem
 from bifurc.search.records import Components, PointSighting, RigidAssembly, TracedBranch
 from bifurc.search.seed_book import Fate, SeedBook, SeedFate, reach_of_places
 from bifurc.seeds import Audit
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import SingularPoint
+from bifurc.system import relative_gaps
 
 if TYPE_CHECKING:
     from bifurc.singular.germ import Germ  # mpmath takes long to import

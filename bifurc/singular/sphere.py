@@ -23,8 +23,9 @@ from bifurc.decisions import (
 )
 from bifurc.numerics.directions import unit_vectors
 from bifurc.numerics.singular_values import factors_of, singular_values
-from bifurc.problem import Problem, relative_jacobians, relative_residuals
+from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions
+from bifurc.system import relative_jacobians, relative_residuals
 
 UNSEEN = -1  # dimension of a section that could not be made
 

@@ -17,7 +17,7 @@ import numpy as np
 from networkx.utils import UnionFind
 
 from bifurc.decisions import is_start_solved
-from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.closure.mechanism_system import MechanismSystem
 from linkages.decisions import is_parallel_axis
 from linkages.files.misfits import check_moved
 from linkages.mechanisms.joint import Joint, JointKind
@@ -120,7 +120,7 @@ def read_fold(text: str, name: str) -> Mechanism:
 def _folded(mechanism: Mechanism, angles: Mapping[str, float]) -> Mechanism:
     """The mechanism in the closed state nearest to fold ``angles`` (rad), by joint,
     from the flat one."""
-    problem = MechanismClosure(mechanism)
+    problem = MechanismSystem(mechanism)
     start = np.array([angles[name] for name in problem.domain.names])
     points, gaps = problem.project(start[None])
     if not is_start_solved(float(gaps[0])):
