@@ -7,14 +7,17 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum, StrEnum
 from functools import cached_property
+from html import escape
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from bifurc.errors import BifurcError
 from linkages.closed_forms.closed_form import ClosedForm
+from linkages.closed_forms.form_table import closed_form, form_tables
 from linkages.construction.equations import equation_gaps
 from linkages.construction.numbers import Number
+from linkages.geometry_table import geometry_html, geometry_rows
 from linkages.loop import Loop
 
 Guesses: TypeAlias = Callable[[np.ndarray], Iterable[Mapping[str, float]]]
@@ -126,8 +129,8 @@ class Entry:
     `Loop`, or raises `GeometryError` that says by how much a condition is violated.
     ``conditions`` state the geometry; ``facts`` are the published invariants that the
     tests assert, such as ``mobility`` or ``forms``. ``patterns`` takes the same
-    parameters (floats) and returns the named forms. ``formulas`` takes the name and
-    returns the closed forms, and may import sympy.
+    parameters (floats) and returns the named forms. The closed forms stand in the table of
+    the ``family``.
 
     Most parameters stand in the table of a member as they are, and recognition reads
     them there. For the others ``guesses`` maps a table (3, n) in normal form (lengths
@@ -138,13 +141,13 @@ class Entry:
     """
 
     name: str
+    family: str
     title: str
     source: str
     construct: Callable[..., Loop]
     parameters: tuple[Parameter, ...]
     conditions: tuple[Condition, ...] = ()
     patterns: Callable[..., tuple[FormPattern, ...]] | None = None
-    formulas: Callable[[str], tuple[ClosedForm, ...]] | None = None
     guesses: Guesses | None = None
     scan: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     relations: tuple[Relation, ...] = ()
@@ -160,7 +163,8 @@ class Entry:
     @cached_property
     def closed_forms(self) -> tuple[ClosedForm, ...]:
         """The closed forms of the motion; none where the sources give none."""
-        return () if self.formulas is None else self.formulas(self.name)
+        tables = form_tables(self.family).get(self.name, [])
+        return tuple(closed_form(self.name, table) for table in tables)
 
     def complete(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """``values`` completed by the defaults; raises `UnknownParameterError`."""
@@ -183,3 +187,43 @@ class Entry:
         """Random parameters within their ranges (the constructor may still refuse
         them)."""
         return {p.name: float(rng.uniform(p.low, p.high)) for p in self.parameters}
+
+
+# --- what is mapped -------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Linkage:
+    """A loop with the ``patterns`` of the forms that its source names."""
+
+    loop: Loop
+    patterns: tuple[FormPattern, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """What the linkage is called, in the catalogue or in its file."""
+        return self.loop.name
+
+    @property
+    def extent(self) -> float:
+        """The characteristic length."""
+        return self.loop.characteristic_length
+
+    def __repr__(self) -> str:
+        if not self.patterns:
+            return repr(self.loop)
+        return f"{self.loop!r}\n  {self._named_forms()}"
+
+    def _repr_html_(self) -> str:
+        """The linkage as notebooks show it."""
+        loop = self.loop
+        title = f"{loop.name or 'Linkage'}: {loop.n} joints"
+        rows = geometry_rows(loop.lengths, loop.twists, loop.offsets)
+        parts = [f"<p><b>{escape(title)}</b></p>", geometry_html(rows)]
+        if self.patterns:
+            parts.append(f"<p>{escape(self._named_forms())}</p>")
+        return "".join(parts)
+
+    def _named_forms(self) -> str:
+        names = [pattern.name for pattern in self.patterns]
+        return f"forms named by the source: {', '.join(names)}"

@@ -55,8 +55,6 @@ LONGER = {
     ],
     "formulas, written out as their source has them": [
         "bifurc.singular.sphere._circle_section",
-        "linkages.families.bricard._closed_form",
-        "linkages.families.bricard.closure_equations",
         "linkages.families.bricard_collapsible.doubly_collapsible_octahedral",
         "linkages.printing.assembly.link_corners",
         "linkages.readout.poses._displacement",

@@ -24,9 +24,14 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.jumps import repeats_itself
-from bifurc.curves.misclosure import largest_of, misclosures
+from bifurc.curves.misclosure import (
+    NearMotionTrace,
+    NearSurface,
+    bridges_of,
+    largest_of,
+    misclosures,
+)
 from bifurc.curves.monitor import NODES
-from bifurc.curves.near_motion_trace import NearMotionTrace, NearSurface, bridges_of
 from bifurc.curves.valley_problem import ValleyProblem
 from bifurc.decisions import (
     closes_to_rounding,
@@ -45,6 +50,7 @@ from bifurc.numerics.null_spaces import (
 )
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
+from bifurc.problem import Problem
 from bifurc.settings import TraceSettings
 from bifurc.system import System, relative_gaps, relative_jacobians
 
@@ -73,7 +79,7 @@ TRIED = 12  # points from which that is looked at
 
 
 def trace_near_motion(
-    problem: System,
+    problem: Problem,
     start: np.ndarray,
     settings: TraceSettings,
     deadline: Deadline | None = None,

@@ -94,6 +94,14 @@ def tangent_planes(problem: System, points: np.ndarray, near: np.ndarray) -> np.
     return planes
 
 
+def cosines_between_planes(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Cosines (..., d), decreasing, of the principal angles between spaces with
+    orthonormal bases (..., n, d)."""
+    products = np.swapaxes(one, -1, -2) @ other
+    cosines: np.ndarray = np.linalg.svd(products, compute_uv=False)
+    return cosines
+
+
 def _padded(sigma: np.ndarray, n: int) -> np.ndarray:
     """Singular values (..., n), zeros after those (..., min(m, n)) of an m x n
     matrix."""

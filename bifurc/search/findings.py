@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 import numpy as np
 
 from bifurc.branch import Branch, Outcome
-from bifurc.curves.near_motion_trace import NearMotionTrace, NearSurface
+from bifurc.curves.misclosure import NearMotionTrace, NearSurface
 from bifurc.decisions import (
     Decision,
     is_lost_in_rounding,

@@ -19,6 +19,7 @@ from bifurc.decisions import (
 from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
+from bifurc.search.answer.completeness import asks_for_more_starts
 from bifurc.search.answer.meeting_points import ends_at
 from bifurc.search.branches.branch_examination import BranchExaminer
 from bifurc.search.branches.branch_parts import joined_through
@@ -37,7 +38,6 @@ from bifurc.search.records import Start, half_branch_starts
 from bifurc.search.seed_book import Fate, SeedFate
 from bifurc.search.seed_fates import SeedJudge
 from bifurc.search.solutions import sharpened, with_weak_solutions
-from bifurc.search.starts import asks_for_more_starts
 from bifurc.search.subdivision import (
     Subdivision,
     audit_of,

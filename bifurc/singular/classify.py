@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from bifurc.decisions import settles
+from bifurc.problem import Problem
 from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.point import CROSSING, LONE_POINT, Invariants, SingularPoint
 from bifurc.singular.second_order import second_order_tangents
 from bifurc.singular.sphere import UNSEEN, Section, section
-from bifurc.system import System
 
 if TYPE_CHECKING:
     from bifurc.singular.germ import Germ  # mpmath takes long to import
@@ -28,7 +28,7 @@ FARTHER_RADII = (0.16, 0.32)
 
 
 def classify_singular_point(
-    problem: System,
+    problem: Problem,
     located: LocatedPoint,
     within: float = np.inf,
     germ: Germ | None = None,
@@ -76,7 +76,7 @@ def classify_singular_point(
 
 
 def _second_order_invariants(
-    problem: System, point: SingularPoint
+    problem: Problem, point: SingularPoint
 ) -> Invariants | None:
     """The invariants of a point on curves to which one equation on a plane leads, where
     its second order tells all."""
@@ -88,7 +88,7 @@ def _second_order_invariants(
 
 
 def classify_from_nearby(
-    problem: System, point: SingularPoint, within: float
+    problem: Problem, point: SingularPoint, within: float
 ) -> SingularPoint | None:
     """A singular point classified again from no farther away than ``within``: by clear
     sections, else by its tangents of second order; None where rounding hides them."""
@@ -127,7 +127,7 @@ class _Sections(NamedTuple):
 
 
 def _choose_sections(
-    problem: System, located: LocatedPoint, within: float, count: int | None = None
+    problem: Problem, located: LocatedPoint, within: float, count: int | None = None
 ) -> _Sections:
     """The first sections, of radii up to ``within``, that agree and are clear; else the
     first that agree; else those of the first radius. Where the ``count`` of half-branches
@@ -167,7 +167,7 @@ def _is_better(cut: _Sections, best: _Sections) -> bool:
 
 
 def _cut(
-    problem: System, located: LocatedPoint, radius: float, count: int | None
+    problem: Problem, located: LocatedPoint, radius: float, count: int | None
 ) -> _Sections:
     """The sections at a ``radius`` over the problem's scale, and at half of it; the
     ``count`` of half-branches may be known."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from bifurc.decisions import has_no_form, is_zero_form
-from bifurc.numerics.directions import unit_vectors
+from bifurc.numerics.binary_forms import unit_vectors
 from bifurc.numerics.singular_values import factors_of
 from bifurc.system import System, hessian_at, relative_jacobians
 

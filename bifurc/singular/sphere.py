@@ -21,7 +21,7 @@ from bifurc.decisions import (
     is_on_sphere,
     is_same_half_branch,
 )
-from bifurc.numerics.directions import unit_vectors
+from bifurc.numerics.binary_forms import unit_vectors
 from bifurc.numerics.singular_values import factors_of, singular_values
 from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions

@@ -11,10 +11,10 @@ from linkages.app.choice import choose_held, require_table
 from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.options import HoldOptions, SearchOptions
 from linkages.app.output import StatusLine
-from linkages.app.subject import as_subject, subject_at
+from linkages.entry import Linkage
 from linkages.labels import NoLinkageError
-from linkages.linkage import Linkage
 from linkages.mapping import map_linkage
+from linkages.subject import as_subject, subject_at
 
 if TYPE_CHECKING:
     from bifurc.routes.route import Route
@@ -101,7 +101,7 @@ def route_between(atlas: Atlas, start: str, goal: str) -> Route:
     from bifurc.routes.route import find_route
 
     try:
-        return find_route(atlas, start, goal, problem=subject_at(atlas).equations())
+        return find_route(atlas, start, goal, problem=subject_at(atlas).closure)
     except RouteError as error:
         raise CommandError(str(error), ExitCode.NO_ROUTE) from None
 

@@ -14,9 +14,9 @@ import numpy as np
 from linkages.app.exit_codes import CommandError
 from linkages.app.options import HoldOptions
 from linkages.catalogue import entry
-from linkages.entry import Entry, Parameter, ParameterKind
+from linkages.entry import Entry, Linkage, Parameter, ParameterKind
 from linkages.file import read_precisely
-from linkages.linkage import Linkage, is_linkage_file, load
+from linkages.linkage import is_linkage_file, load
 from linkages.loop import LARGEST, SMALLEST, Loop
 from linkages.networks.entries import NETWORKS, NetworkEntry
 from linkages.values import GeometryError, check_angle, told_apart
@@ -197,7 +197,10 @@ def hold_joints(text: str, linkage: Linkage | Mechanism, hold: HoldOptions) -> I
         f"{hold.names}: it takes a mechanism with joints by name, and {text} is a "
         "single loop, a table or axes"
     )
-    locked = _with_locks(require_kind(linkage, Mechanism, refusal), hold.locks)
+    mechanism = require_kind(linkage, Mechanism, refusal)
+    values = _read_values(hold.locks, "--lock", mechanism.holds_angle)
+    check_limits(mechanism, values)
+    locked = mechanism.held(values)
     inputs = Inputs(locked) if hold.driver is None else _driven(locked, hold.driver)
     if not hold.is_without_centre:
         return inputs
@@ -218,16 +221,6 @@ def _driven(mechanism: Mechanism, driver: str) -> Inputs:
             f"reference configuration: {names}",
         )
     return Inputs(mechanism.with_locks(held), notes)
-
-
-def _with_locks(mechanism: Mechanism, texts: Sequence[str]) -> Mechanism:
-    """The mechanism with the locks: those of a network are D-H angles of its outer
-    joints."""
-    from linkages.networks.mechanism import NetworkMechanism
-
-    if isinstance(mechanism, NetworkMechanism):
-        return mechanism.with_kinks(read_kinks(texts))
-    return mechanism.with_locks(_read_locks(mechanism, texts))
 
 
 def read_kinks(texts: Sequence[str], option: str = "--lock") -> dict[str, float]:
@@ -255,14 +248,6 @@ def _without_centre(network: NetworkMechanism) -> Inputs:
         names = ", ".join(followers)
         notes += (f"--without-centre: replaced as well, for it does not move: {names}",)
     return Inputs(Linkage(loop), notes)
-
-
-def _read_locks(mechanism: Mechanism, texts: Sequence[str]) -> dict[str, float]:
-    """The values of "J=40", in rad where the variable is an angle."""
-    turns = {one.label for one in mechanism.variables if one.motion.is_turn}
-    values = _read_values(texts, "--lock", lambda label: label in turns)
-    check_limits(mechanism, values)
-    return values
 
 
 def check_limits(mechanism: Mechanism, values: Mapping[str, float]) -> None:

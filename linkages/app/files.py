@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 from bifurc.atlas import Atlas
 from bifurc.files.atomic import replace_files
 from linkages.app.exit_codes import CommandError
-from linkages.app.subject import as_subject
+from linkages.subject import as_subject
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from bifurc.files.table import Variable
-    from linkages.linkage import Linkage
+    from linkages.entry import Linkage
     from linkages.mechanisms.mechanism import Mechanism
 
 

@@ -3,28 +3,52 @@ they bend, with seeds, and with what judges the motions that are traced."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
+from typing import Protocol, TypeAlias
 
 import numpy as np
 
+from bifurc.branch import Branch
 from bifurc.decisions import is_start_solved
 from bifurc.limits import Deadline
+from bifurc.problem import Problem
 from bifurc.seeding import random_seeds, start_region
-from bifurc.seeds import Seeds
+from bifurc.seeds import Audit, Seeds
 from bifurc.system import Curvature
 from linkages.closure import cut_at_limits
 from linkages.closure.curvature import CurvatureBounds
 from linkages.closure.mechanism_system import MechanismSystem
 from linkages.closure.within_limits import brought_within_limits
 from linkages.dyads import slices as dyads
-from linkages.structure.source import ForSubject, Source
+from linkages.structure.structure import Structure
 from linkages.turns import whole_turns
-from linkages.turns.turn_lattice import TurnLattice, turn_lattice
 from linkages.turns.whole_turns import TurnedEnds
 
 NEARLY_CLOSED = 0.2  # the largest residual at which bounds on F'' hold
 MOST_BEYOND = 60  # solutions beyond the limits that are brought back to them
+
+
+class Source(Protocol):
+    """Points ``starts`` (k, n) near solutions, and how sure it is that ``branches`` are
+    all motions, judged in about so many ``seconds``."""
+
+    @property
+    def starts(self) -> np.ndarray:
+        """Points near solutions."""
+
+    def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
+        """What is said of the branches."""
+
+
+# The source of a problem of a structure, drawn with a generator beside so many random
+# starts; None where the method says nothing of such a mechanism.
+ForSubject: TypeAlias = Callable[
+    [Problem, Structure, np.random.Generator, int], Source | None
+]
+
+
 # what gives starts and judges what is traced: the first that applies to a mechanism
 SOURCES: tuple[ForSubject, ...] = (
     dyads.for_subject,
@@ -115,8 +139,3 @@ class MechanismClosure(MechanismSystem):
         rest = count - count // 2
         near = random_seeds(self, rng, rest, region, deadline, homes)
         return anywhere.and_random(near)
-
-    @cached_property
-    def lattice(self) -> TurnLattice:
-        """The whole turns after which every closed configuration is closed again."""
-        return turn_lattice(self.structure)

@@ -18,6 +18,7 @@ from linkages.closure.equations import Equations, write_equations
 from linkages.closure.errors import JointErrors
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.structure.structure import Structure
+from linkages.turns.turn_lattice import TurnLattice, turn_lattice
 
 # unknowns up to which compiled methods with dense matrices take no longer than those in
 # Python: for sections with spheres, and for curves of equations that are not sparse
@@ -112,6 +113,11 @@ class MechanismSystem(NumericalProblem):
             columns += [structure.column_of[k] for k in free]
             columns += structure.embedded.get(number, ())
         return sorted(set(columns))
+
+    @cached_property
+    def lattice(self) -> TurnLattice:
+        """The whole turns after which every closed configuration is closed again."""
+        return turn_lattice(self.structure)
 
     @property
     def reference(self) -> np.ndarray:

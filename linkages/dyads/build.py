@@ -85,7 +85,11 @@ class Builder:
             number = next(k for k in left if not poses.keys().isdisjoint(self.ends[k]))
             left.remove(number)
             base, moved = self.ends[number]
-            motion = self._pair_motion(number, values)
+            motion: Any = self.geometry.rest
+            for k in self.mechanism.pairs[number].variables:
+                of_variable = self.mechanism.variables[k].motion
+                step = self.geometry.motion(of_variable, values[k])
+                motion = motion.after(step)
             if moved not in poses:
                 poses[moved] = poses[base].after(motion)
             elif base not in poses:
@@ -103,13 +107,6 @@ class Builder:
                 variables[number].locked is None for number in pairs[known].variables
             )
         }
-
-    def _pair_motion(self, pair: int, values: Sequence[float]) -> Any:
-        pose: Any = self.geometry.rest
-        for number in self.mechanism.pairs[pair].variables:
-            motion = self.mechanism.variables[number].motion
-            pose = pose.after(self.geometry.motion(motion, values[number]))
-        return pose
 
     # --- steps ------------------------------------------------------------------------
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from linkages.decisions import is_degenerate_dyad
 from linkages.mechanisms.joint import Motion
+from linkages.structure.placement import axes_along
 
 # of the square of a length, over that of the mechanism: a circle that is touched. It
 # costs starts only: what does not close is left out later.
@@ -138,10 +139,7 @@ class PlaneGeometry:
         self.normal = normal
         self.size = size
         self.rest = AT_REST
-        other = np.eye(3)[np.argmin(np.abs(normal))]
-        first = np.cross(other, normal)
-        first /= np.linalg.norm(first)
-        self._axes = np.array([first, np.cross(normal, first)])
+        self._axes = axes_along(normal)[:2]
 
     def motion(self, motion: Motion, value: float) -> PlanePose:
         """The displacement that a joint variable makes."""

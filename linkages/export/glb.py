@@ -10,7 +10,8 @@ import numpy as np
 
 from bifurc.figures.style import COLORS
 from linkages.export.gltf import BinaryGltf
-from linkages.export.model import LinkageModel, Motion, Poses, Symbol
+from linkages.export.model import LinkageModel, Motion, Poses
+from linkages.links.parts import Symbol
 from linkages.mechanisms.joint import Shape
 from linkages.values import GeometryError
 

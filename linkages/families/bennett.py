@@ -10,19 +10,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 
-from linkages.closed_forms.closed_form import (
-    ClosedForm,
-    constant,
-    joint,
-    only,
-    reciprocal,
-    signed,
-    tangent,
-)
 from linkages.construction.conditions import (
     bennett_length,
     require_positive,
@@ -87,7 +77,7 @@ def bennett_lb_2(
     return _loop(a, alpha, beta, b, beta - pi_like(alpha, beta))
 
 
-# --- form and closed form
+# --- forms
 
 
 def _patterns(
@@ -119,51 +109,24 @@ def _patterns(
     return patterns
 
 
-def _formulas(
-    sign: int, is_quotient_of_sums: bool, equations: str, linkage: str
-) -> tuple[ClosedForm, ...]:
-    """The closed form with t1 t2 = (v + u)/(v - u) or (1 + u v)/(1 - u v), u and v being
-    the half tangents of alpha and beta; ``sign`` as in `_patterns`."""
-    u = tangent("alpha")
-    v = tangent("beta")
-    product = (1 + u * v) / (1 - u * v)
-    if is_quotient_of_sums:
-        product = (v + u) / (v - u)
-    first = joint(1)
-    second = reciprocal(first, constant("m"))
-    form = ClosedForm(
-        linkage,
-        "Bennett form",
-        "Song 2013, eq. " + equations,
-        ("alpha", "beta"),
-        only(first, second, signed(sign, first), signed(sign, second)),
-        {"m": product},
-    )
-    return (form,)
-
-
 ENTRIES = read_entries(
     "bennett",
     {
         "bennett": Model(
             bennett,
             _patterns(OPPOSITE, lambda beta: beta),
-            partial(_formulas, OPPOSITE, True, "(2.2.3), (2.2.4)"),
         ),
         "bennett-ab-2": Model(
             bennett_ab_2,
             _patterns(OPPOSITE, lambda beta: math.pi - beta),
-            partial(_formulas, OPPOSITE, False, "(2.2.4) with (2.2.18)"),
         ),
         "bennett-line-symmetric": Model(
             bennett_line_symmetric,
             _patterns(ALIKE, lambda beta: -beta),
-            partial(_formulas, ALIKE, False, "(2.2.14)"),
         ),
         "bennett-lb-2": Model(
             bennett_lb_2,
             _patterns(ALIKE, lambda beta: beta - math.pi),
-            partial(_formulas, ALIKE, True, "(2.2.14) with (2.2.17)"),
         ),
     },
 )

@@ -17,7 +17,7 @@ from linkages.files.figures import (
 )
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.origin import counted_from_near, origin_of
-from linkages.values import GeometryError, check_number, quoted
+from linkages.values import checked_list, checked_number, require
 
 Content: TypeAlias = Mapping[str, Any]
 Bars: TypeAlias = Figure[complex, complex]
@@ -44,8 +44,8 @@ def read_bars(content: Content, name: str) -> Mechanism:
     figure = read_figure(content, BARS, points)
     places = _assembled(figure)
     for bar in figure.pieces:
-        if places[bar.end] == places[bar.start]:
-            raise GeometryError(f"bar {bar.name}", "of length 0", "longer")
+        is_longer = places[bar.end] != places[bar.start]
+        require(is_longer, f"bar {bar.name}", "of length 0", "longer")
     joints = joints_of_figure(
         figure,
         places,
@@ -63,18 +63,13 @@ def read_bars(content: Content, name: str) -> Mechanism:
 
 def _complex(what: str, row: object) -> complex:
     """Two numbers of a file: a place, or the ratio r of start + r (end - start)."""
-    if not isinstance(row, list) or len(row) != 2:
-        raise GeometryError(what, quoted(row), "a list of two numbers")
-    for value in row:
-        check_number(what, value)
-    return complex(float(row[0]), float(row[1]))
+    row = checked_list(what, row, "a list of two numbers", (2,))
+    return complex(*(checked_number(what, value) for value in row))
 
 
 def _length(what: str, value: Any) -> float:
-    check_number(what, value)
-    length = float(value)
-    if not length > 0:
-        raise GeometryError(what, length, "positive")
+    length = checked_number(what, value)
+    require(length > 0, what, length, "positive")
     return length
 
 
@@ -102,25 +97,27 @@ def _assembled(figure: Bars) -> dict[str, complex]:
         return places
     places = _least_squares(figure)
     misfits = np.abs(_misfits(figure, places))
-    if not is_bar_assembled(float(misfits.max()), size):
-        given = [bar for bar in figure.pieces if bar.measure is not None]
-        worst = given[int(np.argmax(misfits))]
-        allowed = (
-            "such that the bars can be assembled next to the points; as near as they "
-            f"come, bar {worst.name} misses its length by {misfits.max():.3g}"
-        )
-        raise GeometryError(f"length of bar {worst.name}", worst.measure, allowed)
+    given = [bar for bar in figure.pieces if bar.measure is not None]
+    worst = given[int(np.argmax(misfits))]
+    allowed = (
+        "such that the bars can be assembled next to the points; as near as they "
+        f"come, bar {worst.name} misses its length by {misfits.max():.3g}"
+    )
+    is_assembled = is_bar_assembled(float(misfits.max()), size)
+    require(is_assembled, f"length of bar {worst.name}", worst.measure, allowed)
     return places
 
 
 def _misfits(figure: Bars, places: Mapping[str, complex]) -> np.ndarray:
     """How much longer than given the bars (k,) are that have a length."""
-    misfits = []
-    for bar in figure.pieces:
-        if bar.measure is not None:
-            misfits.append(abs(places[bar.end] - places[bar.start]) - bar.measure)
     # the lengths of bars without one are those that they have at first
-    return np.array(misfits)
+    given = [bar for bar in figure.pieces if bar.measure is not None]
+    return np.array(
+        [
+            abs(places[bar.end] - places[bar.start]) - (bar.measure or 0.0)
+            for bar in given
+        ]
+    )
 
 
 def _least_squares(figure: Bars) -> dict[str, complex]:

@@ -24,11 +24,11 @@ from linkages.formats.assembly import (
     translation,
 )
 from linkages.formats.xml_tree import Element
-from linkages.mechanisms.joint import JointKind, Limits
+from linkages.mechanisms.joint import FACETS, JointKind, Limits
 
 TINY = 1e-300  # of coordinates that are all 0
 WHOLE = JointKind.CYLINDRICAL, JointKind.PLANAR
-WORDS = {JointKind.REVOLUTE: "hinge", JointKind.PRISMATIC: "slide"}
+SINGLE = {facets.mjcf: kind for kind, facets in FACETS.items() if facets.mjcf}
 
 
 class Axis(NamedTuple):
@@ -150,10 +150,10 @@ def _joint(
 
 
 def _single(axis: Axis, locks: Mapping[str, float]) -> WorldJoint:
-    if axis.kind == "ball":
+    kind = SINGLE[axis.kind]
+    if not kind.facets.moves:
         frame = translation(axis.point)
-        return WorldJoint(axis.name, JointKind.SPHERICAL, frame, frame, (), (), ())
-    kind = JointKind.REVOLUTE if axis.kind == "hinge" else JointKind.PRISMATIC
+        return WorldJoint(axis.name, kind, frame, frame, (), (), ())
     return _joint(kind, [axis], locks, [frame_along(axis.point, axis.direction)])
 
 
@@ -228,13 +228,13 @@ def _joined(
     moved = next((one for one in chain[-1].bodies if one != links[-1]), "")
     axes = []
     for joint, pair in zip(chain, pairwise([base, *links, moved]), strict=True):
-        if set(joint.bodies) != {*pair} or joint.kind not in WORDS:
+        word = joint.kind.facets.mjcf
+        if set(joint.bodies) != {*pair} or not (word and joint.kind.facets.moves):
             return None
         frame = pose_of(joint.bodies[0]) @ joint.frames[0]
         # the world, which is no child in SDF, may be the body that moves
         sign = 1.0 if joint.bodies == pair else -1.0
         (limits,) = joint.limits
-        word = WORDS[joint.kind]
         axes.append(Axis(joint.name, word, frame[:3, 3], sign * frame[:3, 2], limits))
     wholes = joints_of_axes(axes, {}, {})
     if len(wholes) > 1 or wholes[0].kind is not kind or wholes[0].is_reversed:

@@ -17,17 +17,10 @@ from linkages.decisions import (
     is_file_nearly_closed,
     is_rounding_of_zero,
 )
-from linkages.formats.assembly import (
-    MOVES,
-    SLIDES,
-    TURN,
-    Assembly,
-    BodyJoint,
-    listed,
-)
+from linkages.formats.assembly import Assembly, BodyJoint, listed
 from linkages.formats.closing import ClosedPoses, Closing, Starts
 from linkages.mechanisms.couplings import Coupling, leaders
-from linkages.mechanisms.joint import Joint, JointKind, Limits, Vector
+from linkages.mechanisms.joint import Joint, JointKind, Limits, Move, Vector
 from linkages.mechanisms.mechanism import FRAMES, Mechanism
 from linkages.values import GeometryError
 
@@ -251,11 +244,11 @@ def _values(joint: BodyJoint, first: np.ndarray, second: np.ndarray) -> list[flo
         return [0.0, 0.0]
     gap = second[:3, 3] - first[:3, 3]
     values = []
-    for number, move in enumerate(MOVES.get(joint.kind, ())):
-        if move == TURN:
+    for number, move in enumerate(joint.kind.facets.moves):
+        if move is Move.TURN:
             values.append(_angle(joint, number, first, second))
         else:
-            values.append(float(first[:3, SLIDES.index(move)] @ gap))
+            values.append(float(first[:3, move.value] @ gap))
     return values
 
 

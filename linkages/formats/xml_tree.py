@@ -8,7 +8,7 @@ from typing import NoReturn
 from xml.parsers import expat
 
 from linkages.mechanisms.origin import WrittenNumber
-from linkages.values import GeometryError, check_number, quoted
+from linkages.values import GeometryError, check_number, quoted, require
 
 DEEPEST = 500  # elements inside each other
 
@@ -43,6 +43,13 @@ class Element:
         """Raise `GeometryError` for an attribute, or the text, of this element."""
         raise GeometryError(f"{attribute} of {self.place}", value, allowed)
 
+    def require(
+        self, is_met: bool, attribute: str, value: object, allowed: str
+    ) -> None:
+        """Raise as `refuse` unless what must be ``is_met``."""
+        if not is_met:
+            self.refuse(attribute, value, allowed)
+
     def numbers(self, attribute: str, counts: tuple[int, ...]) -> list[float] | None:
         """The numbers of an attribute; None where there is none. Raises
         `GeometryError` unless there are so many, or one of so many."""
@@ -63,8 +70,7 @@ class Element:
             numbers: list[float] = [WrittenNumber(word) for word in text.split()]
         except ValueError:
             self.refuse(what, quoted(text), allowed)
-        if len(numbers) not in counts:
-            self.refuse(what, quoted(text), allowed)
+        self.require(len(numbers) in counts, what, quoted(text), allowed)
         for number in numbers:
             check_number(f"{what} of {self.place}", number)
         return numbers
@@ -73,8 +79,8 @@ class Element:
         """The value of an attribute that is one of some words; raises
         `GeometryError`."""
         value = self.attributes.get(attribute, default)
-        if value not in allowed:
-            self.refuse(attribute, quoted(value), f"one of {', '.join(allowed)}")
+        words = f"one of {', '.join(allowed)}"
+        self.require(value in allowed, attribute, quoted(value), words)
         return value
 
     def reference(
@@ -89,8 +95,7 @@ class Element:
 
     def check_new(self, name: str, known: Container[str]) -> None:
         """Raise `GeometryError` where the ``name`` of this element is known."""
-        if name in known:
-            self.refuse("name", quoted(name), "given once")
+        self.require(name not in known, "name", quoted(name), "given once")
 
 
 def parse_xml(content: bytes) -> Element:
@@ -138,9 +143,9 @@ class _Builder:
         else:
             self.root = element
         self._open.append(element)
-        if len(self._open) > DEEPEST:
-            allowed = f"at most {DEEPEST} elements inside each other"
-            raise GeometryError(f"line {element.line}", f"<{tag}>", allowed)
+        is_near = len(self._open) <= DEEPEST
+        allowed = f"at most {DEEPEST} elements inside each other"
+        require(is_near, f"line {element.line}", f"<{tag}>", allowed)
 
     def end(self, tag: str) -> None:
         """Close the element that is open."""

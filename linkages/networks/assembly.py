@@ -68,7 +68,15 @@ def assemble(network: Network, locks: Mapping[str, float]) -> np.ndarray:
     On a motion of one freedom the grid is that of one cell, with every state of the
     others at it. Empty where there is no real configuration.
     """
-    order = _order(len(network.plan.cells), constraints_of(network, locks))
+    equations = constraints_of(network, locks)
+    cells = range(len(network.plan.cells))
+    orders = (
+        _order_from(given, equations)
+        for count in range(len(cells) + 1)
+        for given in combinations(cells, count)
+    )
+    # with all cells given none is open
+    order = next(one for one in orders if len(one.given + one.steps) == len(cells))
     assembly = _Assembly(network, order)
     is_scanned = bool(order.check and order.given)
     gridded = len(order.given) - is_scanned
@@ -81,16 +89,6 @@ def assemble(network: Network, locks: Mapping[str, float]) -> np.ndarray:
 
 
 # --- order ----------------------------------------------------------------------------
-
-
-def _order(cells: int, equations: Sequence[Equation]) -> Order:
-    """The first order of assembly with the fewest cells given."""
-    for count in range(cells + 1):
-        for given in combinations(range(cells), count):
-            order = _order_from(given, equations)
-            if len(order.given) + len(order.steps) == cells:
-                return order
-    raise AssertionError("all cells given leave none open")
 
 
 def _order_from(given: tuple[int, ...], equations: Sequence[Equation]) -> Order:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linkages.mechanisms.displacements import transforms
+from linkages.mechanisms.joint import transforms
 from linkages.structure.rods import Rod
 from linkages.structure.structure import Structure
 
@@ -151,6 +151,20 @@ def rotation_vectors(rotations: np.ndarray) -> np.ndarray:
 
     vectors: np.ndarray = Rotation.from_matrix(rotations).as_rotvec()
     return vectors
+
+
+def quaternions_without_jumps(matrices: np.ndarray) -> np.ndarray:
+    """Unit quaternions (n, k, 4), x, y, z, w, of rotations (n, k, 3, 3) of n bodies at k
+    moments, each near the one before."""
+    from scipy.spatial.transform import Rotation
+
+    count, moments = matrices.shape[:2]
+    quaternions = Rotation.from_matrix(matrices.reshape(-1, 3, 3)).as_quat()
+    rotations: np.ndarray = quaternions.reshape(count, moments, 4)
+    turns = (rotations[:, 1:] * rotations[:, :-1]).sum(axis=-1)
+    signs = np.cumprod(np.where(turns < 0, -1.0, 1.0), axis=1)
+    rotations[:, 1:] *= signs[..., None]
+    return rotations
 
 
 def _shortest_rotations(start: np.ndarray, goals: np.ndarray) -> np.ndarray:

@@ -104,6 +104,7 @@ def loop_geometry(mechanism: Mechanism) -> Loop:
     single = turns_as_loop(Structure(replace(mechanism, joints=joints)))
     if single is None:
         allowed = f"a single loop of {MIN_JOINTS} to {MAX_JOINTS} revolute joints"
+        allowed += mechanism.way_to_loop
         value = f"a mechanism with {_obstacle(mechanism)}"
         raise GeometryError(mechanism.name, value, allowed)
     return _with_locks(mechanism, single)

@@ -21,7 +21,6 @@ import numpy as np
 from networkx.utils import UnionFind
 
 from bifurc.torus import common_period
-from linkages.mechanisms.couplings import Leader
 from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.size import Size
@@ -36,7 +35,7 @@ from linkages.structure.free_points import FreePoint, free_points
 from linkages.structure.groups import SPHERICAL, Groups, JointPoint, find_idle_turn
 from linkages.structure.placement import Placement
 from linkages.structure.rods import Rod, RodNet, find_rods
-from linkages.values import GeometryError
+from linkages.values import require
 
 SLIDE_REACH = 2.0  # limits of a slide, over the lengths of the bodies around its cycle
 # limits, rad, of a turn that its coupling to others brings never back to where it was
@@ -134,12 +133,12 @@ class Structure:
         self.unit = self.size.characteristic_length
         self.idle_turns: tuple[str, ...] = ()
         self._hold_idle_turns()
-        if not self.unknowns:
-            locked = "every one locked or rigid"
-            if self.idle_bodies:
-                idle = ", ".join(self.idle_bodies)
-                locked += f" but for {idle}, whose turning about its own line is idle,"
-            raise GeometryError("joints", locked, "such that one is left to move")
+        locked = "every one locked or rigid"
+        if not self.unknowns and self.idle_bodies:
+            idle = ", ".join(self.idle_bodies)
+            locked += f" but for {idle}, whose turning about its own line is idle,"
+        can_move = bool(self.unknowns)
+        require(can_move, "joints", locked, "such that one is left to move")
 
     # --- bodies and pairs -------------------------------------------------------------
 
@@ -267,18 +266,16 @@ class Structure:
         first += len(self.free_points)
         free: dict[int, FreePair] = {}
         for rod in self.rods:
-            if parts[rod.ends[0]] != parts[rod.ends[1]]:
-                parts.union(*rod.ends)
-                free[first + len(free)] = self._free_pair(rod)
+            base, moved = rod.ends
+            if parts[base] == parts[moved]:
+                continue
+            parts.union(base, moved)
+            # what moves is a body: a point at which only rods meet has no rotation
+            is_point = moved >= len(self.mechanism.bodies)
+            ends = (moved, base) if is_point else (base, moved)
+            center = rod.centers[0 if is_point else 1]
+            free[first + len(free)] = FreePair(*ends, center)
         return free
-
-    def _free_pair(self, rod: Rod) -> FreePair:
-        """The free pair of the two bodies that a rod joins. What moves is a body: a
-        point at which only rods meet has no rotation."""
-        base, moved = rod.ends
-        if moved >= len(self.mechanism.bodies):
-            return FreePair(moved, base, rod.centers[0])
-        return FreePair(base, moved, rod.centers[1])
 
     @cached_property
     def closures(self) -> tuple[Closure, ...]:
@@ -329,20 +326,23 @@ class Structure:
         return tuple(self.mechanism.bodies[number] for number in numbers)
 
     def _point_closure(self, number: int) -> Closure:
-        base, moved, _ = self.ends[number]
-        chain = chain_between(self.body_count, self.tree_pairs, base, moved)
-        assert chain is not None
+        chain = self._chain(*self.ends[number][:2])
         center = self.center(number)
         joints = (*self._joint_of(number), *self._joints(chain))
         return Closure(ClosureKind.POINT, chain, joints, center, center)
 
     def _rod_closure(self, rod: Rod) -> Closure:
-        chain = chain_between(self.body_count, self.tree_pairs, *rod.ends)
-        assert chain is not None
+        chain = self._chain(*rod.ends)
         first, second = rod.centers
         inner = tuple(self.mechanism.pairs[number].joint for number in rod.inner)
         joints = (rod.joints[0], *self._joints(chain), rod.joints[1], *inner)
         return Closure(ClosureKind.ROD, chain, joints, first, second, rod)
+
+    def _chain(self, start: int, goal: int) -> Chain:
+        """The shortest chain between two bodies, by number."""
+        chain = chain_between(self.body_count, self.tree_pairs, start, goal)
+        assert chain is not None
+        return chain
 
     def _joints(self, chain: Chain) -> tuple[str, ...]:
         return tuple(name for step in chain for name in self._joint_of(step.pair))
@@ -532,19 +532,17 @@ class Structure:
             if other.leader.number != number:
                 continue
             ratios.append(other.leader.ratio)
-            start, end = _range_of_leader(other.leader, self._range(follower))
+            ends = (other.leader.value_of_leader(end) for end in self._range(follower))
+            start, end = sorted(ends)
             low, high = max(low, start), min(high, end)
-            if not low < high:
-                what = f"limits of {variable.label} and what is coupled to it"
-                raise GeometryError(what, [low, high], "such that they overlap")
+            what = f"limits of {variable.label} and what is coupled to it"
+            require(low < high, what, [low, high], "such that they overlap")
         if np.isfinite(high):
-            low, high = low / unit, high / unit
-            return Unknown(
-                variable.label, number, np.inf, low, high, is_angle, not is_angle
-            )
-        period = common_period(ratios)
-        if not np.isfinite(period):
-            low, high = -TURNS_REACH, TURNS_REACH
+            low, high, period = low / unit, high / unit, np.inf
+        else:
+            period = common_period(ratios)
+            if not np.isfinite(period):
+                low, high = -TURNS_REACH, TURNS_REACH
         return Unknown(
             variable.label, number, period, low, high, is_angle, not is_angle
         )
@@ -563,33 +561,21 @@ class Structure:
             reach /= abs(motion.advance)
         return -reach, reach
 
-    def _variables_around(self, closure: Closure) -> set[int]:
-        """The variables, by number, of the joints round a loop."""
-        numbers = {k for step in closure.chain for k in self.variables_of(step.pair)}
-        if closure.rod is not None and closure.rod.leg is not None:
-            numbers.add(closure.rod.leg.variable)
-        return numbers
-
     def _reach(self, number: int) -> float:
         """How far a slide is looked at from the reference configuration: farther than
         the bodies of its shortest cycle reach."""
         lengths = self.size.body_lengths
         sums = []
         for closure in self.closures:
-            if number in self._variables_around(closure):
+            around = {k for step in closure.chain for k in self.variables_of(step.pair)}
+            if closure.rod is not None and closure.rod.leg is not None:
+                around.add(closure.rod.leg.variable)
+            if number in around:
                 joints = [self.mechanism.joint(name) for name in closure.joints]
                 bodies = {body for joint in joints for body in joint.bodies}
                 sums.append(sum(lengths[body] for body in sorted(bodies)))
         total = min(sums, default=sum(lengths.values()))
         return SLIDE_REACH * (total or sum(lengths.values()))
-
-
-def _range_of_leader(
-    leader: Leader, limits: tuple[float, float]
-) -> tuple[float, float]:
-    """Between which values of its leader a variable is within its limits."""
-    low, high = sorted(leader.value_of_leader(value) for value in limits)
-    return low, high
 
 
 def _each_called_once(unknowns: Sequence[Unknown]) -> tuple[Unknown, ...]:

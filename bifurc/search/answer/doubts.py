@@ -263,7 +263,7 @@ def _ended_at_assumed_bounds(problem: Problem, branch: Branch) -> list[str]:
     if branch.outcome is not Outcome.LEFT_REGION:
         return []
     ends = branch(np.array([0.0, branch.length]))
-    is_there = (
+    is_there: np.ndarray = (
         _are_at_bounds(problem, ends).any(axis=0) & problem.domain.has_assumed_bounds
     )
     return [problem.domain.names[k] for k in np.flatnonzero(is_there.any(axis=1))]

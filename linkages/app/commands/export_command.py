@@ -26,7 +26,7 @@ from linkages.app.options import (
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
-    from linkages.export.model import LinkageModel, Motion
+    from linkages.export.model import Motion
 
 TO = "--to"
 MODEL, TABLE = ".glb", ".csv"
@@ -269,8 +269,8 @@ def make_route_motion(atlas: Atlas, start: str, goal: str, count: int) -> Motion
     """
     from bifurc.errors import RouteError
     from linkages.app.atlas_source import route_between
-    from linkages.app.subject import subject_at
     from linkages.export.model import motion_of_route
+    from linkages.subject import subject_at
 
     option = f"--route {start!r} {goal!r}"
     try:
@@ -283,7 +283,7 @@ def make_route_motion(atlas: Atlas, start: str, goal: str, count: int) -> Motion
             f"{option}: it begins and ends in one configuration of {first!r}; name two "
             "different forms, or --form for all of one"
         )
-    problem = subject_at(atlas).equations()
+    problem = subject_at(atlas).closure
     return motion_of_route(atlas, route, f"{first} to {last}", count, problem)
 
 
@@ -299,31 +299,19 @@ def make_content(atlas: Atlas, motions: list[Motion], out: Path) -> bytes:
     from importlib.metadata import version
 
     from linkages.export.glb import make_glb
+    from linkages.export.model import model_of
+    from linkages.subject import subject_at
 
-    return make_glb(make_model(atlas, motions), f"bifurc {version('bifurc')}")
+    subject = subject_at(atlas)
+    model = model_of(subject.parts, subject.name, motions)
+    return make_glb(model, f"bifurc {version('bifurc')}")
 
 
 def make_table(atlas: Atlas, motion: Motion) -> str:
     """The joint variables along a motion: angles of a loop, or all variables of a
     mechanism and the unit quaternions of its spherical joints."""
-    from linkages.app.subject import subject_at
     from linkages.export.model import make_angle_table
+    from linkages.subject import subject_at
 
     joints = subject_at(atlas).joint_values(motion.configurations)
     return make_angle_table(motion.arclength, joints.values, joints.names)
-
-
-def make_model(atlas: Atlas, motions: list[Motion]) -> LinkageModel:
-    """The linkage of an atlas with its motions, to be animated."""
-    from linkages.app.subject import MechanismSubject, subject_at
-    from linkages.export.model import model_of_loop, model_of_mechanism
-
-    subject = subject_at(atlas)
-    if subject.table is None:
-        assert isinstance(subject, MechanismSubject)
-        return model_of_mechanism(subject.readout, motions)
-    of_loop = [
-        replace(motion, configurations=subject.to_angles.points(motion.configurations))
-        for motion in motions
-    ]
-    return model_of_loop(subject.table, of_loop)

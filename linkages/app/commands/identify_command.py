@@ -52,8 +52,8 @@ def identify_command(
         describe_identification,
         make_identification_document,
     )
-    from linkages.app.subject import as_subject
     from linkages.identification.identify import identify
+    from linkages.subject import as_subject
 
     loop = as_subject(choose_held(linkage, parameters, hold)).as_loop()
     identification = identify(loop, tolerance)

@@ -142,8 +142,8 @@ def write_numbers(atlas: Atlas, out: Path | None) -> list[Path]:
         return []
     from linkages.app.files import write_data
     from linkages.app.output import writing_to
-    from linkages.app.subject import subject_at
     from linkages.app.texts.summary import make_summary
+    from linkages.subject import subject_at
 
     with writing_to(out):
         subject = subject_at(atlas)

@@ -132,5 +132,5 @@ def _route_over_locks(
         route = find_lock_route(network, places[0], places[1], explore)
     except RouteError as error:
         raise CommandError(str(error), ExitCode.NO_ROUTE) from None
-    last = explore(lock_network(network, places[1].locks))
-    say(describe_lock_route(route, chosen, last))
+    locked = lock_network(network, places[1].locks)
+    say(describe_lock_route(route, locked, explore(locked)))

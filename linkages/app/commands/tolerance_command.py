@@ -64,20 +64,19 @@ def tolerance_command(
     from linkages.app.choice import choose_held
     from linkages.app.output import require_folder, say
     from linkages.app.reports.tolerance import climb, describe_tolerance, measure
-    from linkages.app.subject import as_subject
     from linkages.app.texts.form_names import require_forms
+    from linkages.subject import subject_at
 
     require_folder(out)
     chosen = choose_held(linkage, parameters, hold)
     atlas = explore_linkage(chosen, SearchOptions())
     require_uninterrupted(atlas)
     require_forms(atlas, " to measure.")
-    subject = as_subject(chosen)
     # in the unknowns of the equations of what is made with errors
-    nominal, atlas = subject.geometry, subject.in_loop_angles(atlas)
+    atlas = subject_at(atlas).in_loop_angles(atlas)
     seeds = range(seed, seed + samples)
-    copies = [measure(atlas, nominal, error, number) for number in seeds]
-    ladder = climb(atlas, nominal, seeds)
+    copies = [measure(atlas, error, number) for number in seeds]
+    ladder = climb(atlas, seeds)
     text = describe_tolerance(atlas, copies, ladder)
     try:
         say(text)

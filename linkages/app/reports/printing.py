@@ -13,8 +13,8 @@ from bifurc.atlas import Atlas, Form
 from bifurc.tables import table
 from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.options import PrintOptions
-from linkages.app.subject import show_configuration
-from linkages.app.texts.numbers import link_name
+from linkages.app.texts.configurations import show_configuration
+from linkages.geometry_table import link_name
 from linkages.labels import loop_of
 from linkages.loop import Loop
 from linkages.printing.assembly import Dimensions, Kind, Part

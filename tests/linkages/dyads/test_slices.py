@@ -53,7 +53,7 @@ BUILT = {
     ),
     "Dixon I": mechanism_of_case(cases()["Dixon I, K(3,3)"]),
     "on a sphere": read_arcs(six_bar_on_sphere(), "six-bar", np.pi / 180),
-    "a network with two locks": linkages.load("four-bennett-network").with_kinks(
+    "a network with two locks": linkages.load("four-bennett-network").held(
         {"1": 0.7, "5": 0.5}
     ),
 }

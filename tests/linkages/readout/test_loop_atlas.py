@@ -14,8 +14,8 @@ from bifurc.torus import SEAM
 from linkages.closure.loop_closure import LoopClosure
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.labels import FormLabels, subject_of
-from linkages.readout.loop_atlas import in_loop_angles
 from linkages.readout.readout import Readout
+from linkages.subject import as_subject
 from tests.linkages.mechanisms.single_loops import (
     FEW,
     SINGLE_LOOPS,
@@ -85,7 +85,7 @@ def test_a_form_or_surface_passes_through_the_reference_configuration(name):
 def test_in_the_angles_of_its_loop_it_closes_the_loop(name):
     mechanism, atlas = mapped(name)
     loop = Readout(mechanism).single_loop.loop
-    of_loop = in_loop_angles(atlas, Readout(mechanism))
+    of_loop = as_subject(mechanism).in_loop_angles(atlas)
     problem = LoopClosure(loop)
     assert of_loop.names == problem.domain.names
     assert linkages.loop_of(of_loop) == loop

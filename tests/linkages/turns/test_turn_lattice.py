@@ -7,13 +7,13 @@ import pytest
 
 from bifurc.settings import SearchSettings
 from bifurc.system import relative_gaps
-from linkages.app.answer.mechanism_document import describe_mechanism
 from linkages.app.answer.verdict import judge
-from linkages.app.subject import subject_at
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.readout.mechanism_document import describe_mechanism
+from linkages.subject import subject_at
 from linkages.turns.translates import translates_of
 from tests.maps import map_of
 from tests.samples import one_in
