@@ -16,12 +16,12 @@ from bifurc.systems import document as equations_document
 from bifurc.systems import summary as equations_summary
 from bifurc.systems.equation_file import read_equations
 from linkages.app.answer.document import make_document
-from linkages.app.subject import subject_at
 from linkages.app.texts.summary import make_summary
 from linkages.file import read_file
 from linkages.loop import Loop
 from linkages.networks.entries import NETWORKS
 from linkages.networks.mechanism import lock_network
+from linkages.subject import subject_at
 from studies.results_page import PAGE, numbers, results_page, variables
 from tests.linkages.app.slider_cranks import slider_crank_text
 from tests.maps import map_of
@@ -110,7 +110,6 @@ def heads_of(monkeypatch, folder):
 
     for module in ("bifurc.tables", "linkages.app.texts.entry_text"):
         monkeypatch.setattr(f"{module}.table", table)
-    monkeypatch.setattr("linkages.app.texts.network_text.table", table)
     for atlas in atlases(folder):
         make_summary(atlas)
         heads.discard(subject_at(atlas).heading(atlas))

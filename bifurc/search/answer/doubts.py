@@ -263,10 +263,10 @@ def _ended_at_assumed_bounds(problem: Problem, branch: Branch) -> list[str]:
     if branch.outcome is not Outcome.LEFT_REGION:
         return []
     ends = branch(np.array([0.0, branch.length]))
-    is_there: np.ndarray = (
+    is_there = (
         _are_at_bounds(problem, ends).any(axis=0) & problem.domain.has_assumed_bounds
     )
-    return [problem.domain.names[k] for k in np.flatnonzero(is_there.any(axis=1))]
+    return [problem.domain.names[k] for k in np.flatnonzero(np.any(is_there, axis=1))]
 
 
 def _doubts_of_halves(
