@@ -64,7 +64,6 @@ LONGER = {
         "bifurc.files.dataset._attributes",
         "bifurc.search.answer.assemble.assemble_atlas",
         "bifurc.search.own_units.restated.restated_branch",
-        "bifurc.systems.document.make_document",
         "linkages.app.answer.document.make_document",
         "linkages.app.sweep.member.summarise",
         "linkages.app.texts.mechanism_text.describe_dead_points",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from importlib.metadata import version
-from typing import TypeAlias, cast
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from bifurc.files.layout import records_of
 from bifurc.singular.point import Invariants, Kind
 from bifurc.systems.verdict import verdict_of
 
-Json: TypeAlias = "str | float | bool | list[Json] | dict[str, Json] | None"
+Json: TypeAlias = Any  # a value that JSON can hold
 
 
 def make_document(atlas: Atlas) -> dict[str, Json]:
@@ -37,7 +37,7 @@ def make_document(atlas: Atlas) -> dict[str, Json]:
         "near_misses": records_of(atlas, "near_miss"),
         "isolated_solutions": [_values(atlas, point) for point in atlas.rigid],
         "near_motions": records_of(atlas, "near_motion"),
-        "completeness": cast(Json, completeness_document(atlas.completeness)),
+        "completeness": completeness_document(atlas.completeness),
         "seconds": provenance.seconds,
         "version": version("bifurc"),
         "seed": provenance.seed,

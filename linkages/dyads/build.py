@@ -61,8 +61,11 @@ class Builder:
         """Whether no dyad can close in a curve of configurations, wherever the parts
         are that it stands on, and whatever the driver's value is; other known
         ``values`` are locks."""
-        if self._parts_driven() - {self.plan.start}:
-            return False  # lengths within a part that is placed change with the driver
+        for known in self.plan.known:
+            numbers = self.mechanism.pairs[known].variables
+            is_driven = any(self.mechanism.variables[k].locked is None for k in numbers)
+            if is_driven and self.plan.part[self.ends[known][0]] != self.plan.start:
+                return False  # lengths within a placed part change with the driver
         inner = self._inner_poses(values)
         standing = dict.fromkeys(self.plan.part, self.geometry.rest)
         for step in self.plan.steps:
@@ -95,18 +98,6 @@ class Builder:
             elif base not in poses:
                 poses[base] = poses[moved].after(motion.inverse())
         return poses
-
-    def _parts_driven(self) -> set[int]:
-        """The parts in which a pair moves with the driver."""
-        variables = self.mechanism.variables
-        pairs = self.mechanism.pairs
-        return {
-            self.plan.part[self.ends[known][0]]
-            for known in self.plan.known
-            if any(
-                variables[number].locked is None for number in pairs[known].variables
-            )
-        }
 
     # --- steps ------------------------------------------------------------------------
 

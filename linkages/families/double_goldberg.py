@@ -30,7 +30,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -167,26 +167,17 @@ def _constructive(sign: int, alpha: float, gamma: float, x: float) -> float:
     return _ratio(x, alpha) * _ratio(x, sign * gamma)
 
 
-class _Fraction(NamedTuple):
-    """A quotient whose denominator may vanish."""
-
-    top: float
-    bottom: float
-
-    @property
-    def value(self) -> float:
-        """The quotient."""
-        return self.top / self.bottom
-
-
-def _non_constructive(sign: int, alpha: float, gamma: float, x: float) -> _Fraction:
-    """t_i t_j of the joints on either side of link x, in Forms III and IV."""
+def _non_constructive(
+    sign: int, alpha: float, gamma: float, x: float
+) -> tuple[float, float]:
+    """t_i t_j of the joints on either side of link x, in Forms III and IV, as a quotient
+    whose denominator may vanish."""
     g = sign * gamma
     total = math.sin(alpha) + math.sin(g)
     part = math.sin(x)
     top = total + part + math.sin(alpha + g + x)
     bottom = total - part + math.sin(alpha + g - x)
-    return _Fraction(-top, bottom)
+    return -top, bottom
 
 
 def _products(sign: int, k_d: float, k_b: float) -> Function:
@@ -252,17 +243,16 @@ def _on_side(base: Function, circuit: Function, side: int) -> Function:
 def _non_constructive_patterns(
     sign: int, alpha: float, beta: float, gamma: float, delta: float
 ) -> tuple[FormPattern, ...]:
-    fraction_d = _non_constructive(sign, alpha, gamma, delta)
-    fraction_b = _non_constructive(sign, alpha, gamma, beta)
-    if min(abs(fraction_d.bottom), abs(fraction_b.bottom)) < ALIKE:
+    top_d, bottom_d = _non_constructive(sign, alpha, gamma, delta)
+    top_b, bottom_b = _non_constructive(sign, alpha, gamma, beta)
+    if min(abs(bottom_d), abs(bottom_b)) < ALIKE:
         return ()
-    k_d = fraction_d.value
-    k_b = fraction_b.value
+    k_d = top_d / bottom_d
+    k_b = top_b / bottom_b
     base = _products(-1, k_d, k_b)
     # with t2 and t5 negated this is the curve of the module's head, of products -k_d
     # and -k_b; the slope is (1 + k_b) / (1 + k_d), which is 0/0 for alpha + gamma = pi
-    slope_top = math.sin(beta) * fraction_d.bottom
-    slope = slope_top / (math.sin(delta) * fraction_b.bottom)
+    slope = math.sin(beta) * bottom_d / (math.sin(delta) * bottom_b)
     circuit = _circuit(-k_d, -k_b, slope, t1_infinite=False, t4_infinite=False)
     return (
         FormPattern(FORM_III, _on_side(base, circuit, +1)),

@@ -3,7 +3,7 @@ them (`linkages.files.figures`); the axes of all joints run through the centre."
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -14,6 +14,7 @@ from linkages.files.figures import (
     FigureKind,
     Piece,
     joints_of_figure,
+    polished,
     read_figure,
     table_of_points,
 )
@@ -27,7 +28,6 @@ Places: TypeAlias = dict[str, np.ndarray]
 Arcs: TypeAlias = Figure[np.ndarray, np.ndarray]
 
 NEWTON_STEPS = 60
-RANK = 1e-9  # singular value, over the largest, of a motion: no step along it
 
 
 def read_arcs(content: Content, name: str, unit: float) -> Mechanism:
@@ -160,25 +160,15 @@ def _fitted(figure: Arcs, free: Sequence[str], angles: np.ndarray) -> Places:
         lengths = np.linalg.norm(values.reshape(-1, 3), axis=1) - 1.0
         return np.concatenate([now - angles, lengths])
 
-    start = np.concatenate([figure.points[name] for name in free])
-    solution = least_squares(gaps, start, xtol=1e-15, ftol=1e-15, gtol=1e-15).x
-    return placed(_polished(gaps, solution))
-
-
-def _polished(
-    gaps: Callable[[np.ndarray], np.ndarray], values: np.ndarray
-) -> np.ndarray:
-    """The ``values`` (n,) after Newton's method, as long as it makes ``gaps`` smaller;
-    derivatives are central differences."""
     step = float(np.finfo(float).eps) ** (1 / 3)
-    for _ in range(NEWTON_STEPS):
+
+    def derivatives(values: np.ndarray) -> np.ndarray:
         columns = [
             (gaps(values + move) - gaps(values - move)) / (2 * step)
             for move in step * np.eye(len(values))
         ]
-        now = gaps(values)
-        trial = values - np.linalg.lstsq(np.array(columns).T, now, rcond=RANK)[0]
-        if not np.linalg.norm(gaps(trial)) < np.linalg.norm(now):
-            break
-        values = trial
-    return values
+        return np.array(columns).T
+
+    start = np.concatenate([figure.points[name] for name in free])
+    solution = least_squares(gaps, start, xtol=1e-15, ftol=1e-15, gtol=1e-15).x
+    return placed(polished(gaps, derivatives, solution, NEWTON_STEPS))

@@ -9,9 +9,11 @@ import numpy as np
 
 from linkages.decisions import is_bar_assembled
 from linkages.files.figures import (
+    RANK,
     Figure,
     FigureKind,
     joints_of_figure,
+    polished,
     read_figure,
     table_of_points,
 )
@@ -26,7 +28,6 @@ POLISHING_STEPS = 12
 EPSILON = float(np.finfo(float).eps)
 ROUNDING = 16 * EPSILON  # of a length, over the extent
 NEAR_SINGULAR = 1e-3  # singular value, and way to the singular assembly, to look for it
-RANK = 1e-9  # singular value, over the largest, of a motion: no step along it
 TINY = 1e-300  # length of a bar that has none
 
 
@@ -143,13 +144,7 @@ def _polished(shape: _Shape, solution: np.ndarray) -> np.ndarray:
     beside it, and the bars would have a motion of that size: there the singular
     assembly itself is solved for.
     """
-    for _ in range(POLISHING_STEPS):
-        slope = shape.derivatives(solution)
-        gaps = shape.gaps(solution)
-        trial = solution - np.linalg.lstsq(slope, gaps, rcond=RANK)[0]
-        if not np.linalg.norm(shape.gaps(trial)) < np.linalg.norm(gaps):
-            break
-        solution = trial
+    solution = polished(shape.gaps, shape.derivatives, solution, POLISHING_STEPS)
     singular = _singular_assembly(shape, solution)
     return solution if singular is None else singular
 

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Any, Generic, TypeVar
 
+import numpy as np
+
 from linkages.mechanisms.joint import Joint, JointKind, Vector
 from linkages.values import SOME, checked_list, checked_table, quoted, require
 
@@ -107,8 +109,13 @@ def read_figure(
     """The figure of these ``points`` that a file describes; raises `GeometryError`."""
     on_pieces = _read_points_on(content, kind, points)
     known = [*points, *on_pieces]
-    fixed = _read_fixed(content, known)
-    return Figure(kind, points, fixed, _read_pieces(content, kind, known), on_pieces)
+    given = content.get("fixed", [])
+    fixed = checked_list("fixed", given, "a list of names of points")
+    for name in fixed:
+        _check_point("fixed", name, known)
+        require(fixed.count(name) == 1, "fixed", quoted(name), "named once")
+    pieces = _read_pieces(content, kind, known)
+    return Figure(kind, points, tuple(fixed), pieces, on_pieces)
 
 
 def _read_points_on(
@@ -129,15 +136,6 @@ def _read_points_on(
         numbers = kind.read_numbers(what, row[2])
         on_pieces[name] = PointOnPiece(row[0], row[1], numbers)
     return on_pieces
-
-
-def _read_fixed(content: Mapping[str, object], known: Sequence[str]) -> tuple[str, ...]:
-    given = content.get("fixed", [])
-    fixed = checked_list("fixed", given, "a list of names of points")
-    for name in fixed:
-        _check_point("fixed", name, known)
-        require(fixed.count(name) == 1, "fixed", quoted(name), "named once")
-    return tuple(fixed)
 
 
 def _read_pieces(
@@ -167,6 +165,28 @@ def _check_point(what: str, name: object, known: Sequence[str]) -> None:
     """Raise `GeometryError` for what is none of the ``known`` points."""
     allowed = f"one of the points {', '.join(known)}"
     require(name in known, what, quoted(name), allowed)
+
+
+# --- assembly -------------------------------------------------------------------------
+
+RANK = 1e-9  # singular value, over the largest, of a motion: no step along it
+
+
+def polished(
+    gaps: Callable[[np.ndarray], np.ndarray],
+    derivatives: Callable[[np.ndarray], np.ndarray],
+    values: np.ndarray,
+    steps: int,
+) -> np.ndarray:
+    """The ``values`` (n,) after so many steps of Newton's method at most, as long as
+    they make ``gaps`` (m,) with these ``derivatives`` (m, n) smaller."""
+    for _ in range(steps):
+        now = gaps(values)
+        trial = values - np.linalg.lstsq(derivatives(values), now, rcond=RANK)[0]
+        if not np.linalg.norm(gaps(trial)) < np.linalg.norm(now):
+            break
+        values = trial
+    return values
 
 
 # --- names ----------------------------------------------------------------------------

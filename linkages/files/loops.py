@@ -152,8 +152,7 @@ def _pose(
         there = _frame_of(axes[first], axes[second])
         if here is not None and there is not None:
             _check_placed(ring, f"joints {first} and {second} place the loop")
-            pose: np.ndarray = there @ np.linalg.inv(here)
-            return pose
+            return np.asarray(there @ np.linalg.inv(here))
     axis = axes[first]
     # turned about the axis and shifted along it, as the table says
     there = _frame(axis.point, axis.direction, normals[first])
@@ -162,8 +161,8 @@ def _pose(
     there[:3, 3] += ring.shift * axis.direction
     own = ring.axis(first)
     normal = _normal(ring, ring.joints.index(first))
-    pose: np.ndarray = there @ np.linalg.inv(_frame(own.point, own.direction, normal))
-    return pose
+    own_frame = _frame(own.point, own.direction, normal)
+    return np.asarray(there @ np.linalg.inv(own_frame))
 
 
 def _check_placed(ring: _Ring, reason: str) -> None:

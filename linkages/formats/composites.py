@@ -83,14 +83,23 @@ def joints_of_axes(
     if kinds == ["slide", "hinge"] and _is_one_axis(axes[1], axes[0]):
         return [_turn_and_slide(axes[1], axes[0], couplings, locks)]
     if kinds == ["hinge", "hinge"] and _is_universal(axes):
-        return [_universal(axes, locks)]
+        frames = [frame_along(axis.point, axis.direction) for axis in axes]
+        return [_joint(JointKind.UNIVERSAL, axes, locks, frames)]
     if kinds == ["slide", "slide", "hinge"] and _is_plane(axes):
         return [_plane(axes, locks)]
     if kinds == ["hinge", "slide", "slide"]:
-        inverse = [_opposite(axis) for axis in reversed(axes)]
+        # each the other way round: its variable keeps its value
+        inverse = [one._replace(direction=-one.direction) for one in reversed(axes)]
         if _is_plane(inverse):
             return [_plane(inverse, locks)._replace(is_reversed=True)]
-    return [_single(axis, locks) for axis in axes]
+    joints = []
+    for axis in axes:
+        kind = SINGLE[axis.kind]
+        frame = translation(axis.point)
+        if kind.facets.moves:
+            frame = frame_along(axis.point, axis.direction)
+        joints.append(_joint(kind, [axis], locks, [frame]))
+    return joints
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:
@@ -115,11 +124,6 @@ def _is_universal(axes: list[Axis]) -> bool:
     return is_one_joint(distance, size) and not is_parallel
 
 
-def _opposite(axis: Axis) -> Axis:
-    """The same joint the other way round: its variable keeps its value."""
-    return axis._replace(direction=-axis.direction)
-
-
 def _is_plane(axes: list[Axis]) -> bool:
     x, y, normal = (_unit(axis.direction) for axis in axes)
     return is_one_joint(float(np.linalg.norm(np.cross(normal, x) - y)))
@@ -135,6 +139,7 @@ def _joint(
     """The joint that has the variables of some axes. It is called as their names begin
     before the last point: "J" of "J.turn" and "J.slide"; else by all of them."""
     names = tuple(axis.name for axis in axes)
+    moving = axes if kind.facets.moves else []
     stems = {name.rpartition(".")[0] for name in names}
     is_stem = len(names) > 1 and len(stems) == 1 and stems != {""}
     return WorldJoint(
@@ -142,19 +147,11 @@ def _joint(
         kind,
         frames[0],
         frames[-1],
-        limits=tuple(axis.limits for axis in axes),
-        locked=tuple(locks.get(name) for name in names),
-        axes=names,
+        limits=tuple(axis.limits for axis in moving),
+        locked=tuple(locks.get(axis.name) for axis in moving),
+        axes=tuple(axis.name for axis in moving),
         pitch=pitch,
     )
-
-
-def _single(axis: Axis, locks: Mapping[str, float]) -> WorldJoint:
-    kind = SINGLE[axis.kind]
-    if not kind.facets.moves:
-        frame = translation(axis.point)
-        return WorldJoint(axis.name, kind, frame, frame, (), (), ())
-    return _joint(kind, [axis], locks, [frame_along(axis.point, axis.direction)])
 
 
 def _turn_and_slide(
@@ -170,11 +167,6 @@ def _turn_and_slide(
     del couplings[slide.name]
     pitch = 2 * math.pi * coupling.ratio
     return _joint(JointKind.HELICAL, [turn], locks, frames, pitch)
-
-
-def _universal(axes: list[Axis], locks: Mapping[str, float]) -> WorldJoint:
-    frames = [frame_along(axis.point, axis.direction) for axis in axes]
-    return _joint(JointKind.UNIVERSAL, axes, locks, frames)
 
 
 def _plane(axes: list[Axis], locks: Mapping[str, float]) -> WorldJoint:

@@ -28,8 +28,7 @@ from linkages.formats.cuik_links import (
     read_point,
     read_transforms,
     rotation,
-    skip_appearance,
-    skip_dynamics,
+    skip_details,
 )
 from linkages.formats.cuik_tokens import Cursor, tokens_of
 from linkages.mechanisms.joint import JointKind, Limits, Vector
@@ -375,7 +374,7 @@ def _skip_options(cursor: Cursor) -> None:
         elif cursor.is_word(*NUMBERS):
             cursor.next()
             cursor.number()
-        elif not skip_appearance(cursor) and not skip_dynamics(cursor):
+        elif not skip_details(cursor):
             cursor.refuse("an option of a joint, or the next joint")
 
 

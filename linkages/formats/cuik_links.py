@@ -57,7 +57,7 @@ def read_links(cursor: Cursor, folder: Path, links: dict[str, Link]) -> None:
         while has_parts and not cursor.is_at_section:
             if cursor.is_word(*SHAPES) and cursor.ahead(1) not in (":", "-"):
                 links[name].shapes.append(_read_shape(cursor, folder))
-            elif not skip_appearance(cursor) and not skip_dynamics(cursor):
+            elif not skip_details(cursor):
                 break
 
 
@@ -90,34 +90,25 @@ def _read_shape(cursor: Cursor, folder: Path) -> list[Vector] | Path:
             return _read_points(cursor)
 
 
-def skip_appearance(cursor: Cursor) -> bool:
-    """Whether a color or another word on how a shape looks stands here; the cursor goes
-    on behind it."""
-    is_name = cursor.ahead(1) in (":", "-")
-    if cursor.token.kind == "number" and cursor.ahead(1) == "*":
+def skip_details(cursor: Cursor) -> bool:
+    """Whether a word on how a shape looks, on mass or on inertia stands here; the
+    cursor goes on behind it."""
+    following = cursor.ahead(1).lower()
+    is_name = following in (":", "-")
+    if cursor.token.kind == "number" and following == "*":
         cursor.place += 2
-    elif cursor.is_word("color") and cursor.ahead(1) == "(":
+    elif cursor.is_word("color") and following == "(":
         cursor.next()
         read_point(cursor)
-    elif cursor.is_word("granularity"):
+    elif cursor.is_word("granularity") or (cursor.is_word("mass") and not is_name):
         cursor.next()
         cursor.number()
     elif cursor.is_word(*COLORS, "hidden", "decoration") and not is_name:
         cursor.next()
-    else:
-        return cursor.take("+")
-    return True
-
-
-def skip_dynamics(cursor: Cursor) -> bool:
-    """Whether mass or inertia stand here; the cursor goes on behind them."""
-    if cursor.is_word("mass") and cursor.ahead(1) not in (":", "-"):
-        cursor.next()
-        cursor.number()
-    elif cursor.is_word("inertial") and cursor.ahead(1).lower() == "frame":
+    elif cursor.is_word("inertial") and following == "frame":
         cursor.place += 2
         read_transforms(cursor)
-    elif cursor.is_word("inertia") and cursor.ahead(1).lower() == "matrix":
+    elif cursor.is_word("inertia") and following == "matrix":
         cursor.place += 2
         cursor.take("solid")
         if cursor.token.text.lower().split("_")[0] in INERTIAS:
@@ -126,7 +117,7 @@ def skip_dynamics(cursor: Cursor) -> bool:
         while cursor.take(","):
             cursor.number()
     else:
-        return False
+        return cursor.take("+")
     return True
 
 

@@ -43,7 +43,7 @@ from linkages.formats.mjcf_poses import (
     read_settings,
     rotation_of_quaternion,
 )
-from linkages.formats.names import TakenNames, numbered
+from linkages.formats.names import TakenNames, first_new, numbered
 from linkages.formats.xml_tree import Element
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import JointKind, Limits
@@ -183,7 +183,7 @@ def _read_body(
     name = element.attributes.get("name")
     if name is None:
         numbers = itertools.count(len(model.elements))
-        name = model.taken.new_body(f"body{number}" for number in numbers)
+        name = first_new((f"body{number}" for number in numbers), model.taken.bodies)
     element.check_new(name, model.elements)
     pose = pose @ pose_of(element, model.settings)
     joints = [
@@ -211,7 +211,7 @@ def _read_axis(joint: Element, pose: ExactPose, model: _Model) -> Axis:
     name = joint.attributes.get("name")
     if name is None:
         numbers = itertools.count(len(model.axes) + 1)
-        name = model.taken.new_axis(f"J{number}" for number in numbers)
+        name = first_new((f"J{number}" for number in numbers), model.taken.joints)
     joint.check_new(name, model.axes)
     point = ExactPose.at(joint.numbers("pos", (3,)) or AT_REST)
     direction = np.array(joint.numbers("axis", (3,)) or (0.0, 0.0, 1.0))
@@ -268,7 +268,7 @@ def _add_chains(model: _Model) -> None:
         for number, joint in enumerate(joints, start=1):
             second = body
             if number < len(joints):
-                name = model.taken.new_body(numbered(f"{body.name}.{number}"))
+                name = first_new(numbered(f"{body.name}.{number}"), model.taken.bodies)
                 second = _Body(name, body.frame)
                 model.bodies.append(second)
             base, moved = (second, first) if joint.is_reversed else (first, second)
@@ -393,15 +393,15 @@ class _Anchor:
 
 def _read_ends(element: Element, model: _Model) -> tuple[_Placed, _Placed, bool]:
     """What an equality joins, two sites or two bodies; and whether they are sites."""
-    if "site1" in element.attributes or "site2" in element.attributes:
-        allowed = "the name of a site"
-        one = element.reference("site1", model.sites, allowed)
-        other = element.reference("site2", model.sites, allowed)
-        return model.sites[one], model.sites[other], True
+    are_sites = "site1" in element.attributes or "site2" in element.attributes
     allowed = f"one of the bodies {', '.join(model.elements)}"
-    one = element.reference("body1", model.elements, allowed)
-    other = element.reference("body2", model.elements, allowed, default=WORLD)
-    return model.elements[one], model.elements[other], False
+    noun, known, default = "body", model.elements, WORLD
+    if are_sites:
+        allowed = "the name of a site"
+        noun, known, default = "site", model.sites, ""
+    one = element.reference(f"{noun}1", known, allowed)
+    other = element.reference(f"{noun}2", known, allowed, default)
+    return known[one], known[other], are_sites
 
 
 def _read_connect(element: Element, name: str, model: _Model) -> _Anchor:

@@ -30,7 +30,7 @@ from linkages.formats.composites import with_joints_of_chains
 from linkages.formats.exact_poses import ExactPose, Origin
 from linkages.formats.xml_tree import Element
 from linkages.mechanisms.couplings import Coupling
-from linkages.mechanisms.joint import FACETS, JointKind, Limits
+from linkages.mechanisms.joint import DRAWN_ONLY, FACETS, JointKind, Limits
 from linkages.values import quoted
 
 OLDEST, NEWEST = (1, 5), (1, 11)
@@ -101,7 +101,12 @@ def read_sdf(root: Element, name: str) -> Assembly:
     model = _Model(element, version, Origin())
     _collect(model)
     rounding = 0.0
-    poses_of_joints = [_pose(joint, model) for joint in _joints_with_places(element)]
+    elsewhere = [word for word, kind in KINDS.items() if kind in DRAWN_ONLY]
+    poses_of_joints = [
+        _pose(joint.attributes["name"], model)
+        for joint in element.all("joint")
+        if joint.attributes.get("type") not in (*elsewhere, GEARBOX)
+    ]
     origin = Origin.near([pose.place for pose in poses_of_joints])
     if origin.place is not None:
         model = _Model(element, version, origin)
@@ -129,18 +134,6 @@ def read_sdf(root: Element, name: str) -> Assembly:
         rounding=rounding,
         notes=tuple(model.notes),
     )
-
-
-def _joints_with_places(element: Element) -> list[str]:
-    """The names of the joints of a model that are at a place."""
-    elsewhere = [
-        word for word, kind in KINDS.items() if kind.facets.is_point_drawn_only
-    ]
-    return [
-        joint.attributes["name"]
-        for joint in element.all("joint")
-        if joint.attributes.get("type") not in (*elsewhere, GEARBOX)
-    ]
 
 
 def _read_joints(model: _Model) -> tuple[BodyJoint, ...]:

@@ -104,14 +104,32 @@ def parse_xml(content: bytes) -> Element:
     A document type is refused, and with it every entity that a file could define.
     Raises `GeometryError` with the line.
     """
-    builder = _Builder()
     parser = expat.ParserCreate()
-    parser.StartElementHandler = builder.start
-    parser.EndElementHandler = builder.end
-    parser.CharacterDataHandler = builder.add_text
-    parser.StartDoctypeDeclHandler = builder.refuse_document_type
+    document = Element("", 0)
+    open_elements = [document]
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        element = Element(tag, parser.CurrentLineNumber, attributes)
+        open_elements[-1].children.append(element)
+        open_elements.append(element)
+        is_near = len(open_elements) - 1 <= DEEPEST
+        allowed = f"at most {DEEPEST} elements inside each other"
+        require(is_near, f"line {element.line}", f"<{tag}>", allowed)
+
+    def add_text(text: str) -> None:
+        open_elements[-1].text += text
+
+    def refuse_document_type(name: str, *others: object) -> None:
+        # entities may be large beyond measure, or files
+        what = f"line {parser.CurrentLineNumber}"
+        allowed = "left out; entities are not read"
+        raise GeometryError(what, f"<!DOCTYPE {name}>", allowed)
+
+    parser.StartElementHandler = start
+    parser.EndElementHandler = lambda tag: open_elements.pop()
+    parser.CharacterDataHandler = add_text
+    parser.StartDoctypeDeclHandler = refuse_document_type
     parser.buffer_text = True
-    builder.parser = parser
     try:
         parser.Parse(content, True)
     except expat.ExpatError as error:
@@ -122,42 +140,5 @@ def parse_xml(content: bytes) -> Element:
         if isinstance(error, GeometryError):
             raise
         raise GeometryError("encoding", error, "UTF-8") from None
-    assert builder.root is not None
-    return builder.root
-
-
-class _Builder:
-    """The elements that are open while a document is parsed."""
-
-    parser: expat.XMLParserType
-
-    def __init__(self) -> None:
-        self.root: Element | None = None
-        self._open: list[Element] = []
-
-    def start(self, tag: str, attributes: dict[str, str]) -> None:
-        """Open an element."""
-        element = Element(tag, self.parser.CurrentLineNumber, attributes)
-        if self._open:
-            self._open[-1].children.append(element)
-        else:
-            self.root = element
-        self._open.append(element)
-        is_near = len(self._open) <= DEEPEST
-        allowed = f"at most {DEEPEST} elements inside each other"
-        require(is_near, f"line {element.line}", f"<{tag}>", allowed)
-
-    def end(self, tag: str) -> None:
-        """Close the element that is open."""
-        self._open.pop()
-
-    def add_text(self, text: str) -> None:
-        """Add characters to the element that is open."""
-        if self._open:
-            self._open[-1].text += text
-
-    def refuse_document_type(self, name: str, *others: object) -> None:
-        """Raise `GeometryError`: entities may be large beyond measure, or files."""
-        what = f"line {self.parser.CurrentLineNumber}"
-        allowed = "left out; entities are not read"
-        raise GeometryError(what, f"<!DOCTYPE {name}>", allowed)
+    (root,) = document.children
+    return root

@@ -123,7 +123,10 @@ class _Assembly:
             (corner,) = (number for of, number in total.corners if of == cell)
             others = tuple(place for place in total.corners if place[0] != cell)
             rest = value - network.sums(Sum(total.constant, others), states)
-            states[:, cell] = _state_of(network.factors[cell], corner, rest)
+            turned = rest if corner < 2 else -rest
+            if corner % 2 == 0:
+                turned = other_angle(network.factors[cell], turned)
+            states[:, cell] = turned
         return states
 
     def scan(self, given: np.ndarray) -> np.ndarray:
@@ -168,12 +171,6 @@ class _Assembly:
             high = np.where(is_below, high, middle)
         roots: np.ndarray = 0.5 * (low + high)
         return roots
-
-
-def _state_of(factor: float, corner: int, angle: np.ndarray) -> np.ndarray:
-    """The states (k,) of a cell with these angles (k,) at a corner."""
-    turned = angle if corner < 2 else -angle
-    return other_angle(factor, turned) if corner % 2 == 0 else turned
 
 
 def _circle(factor: float) -> np.ndarray:

@@ -12,7 +12,7 @@ are finite in number; the closed form gives all of them.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import combinations, count, pairwise
 from math import degrees
@@ -274,20 +274,16 @@ class _Search:
             for other in places.get(node.place, ()):
                 there = _Node(node.place, other)
                 heapq.heappush(queue, (switches + 1, length, next(order), there, node))
-            for target in self._targets(node, places):
+            goals = self._goals or [] if node.locks == self.after else []
+            for target in dict.fromkeys([*places, *goals]):
+                if target == node.place:
+                    continue
                 route = self._way(node.locks, node.place, target)
                 if route is not None:
                     there = _Node(target, node.locks)
                     cost = length + route.length
                     heapq.heappush(queue, (switches, cost, next(order), there, node))
         return None
-
-    def _targets(self, node: _Node, places: Iterable[int]) -> Iterator[int]:
-        """The other places that may be gone to with the locks of a node."""
-        goals = self._goals or [] if node.locks == self.after else []
-        for place in dict.fromkeys([*places, *goals]):
-            if place != node.place:
-                yield place
 
     def _way(self, locks: Locks, first: int, last: int) -> Route | None:
         """The route between two places with the same locks; None where there is

@@ -105,12 +105,12 @@ class Unknown:
     matrix."""
 
     label: str
-    variable: int
-    period: float
-    low: float
-    high: float
-    is_angle: bool
-    is_length: bool
+    variable: int = -1
+    period: float = np.inf
+    low: float = -np.inf
+    high: float = np.inf
+    is_angle: bool = False
+    is_length: bool = False
 
     @property
     def unit(self) -> str:
@@ -132,7 +132,12 @@ class Structure:
         self.size = Size(mechanism)
         self.unit = self.size.characteristic_length
         self.idle_turns: tuple[str, ...] = ()
-        self._hold_idle_turns()
+        self.groups = Groups(mechanism, self.unit)
+        # the turns that move nothing else are locked at 0, one after the other
+        while (label := find_idle_turn(self.groups)) is not None:
+            self.idle_turns += (label,)
+            self.mechanism = self.mechanism.with_locks({label: 0.0})
+            self.groups = Groups(self.mechanism, self.unit)
         locked = "every one locked or rigid"
         if not self.unknowns and self.idle_bodies:
             idle = ", ".join(self.idle_bodies)
@@ -141,16 +146,6 @@ class Structure:
         require(can_move, "joints", locked, "such that one is left to move")
 
     # --- bodies and pairs -------------------------------------------------------------
-
-    def _hold_idle_turns(self) -> None:
-        """Lock the turns that move nothing else at 0, one after the other."""
-        while True:
-            self.groups = Groups(self.mechanism, self.unit)
-            label = find_idle_turn(self.groups)
-            if label is None:
-                break
-            self.idle_turns += (label,)
-            self.mechanism = self.mechanism.with_locks({label: 0.0})
 
     @property
     def points(self) -> tuple[JointPoint, ...]:
@@ -288,8 +283,19 @@ class Structure:
         ]
         for number in self._spherical:
             if number not in self._kept_spherical:
-                closures.append(self._point_closure(number))
-        closures += [self._rod_closure(rod) for rod in self.rods]
+                chain = self._chain(*self.ends[number][:2])
+                center = self.center(number)
+                joints = (*self._joint_of(number), *self._joints(chain))
+                closures.append(
+                    Closure(ClosureKind.POINT, chain, joints, center, center)
+                )
+        for rod in self.rods:
+            chain = self._chain(*rod.ends)
+            inner = tuple(self.mechanism.pairs[number].joint for number in rod.inner)
+            joints = (rod.joints[0], *self._joints(chain), rod.joints[1], *inner)
+            first, second = rod.centers
+            rod_closure = Closure(ClosureKind.ROD, chain, joints, first, second, rod)
+            closures.append(rod_closure)
         return tuple(closures)
 
     def _begun_at_a_joint(self, cycle: Chain) -> Chain:
@@ -325,19 +331,6 @@ class Structure:
             numbers += self._net.remains
         return tuple(self.mechanism.bodies[number] for number in numbers)
 
-    def _point_closure(self, number: int) -> Closure:
-        chain = self._chain(*self.ends[number][:2])
-        center = self.center(number)
-        joints = (*self._joint_of(number), *self._joints(chain))
-        return Closure(ClosureKind.POINT, chain, joints, center, center)
-
-    def _rod_closure(self, rod: Rod) -> Closure:
-        chain = self._chain(*rod.ends)
-        first, second = rod.centers
-        inner = tuple(self.mechanism.pairs[number].joint for number in rod.inner)
-        joints = (rod.joints[0], *self._joints(chain), rod.joints[1], *inner)
-        return Closure(ClosureKind.ROD, chain, joints, first, second, rod)
-
     def _chain(self, start: int, goal: int) -> Chain:
         """The shortest chain between two bodies, by number."""
         chain = chain_between(self.body_count, self.tree_pairs, start, goal)
@@ -371,8 +364,7 @@ class Structure:
     def placement(self, closure: Closure) -> Placement:
         """The frame in which a closure is written; that of the file where the numbers
         of a rotation are unknowns."""
-        special = self.embedded | self.shifts
-        if any(step.pair in special for step in closure.chain):
+        if any(step.pair in self._columns for step in closure.chain):
             return Placement(closure.first, np.eye(3), self.unit)
         motions = [m for step in closure.chain for m in self.motions(step)]
         return Placement.of_chain(motions, self.unit)
@@ -386,31 +378,35 @@ class Structure:
         unknowns = [self._unknown(number) for number in self._leading]
         for pair in self._kept_spherical:
             joint = self._joint_of(pair)[0]
-            unknowns += [_entry_of_rotation(joint, part) for part in ROTATION]
+            unknowns += [Unknown(f"{joint}.{part}") for part in ROTATION]
         for free in self.free_pairs.values():
             body = self.mechanism.bodies[free.moved]
-            unknowns += [_entry_of_rotation(body, part) for part in ROTATION]
-            unknowns += [_length(f"{body}.{part}") for part in TRANSLATION]
+            unknowns += [Unknown(f"{body}.{part}") for part in ROTATION]
+            unknowns += [Unknown(f"{body}.{x}", is_length=True) for x in TRANSLATION]
         for point in self.free_points:
-            unknowns += self._numbers_of_point(point)
+            limits = (point.limits / self.unit).tolist()
+            for part, (low, high) in zip(TRANSLATION, limits, strict=False):
+                label = f"{point.name}.{part}"
+                unknowns.append(Unknown(label, low=low, high=high, is_length=True))
         return _each_called_once(unknowns)
 
-    def _numbers_of_point(self, point: FreePoint) -> list[Unknown]:
-        return [
-            _length(f"{point.name}.{part}", low / self.unit, high / self.unit)
-            for part, (low, high) in zip(TRANSLATION, point.limits, strict=False)
-        ]
-
     @cached_property
+    def _columns(self) -> dict[int, tuple[int, ...]]:
+        """The numbers of the unknowns of every pair that has others than variables."""
+        counts = dict.fromkeys(self._kept_spherical, len(ROTATION))
+        counts |= dict.fromkeys(self.free_pairs, len(ROTATION) + len(TRANSLATION))
+        counts |= {pair: len(one.directions) for pair, one in self.point_pairs.items()}
+        first = len(self._leading)
+        columns = {}
+        for pair, count in counts.items():
+            columns[pair] = tuple(range(first, first + count))
+            first += count
+        return columns
+
+    @property
     def shifts(self) -> dict[int, tuple[int, ...]]:
         """The numbers of the unknowns of every pair of a point, one a direction."""
-        first = len(self._leading) + sum(map(len, self.embedded.values()))
-        shifts = {}
-        for pair, point in self.point_pairs.items():
-            count = len(point.directions)
-            shifts[pair] = tuple(range(first, first + count))
-            first += count
-        return shifts
+        return {pair: self._columns[pair] for pair in self.point_pairs}
 
     @property
     def scales(self) -> np.ndarray:
@@ -500,15 +496,8 @@ class Structure:
     def embedded(self) -> dict[int, tuple[int, ...]]:
         """The numbers of the unknowns of every embedded spherical pair, six, and of
         every free one, nine."""
-        first = len(self._leading)
-        embedded = {}
-        for pair in (*self._kept_spherical, *self.free_pairs):
-            count = len(ROTATION)
-            if pair in self.free_pairs:
-                count += len(TRANSLATION)
-            embedded[pair] = tuple(range(first, first + count))
-            first += count
-        return embedded
+        pairs = (*self._kept_spherical, *self.free_pairs)
+        return {pair: self._columns[pair] for pair in pairs}
 
     def center(self, pair: int) -> np.ndarray:
         """The point (3,) about which an embedded spherical pair or a free one turns."""
@@ -592,14 +581,3 @@ def _each_called_once(unknowns: Sequence[Unknown]) -> tuple[Unknown, ...]:
         labels.add(label)
         once.append(replace(unknown, label=label))
     return tuple(once)
-
-
-def _entry_of_rotation(name: str, part: str) -> Unknown:
-    """An unknown that is an entry of a rotation matrix."""
-    label = f"{name}.{part}"
-    return Unknown(label, -1, np.inf, -np.inf, np.inf, is_angle=False, is_length=False)
-
-
-def _length(label: str, low: float = -np.inf, high: float = np.inf) -> Unknown:
-    """An unknown that is a coordinate of a body or a point."""
-    return Unknown(label, -1, np.inf, low, high, is_angle=False, is_length=True)
