@@ -184,12 +184,12 @@ def _claims(findings: Findings, provenance: Provenance, left: int) -> tuple[Clai
 
 
 # --- whether more random starts are worth while ---------------------------------------
-#
+
 # What was met by a few starts only has neighbours as small as it is that were met by none:
 # of an island with a share p of N starts none comes with a probability of exp(-p N). So
 # starts are drawn until each island was met some times. Where too many were met just once
 # there is no end in sight, and no more are drawn.
-
+#
 # Starts that meet an island: of one as large none comes in 5e-5 of searches.
 FEWEST = 10
 # Share of the starts that met what no other one met: of those to come about as many meet
