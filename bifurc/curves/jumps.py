@@ -23,7 +23,7 @@ from bifurc.decisions import (
     is_slow,
     rests,
 )
-from bifurc.problem import Problem
+from bifurc.system import System
 
 # shares of its length at which a curve is looked at again
 PLACES = np.array([0.07, 0.23, 0.41, 0.61, 0.83])
@@ -31,7 +31,7 @@ SEVERAL = 2  # of these places: a curve may touch itself at one
 LEAST = 4  # samples of a stretch that is compared
 
 
-def repeats_itself(problem: Problem, branch: Branch) -> bool:
+def repeats_itself(problem: System, branch: Branch) -> bool:
     """Whether a curve passes several of its places more than once along the same
     line."""
     within = is_same_point.threshold * problem.domain.scale

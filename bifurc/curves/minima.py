@@ -19,7 +19,7 @@ from bifurc.curves.monitor import NODES, Profile
 from bifurc.decisions import is_level, stands_out
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem, relative_jacobians
+from bifurc.system import System, relative_jacobians
 
 FINE = 96  # intervals of a piece on which the interpolants are compared
 DIFFERENCE = 1e-5  # step, over the scale, of the central difference of F'
@@ -40,7 +40,7 @@ class Minima(NamedTuple):
     values: np.ndarray
 
 
-def singular_value_minima(problem: Problem, branch: Branch, profile: Profile) -> Minima:
+def singular_value_minima(problem: System, branch: Branch, profile: Profile) -> Minima:
     """The local minima of the smallest regular singular value.
 
     Where a value rises to no side by more than rounding there is no minimum, and the
@@ -85,7 +85,7 @@ def singular_value_minima(problem: Problem, branch: Branch, profile: Profile) ->
 
 
 def stand_out(
-    problem: Problem, branch: Branch, profile: Profile, values: np.ndarray
+    problem: System, branch: Branch, profile: Profile, values: np.ndarray
 ) -> np.ndarray:
     """Which of the minima ``values`` (k,) are below half the largest value on the
     curve.
@@ -100,7 +100,7 @@ def stand_out(
     return stands_out(values, half)
 
 
-def _largest_value(problem: Problem, branch: Branch, profile: Profile) -> float:
+def _largest_value(problem: System, branch: Branch, profile: Profile) -> float:
     """The largest of the smallest regular singular values on the curve, to about 1e-8.
 
     From every node near the top a row of points closes in on the highest one.
@@ -230,7 +230,7 @@ class _ValuesAndSlopes(NamedTuple):
 
 
 def _values_and_slopes(
-    problem: Problem, branch: Branch, rank: int, s: np.ndarray
+    problem: System, branch: Branch, rank: int, s: np.ndarray
 ) -> _ValuesAndSlopes:
     """Singular value number ``rank`` at arclengths (k,), and its derivative there.
 

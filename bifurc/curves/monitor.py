@@ -15,7 +15,7 @@ from bifurc.branch import Branch, Outcome
 from bifurc.decisions import is_zero_along, stands_still, unit_over_rounding
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem
+from bifurc.system import System
 
 COUNT = 16
 # Chebyshev nodes of a piece, from 0 where it begins to 1 where it ends.
@@ -44,7 +44,7 @@ class Profile:
         return self.values[..., self.rank - 1]
 
 
-def profile_branch(problem: Problem, branch: Branch) -> Profile:
+def profile_branch(problem: System, branch: Branch) -> Profile:
     """The singular values along a curve."""
     arclength = branch.places(NODES)
     values = singular_values(problem, branch(arclength))

@@ -11,14 +11,14 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc import _core
-from bifurc.problem import Problem, relative_jacobians
+from bifurc.system import System, relative_jacobians
 
 # Unknowns up to which compiled code takes them by Jacobi's method, which knows small ones
 # to more digits than LAPACK: of more unknowns that takes twenty times as long.
 FEW = 100
 
 
-def singular_values(problem: Problem, points: np.ndarray) -> np.ndarray:
+def singular_values(problem: System, points: np.ndarray) -> np.ndarray:
     """Singular values (..., n) of F' at points (..., n), over the problem's magnitude,
     padded with zeros."""
     if not points.size:

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import compress
-from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
 from bifurc.branch import Branch, Outcome
-from bifurc.curves.certificate import Certificate
-from bifurc.curves.monitor import Profile
-from bifurc.curves.near_motion import NearMotionTrace, NearSurface
+from bifurc.curves.misclosure import NearMotionTrace, NearSurface
 from bifurc.decisions import (
     Decision,
     is_lost_in_rounding,
@@ -22,12 +20,13 @@ from bifurc.decisions import (
 )
 from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem, relative_gaps
-from bifurc.search.components import Components
+from bifurc.problem import Problem
+from bifurc.search.records import Components, PointSighting, RigidAssembly, TracedBranch
 from bifurc.search.seed_book import Fate, SeedBook, SeedFate, reach_of_places
 from bifurc.seeds import Audit
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import SingularPoint
+from bifurc.system import relative_gaps
 
 if TYPE_CHECKING:
     from bifurc.singular.germ import Germ  # mpmath takes long to import
@@ -35,7 +34,6 @@ if TYPE_CHECKING:
 # Shares of its length at which a branch is compared with those already known.
 PLACES = np.array([0.11, 0.29, 0.47, 0.71, 0.93])
 SHARPER = 1e-2  # times the distance of two assemblies: where they are weak
-NO_DOUBT = (False, False, 0.0)
 
 Item = TypeVar("Item")
 
@@ -59,67 +57,6 @@ class Numbered(dict[int, Item], Generic[Item]):
             if number in self:
                 yield self[number]
             number += 1
-
-
-@dataclass(frozen=True, eq=False)
-class TracedBranch:
-    """A branch with what was seen along it.
-
-    ``minima`` are arclengths (k,) and values (k,) of the local minima of the smallest
-    regular singular value. ``located`` are the arclengths of minima that led to a
-    singular point, ``passes`` those at which the branch passes it, ``missing`` those
-    where one must be and none was located. ``misclosure`` is the largest along the
-    branch, ``blur`` the distance, over the scale, to which its points are known.
-    ``certificate`` says what is certified of it, None where that was not asked for or
-    the problem has no bounds. ``multiplicity``: 1 of an ordinary curve, 2 of one that
-    one step of deflation makes regular, 0 where it is not known.
-    """
-
-    branch: Branch
-    profile: Profile
-    minima: tuple[np.ndarray, np.ndarray]
-    located: tuple[float, ...]
-    misclosure: float = 0.0
-    blur: float = 0.0
-    passes: tuple[float, ...] = ()
-    missing: tuple[float, ...] = ()
-    certificate: Certificate | None = None
-    multiplicity: int = 1
-
-    @property
-    def is_refused(self) -> bool:
-        """Whether there is a certificate, and it does not hold."""
-        return self.certificate is not None and not self.certificate.holds
-
-    @property
-    def doubt(self) -> tuple[bool, bool, float]:
-        """Whether the branch is refused a certificate, whether it stalls, and the
-        arclength on which it is refused; less doubt is the smaller tuple."""
-        refused = 0.0
-        if self.certificate is not None and self.is_refused:
-            refused = self.certificate.refused_length
-        return self.is_refused, self.branch.outcome is Outcome.STALLED, refused
-
-
-class PointSighting(NamedTuple):
-    """A singular point that was looked at, its number, and whether it is new."""
-
-    point: SingularPoint
-    number: int
-    is_new: bool
-
-    @property
-    def fate(self) -> SeedFate:
-        """That of a seed there."""
-        return SeedFate(Fate.AT_SINGULAR_POINT, self.number)
-
-
-class RigidAssembly(NamedTuple):
-    """An isolated solution at a ``place`` (n,). It, or several, lie ``hidden`` by
-    rounding up to so far from there."""
-
-    place: np.ndarray
-    hidden: float
 
 
 class Findings:

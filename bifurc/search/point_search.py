@@ -13,8 +13,8 @@ from bifurc.decisions import (
     is_precise_enough,
 )
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import relative_gaps, relative_jacobians
-from bifurc.search.findings import PointSighting, Run
+from bifurc.search.findings import Run
+from bifurc.search.records import PointSighting
 from bifurc.singular.classify import classify_from_nearby, classify_singular_point
 from bifurc.singular.locate import (
     MOST_FOR_GERM,
@@ -23,6 +23,7 @@ from bifurc.singular.locate import (
 )
 from bifurc.singular.point import Kind
 from bifurc.singular.sphere import Sections, is_on_surface
+from bifurc.system import relative_gaps, relative_jacobians
 
 if TYPE_CHECKING:
     from bifurc.singular.germ import Germ

@@ -24,10 +24,10 @@ from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.branches.branch_examination import BranchExaminer, ExaminedBranch
 from bifurc.search.branches.certification import finer_settings, may_be_mended
-from bifurc.search.findings import NO_DOUBT, Run
+from bifurc.search.findings import Run
 from bifurc.search.near_motion_search import NearMotionSearch
+from bifurc.search.records import NO_DOUBT, Start
 from bifurc.search.seed_book import Fate, SeedFate
-from bifurc.search.starts import Start
 from bifurc.settings import TraceSettings
 
 log = logging.getLogger(__name__)

@@ -23,10 +23,11 @@ from bifurc.decisions import (
     is_same_half_branch,
     may_be_null,
 )
-from bifurc.numerics.directions import unit_vectors
+from bifurc.numerics.binary_forms import unit_vectors
 from bifurc.numerics.singular_values import Factors, factors_of, singular_values
-from bifurc.problem import Problem, relative_jacobians, relative_residuals
+from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions
+from bifurc.system import relative_jacobians, relative_residuals
 
 UNSEEN = -1  # dimension of a section that could not be made
 

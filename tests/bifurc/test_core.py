@@ -14,7 +14,7 @@ from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.chebyshev import CHEBYSHEV, NODE_COUNT, RHOS
-from bifurc.problem import Anchor, MarchSettings
+from bifurc.system import Anchor, MarchSettings
 from tests.bifurc.known_curves import WindingCurve
 
 

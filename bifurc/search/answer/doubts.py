@@ -31,11 +31,13 @@ from bifurc.numerics.blur import (
     rounding_unit,
 )
 from bifurc.numerics.null_spaces import null_spaces
-from bifurc.problem import Problem, relative_gaps
+from bifurc.problem import Problem
 from bifurc.search.answer.completeness import SearchDoubt
-from bifurc.search.findings import Findings, TracedBranch
+from bifurc.search.findings import Findings
+from bifurc.search.records import TracedBranch
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
+from bifurc.system import relative_gaps
 
 MOST_SAMPLES = 200  # of a surface at which it is seen what it misses
 

@@ -23,9 +23,9 @@ from bifurc.numerics.blur import blur_along
 from bifurc.numerics.singular_values import singular_values
 from bifurc.search.branches.canonical_course import canonical_course
 from bifurc.search.branches.certification import certificate_of
-from bifurc.search.findings import PointSighting, Run, TracedBranch
+from bifurc.search.findings import Run
 from bifurc.search.point_search import BRANCH_REACH, PointSearch
-from bifurc.search.starts import Start, half_branch_starts
+from bifurc.search.records import PointSighting, Start, TracedBranch, half_branch_starts
 from bifurc.singular.locate import LocatedPoint
 
 ABOUT = 16  # nodes before and after a deep place that are not lower: those of a piece
