@@ -29,19 +29,19 @@ from bifurc.numerics.corrector import (
     project_by_least_squares,
     project_to_sphere_by_newton,
 )
-from bifurc.problem import (
+from bifurc.problem import Problem
+from bifurc.seeding import random_seeds
+from bifurc.seeds import Seeds
+from bifurc.system import (
     NO_SHORTCUTS,
     Accuracy,
     March,
     MarchSettings,
     PreciseResidual,
-    Problem,
     Shortcuts,
     SphereProjection,
     jacobian_at,
 )
-from bifurc.seeding import random_seeds
-from bifurc.seeds import Seeds
 
 if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve

@@ -23,9 +23,9 @@ from bifurc.problem import Problem
 from bifurc.torus import wrap
 from linkages.closure.closure import Closure
 from linkages.decisions import keeps_angle
+from linkages.entry import Linkage
 from linkages.forms import name_forms
 from linkages.labels import FormLabels, largest_residual, subject_of
-from linkages.linkage import Linkage
 
 SAMPLES = 400  # of a form, to name it and to see what stands still
 

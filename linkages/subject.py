@@ -18,9 +18,9 @@ from bifurc.atlas import Atlas
 from bifurc.isometry import Isometry
 from bifurc.problem import Problem
 from linkages.closure.closure import Closure
+from linkages.entry import Linkage
 from linkages.labelling import label_atlas, name_atlas, recount_labelled
 from linkages.labels import FormLabels, loop_of, subject_of, table_values
-from linkages.linkage import Linkage
 from linkages.loop import LARGEST, SMALLEST, Loop
 from linkages.mechanisms.mechanism import Lock, Mechanism
 from linkages.networks.mechanism import mechanism_at
@@ -243,9 +243,9 @@ class MechanismSubject(Subject):
         self.gruebler = self.mechanism.gruebler
         self.factors = structure.scales
 
-    @property
+    @cached_property
     def closure(self) -> Closure:
-        return self.readout.closure
+        return Closure(self.mechanism, structure=self.readout.structure)
 
     @property
     def values(self) -> dict[str, Any]:

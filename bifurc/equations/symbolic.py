@@ -15,7 +15,7 @@ from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
 
 if TYPE_CHECKING:
-    from bifurc.problem import PreciseResidual
+    from bifurc.system import PreciseResidual
 
 # of one number, by their names in sympy
 _RECIPROCALS = {

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.numerics.bordered import Bordered, bordered_at, bordered_matrix
-from bifurc.problem import (
-    Problem,
+from bifurc.system import (
     SphereProjection,
+    System,
     relative_gaps,
     relative_jacobians,
     relative_residuals,
@@ -45,7 +45,7 @@ class _Iterate(NamedTuple):
     gap: float
 
 
-def _iterate(problem: Problem, point: np.ndarray) -> _Iterate:
+def _iterate(problem: System, point: np.ndarray) -> _Iterate:
     residual = problem.residuals(point[None])[0] / problem.magnitude
     return _Iterate(point, residual, math.sqrt(residual @ residual))
 
@@ -54,7 +54,7 @@ def _iterate(problem: Problem, point: np.ndarray) -> _Iterate:
 
 
 def correct_across(
-    problem: Problem,
+    problem: System,
     point: np.ndarray,
     tangent: np.ndarray,
     tolerance: float,
@@ -107,7 +107,7 @@ def last_step(tolerance: float, scale: float) -> float:
 
 
 def correct_normal(
-    problem: Problem, points: np.ndarray, bases: np.ndarray
+    problem: System, points: np.ndarray, bases: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Solutions (k, n) straight above ``points`` (k, n) of tangent planes (k, n, 2),
     and the relative residuals (k,).
@@ -162,7 +162,7 @@ def limited(steps: np.ndarray, longest: float) -> np.ndarray:
 
 
 def project_by_least_squares(
-    problem: Problem, starts: np.ndarray
+    problem: System, starts: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Solutions (k, n) reached from every start (k, n), and the relative residual (k,)
     left at each, infinite where F is not defined."""
@@ -175,7 +175,7 @@ def project_by_least_squares(
     return points, gaps
 
 
-def _least_squares(problem: Problem, start: np.ndarray) -> _Iterate:
+def _least_squares(problem: System, start: np.ndarray) -> _Iterate:
     """Where Levenberg and Marquardt's method ends.
 
     With the residual norm as damping it converges quadratically to solution sets that
@@ -204,7 +204,7 @@ def _least_squares(problem: Problem, start: np.ndarray) -> _Iterate:
 
 
 def project_to_sphere_by_newton(
-    problem: Problem, starts: np.ndarray, center: np.ndarray, radius: float
+    problem: System, starts: np.ndarray, center: np.ndarray, radius: float
 ) -> SphereProjection:
     """Solutions reached from starts (k, n), at distance ``radius`` from ``center``."""
     points = np.array(starts, dtype=float)
@@ -217,7 +217,7 @@ def project_to_sphere_by_newton(
 
 
 def _newton_on_sphere(
-    problem: Problem, start: np.ndarray, center: np.ndarray, radius: float
+    problem: System, start: np.ndarray, center: np.ndarray, radius: float
 ) -> tuple[np.ndarray, float]:
     """Where Gauss-Newton on F = 0 and |u - center| = radius ends, and the length of its
     last step.

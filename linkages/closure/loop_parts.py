@@ -14,7 +14,10 @@ from bifurc.domain import Domain
 from bifurc.errors import ProblemError
 from bifurc.function_problem import EXACT_HESSIAN
 from bifurc.limits import Deadline
-from bifurc.problem import (
+from bifurc.problem import Problem
+from bifurc.seeding import random_seeds
+from bifurc.seeds import Seeds
+from bifurc.system import (
     Accuracy,
     Curvature,
     CurveNodes,
@@ -22,12 +25,9 @@ from bifurc.problem import (
     MarchSettings,
     MarchStatus,
     PreciseResidual,
-    Problem,
     Shortcuts,
     SphereProjection,
 )
-from bifurc.seeding import random_seeds
-from bifurc.seeds import Seeds
 from linkages import _core
 from linkages.closure.parts import NEARLY_CLOSED, ClosureParts
 from linkages.loop import Loop

@@ -4,20 +4,24 @@ its bodies reach, sources of starts."""
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import pairwise
+from typing import Protocol, TypeAlias
 
 import numpy as np
 
+from bifurc.branch import Branch
 from bifurc.decisions import is_start_solved
 from bifurc.domain import Domain
 from bifurc.equations.system import ScaledTape
 from bifurc.function_problem import EXACT_HESSIAN
 from bifurc.limits import Deadline
-from bifurc.problem import Accuracy, Curvature, Problem
+from bifurc.problem import Problem
 from bifurc.seeding import random_seeds, start_region
-from bifurc.seeds import Seeds
+from bifurc.seeds import Audit, Seeds
+from bifurc.system import Accuracy, Curvature
 from linkages.closure import cut_at_limits
 from linkages.closure.curvature import CurvatureBounds
 from linkages.closure.equations import write_equations
@@ -25,7 +29,6 @@ from linkages.closure.errors import JointErrors
 from linkages.closure.parts import NEARLY_CLOSED, ClosureParts
 from linkages.closure.within_limits import brought_within_limits
 from linkages.dyads import slices as dyads
-from linkages.structure.source import ForSubject, Source
 from linkages.structure.structure import Structure
 from linkages.turns import whole_turns
 from linkages.turns.turn_lattice import TurnLattice, turn_lattice
@@ -36,6 +39,27 @@ from linkages.turns.whole_turns import TurnedEnds
 LARGEST_COMPILED = 250
 MOST_BEYOND = 60  # solutions beyond the limits that are brought back to them
 STRIDE_OF = 12  # joints, the most of a loop: up to there a stride is the scale
+
+
+class Source(Protocol):
+    """Points ``starts`` (k, n) near solutions, and how sure it is that ``branches`` are
+    all motions, judged in about so many ``seconds``."""
+
+    @property
+    def starts(self) -> np.ndarray:
+        """Points near solutions."""
+
+    def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
+        """What is said of the branches."""
+
+
+# The source of a problem of a structure, drawn with a generator beside so many random
+# starts; None where the method says nothing of such a mechanism.
+ForSubject: TypeAlias = Callable[
+    [Problem, Structure, np.random.Generator, int], Source | None
+]
+
+
 # what gives starts and judges what is traced: the first that applies to a mechanism
 SOURCES: tuple[ForSubject, ...] = (
     dyads.for_subject,

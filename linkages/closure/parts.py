@@ -13,8 +13,9 @@ from bifurc.domain import Domain
 from bifurc.equations.system import CompiledSystem
 from bifurc.function_problem import NumericalProblem
 from bifurc.limits import Deadline
-from bifurc.problem import Accuracy, Curvature, Problem
+from bifurc.problem import Problem
 from bifurc.seeds import Seeds
+from bifurc.system import Accuracy, Curvature
 
 if TYPE_CHECKING:
     # it imports networkx, which a loop does not need

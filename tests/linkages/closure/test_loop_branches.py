@@ -7,11 +7,11 @@ from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.jumps import changes_of_course, kinks
 from bifurc.curves.misclosure import largest_misclosure
-from bifurc.numerics.collocation import march_by_collocation
-from bifurc.problem import relative_gaps
+from bifurc.function_problem import NumericalProblem
 from bifurc.search.branches.canonical_course import canonical_course
 from bifurc.search.explore import explore
 from bifurc.settings import TraceSettings
+from bifurc.system import relative_gaps
 from linkages.catalogue import entry
 from linkages.closure.closure import Closure
 from linkages.loop import Loop
@@ -58,8 +58,7 @@ def test_forms_through_bifurcations_keep_their_course():
 class WithoutSeries(Closure):
     """The closure of a loop as any other problem: no Taylor series."""
 
-    def march(self, start, tangent, settings):
-        return march_by_collocation(self, start, tangent, settings)
+    march = NumericalProblem.march
 
 
 @pytest.mark.parametrize("name", ["bennett", "bricard-line-symmetric"])
