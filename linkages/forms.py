@@ -106,7 +106,7 @@ def name_forms(
         for samples, change in zip(forms, changes, strict=True)
     ]
     names = [identity.name for identity in identities]
-    in_order = range(len(forms))
+    in_order = list(range(len(forms)))
     if len(set(names)) < len(names):
         in_order = _in_order(forms)
     distinct = list(identities)
