@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
@@ -238,7 +239,7 @@ class System(ABC):
     magnitude: float = 1.0
     accuracy: Accuracy = Accuracy()
 
-    @property
+    @cached_property
     def n(self) -> int:
         """Number of unknowns."""
         return len(self.domain.names)

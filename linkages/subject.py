@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, lru_cache, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -39,14 +39,6 @@ if TYPE_CHECKING:
 FREEDOMS = 6  # of a body in space
 # what unknowns are shown in, by the units of an atlas
 UNITS = {"rad": "deg", "size": "lengths", "": "entries ax to bz of rotation matrices"}
-
-
-class Values(NamedTuple):
-    """The ``values`` (k, v) of joint variables with their ``names``, rad and the user's
-    unit."""
-
-    names: Sequence[str]
-    values: np.ndarray
 
 
 class Subject(ABC):
@@ -159,8 +151,9 @@ class Subject(ABC):
         return {}
 
     @abstractmethod
-    def joint_values(self, points: np.ndarray) -> Values:
-        """The values of all joint variables at configurations (k, n)."""
+    def joint_values(self, points: np.ndarray) -> tuple[Sequence[str], np.ndarray]:
+        """The names of all joint variables, and their values (k, v) at configurations
+        (k, n), rad and the user's unit."""
 
     def dataset_variables(self, atlas: Atlas) -> dict[str, Variable]:
         """What a dataset holds besides the atlas, by name."""
@@ -223,8 +216,8 @@ class LoopSubject(Subject):
     def heading(self, atlas: Atlas) -> str:
         return "joint angles (deg)"
 
-    def joint_values(self, points: np.ndarray) -> Values:
-        return Values(self.unknowns, points)
+    def joint_values(self, points: np.ndarray) -> tuple[Sequence[str], np.ndarray]:
+        return self.unknowns, points
 
     def still_joints(self, atlas: Atlas, form: int) -> Sequence[int]:
         return FormLabels.of(atlas.forms[form]).inactive_joints
@@ -343,7 +336,7 @@ class MechanismSubject(Subject):
 
         return describe_motion(atlas, form, self.readout)
 
-    def joint_values(self, points: np.ndarray) -> Values:
+    def joint_values(self, points: np.ndarray) -> tuple[Sequence[str], np.ndarray]:
         """All variables, and the unit quaternions of spherical joints."""
         from linkages.readout.poses import quaternions_without_jumps
 
@@ -352,7 +345,7 @@ class MechanismSubject(Subject):
         for label, rotations in self.readout.rotations(points).items():
             columns.append(quaternions_without_jumps(rotations[None])[0])
             names += [f"{label}.q{part}" for part in "xyzw"]
-        return Values(names, np.hstack(columns))
+        return names, np.hstack(columns)
 
     def dataset_variables(self, atlas: Atlas) -> dict[str, Variable]:
         """All joint variables, those that are locked as well, and rotations."""
@@ -435,13 +428,7 @@ def _of_mechanism(mechanism: Mechanism) -> MechanismSubject:
     return SingleLoopSubject(readout, single)
 
 
-def linkage_of(atlas: Atlas) -> Linkage | Mechanism:
-    """What an atlas is of; raises `NoLinkageError` where that is no linkage."""
-    mechanism = mechanism_at(atlas)
-    return Linkage(loop_of(atlas)) if mechanism is None else mechanism
-
-
 @lru_cache(maxsize=2)
 def subject_at(atlas: Atlas) -> Subject:
     """The subject of an atlas; raises `NoLinkageError` where it is no linkage."""
-    return as_subject(linkage_of(atlas))
+    return as_subject(mechanism_at(atlas) or loop_of(atlas))

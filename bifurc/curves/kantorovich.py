@@ -160,7 +160,7 @@ class _Nodes:
             residuals=residuals.reshape(*shape, -1),
             jacobians=jacobians,
             left=np.ascontiguousarray(left[:, :, : problem.n - 1]),
-            images=np.stack([joints.at(arcs[:, 0]), joints.at(arcs[:, 1])], axis=1),
+            images=joints.at(arcs.ravel()).reshape(len(arcs), 2, -1),
             travel=travel,
             curvature=curvature.reshape(travel.shape),
             degree=degree,
@@ -241,5 +241,5 @@ class _Nodes:
 
 def _largest_rows(values: np.ndarray) -> np.ndarray:
     """The largest norm (a,) of vectors (a, k, q)."""
-    largest: np.ndarray = np.linalg.norm(values, axis=2).max(axis=1)
-    return largest
+    squares: np.ndarray = (values * values).sum(axis=2)
+    return np.asarray(np.sqrt(squares.max(axis=1)))

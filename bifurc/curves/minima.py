@@ -19,7 +19,7 @@ from bifurc.curves.monitor import NODES, Profile
 from bifurc.decisions import is_level, stands_out
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
-from bifurc.system import System
+from bifurc.system import System, relative_jacobians
 
 FINE = 96  # intervals of a piece on which the interpolants are compared
 DIFFERENCE = 1e-5  # step, over the scale, of the central difference of F'
@@ -155,11 +155,14 @@ def _places_to_look(branch: Branch, profile: Profile) -> np.ndarray:
     meet.
     """
     squares = profile.values[..., : profile.rank] ** 2
+    spacing = np.gradient(profile.arclength.ravel())
     places = np.concatenate(
         [
             _around_lowest_nodes(branch, profile),
-            _around_interpolated_minima(branch, profile, squares[..., -1]),
-            _around_interpolated_minima(branch, profile, squares.prod(axis=-1)),
+            _around_interpolated_minima(branch, profile, spacing, squares[..., -1]),
+            _around_interpolated_minima(
+                branch, profile, spacing, squares.prod(axis=-1)
+            ),
         ]
     )
     if branch.closed:
@@ -176,10 +179,11 @@ def _around_lowest_nodes(branch: Branch, profile: Profile) -> np.ndarray:
 
 
 def _around_interpolated_minima(
-    branch: Branch, profile: Profile, quantity: np.ndarray
+    branch: Branch, profile: Profile, spacing: np.ndarray, quantity: np.ndarray
 ) -> np.ndarray:
     """Arclengths (4 k,) on both sides of the minima of the interpolant of a quantity
-    (p, nodes), near and a little farther away."""
+    (p, nodes), near and a little farther away: as far as the ``spacing`` of the nodes
+    there."""
     fine = _fine_grid()
     grid = branch.places(fine.fractions)  # (p, FINE + 1)
     interpolated = quantity @ fine.from_nodes.T
@@ -194,7 +198,7 @@ def _around_interpolated_minima(
     middles, near = arclengths[lowest], 2 * steps[lowest]
     nodes = profile.arclength.ravel()
     node = np.minimum(np.searchsorted(nodes, middles), len(nodes) - 1)
-    far = np.gradient(nodes)[node]
+    far = spacing[node]
     return np.concatenate(
         [middles - far, middles - near, middles + near, middles + far]
     )
@@ -233,14 +237,13 @@ def _values_and_slopes(
     With l and r the singular vectors d sigma/ds = l^T F''(r, du/ds): F'' along the
     tangent is a central difference of F'.
     """
-    points = branch(s)
+    points, count = branch(s), len(s)
     step = DIFFERENCE * problem.domain.scale
     along = step * branch(s, 1)
     rows = np.concatenate([points, points + along, points - along])
-    jacobians = problem.jacobians(rows) / problem.magnitude
-    here, after, before = np.split(jacobians, 3)
-    change = (after - before) / (2 * step)
-    values, slopes = _core.singular_value_rates(here, change, rank - 1)
+    jacobians = relative_jacobians(problem, rows)
+    change = (jacobians[count : 2 * count] - jacobians[2 * count :]) / (2 * step)
+    values, slopes = _core.singular_value_rates(jacobians[:count], change, rank - 1)
     return _ValuesAndSlopes(values, slopes)
 
 

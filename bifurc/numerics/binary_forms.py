@@ -61,4 +61,7 @@ def _values(form: np.ndarray, angles: np.ndarray) -> np.ndarray:
 
 def unit_vectors(angles: np.ndarray) -> np.ndarray:
     """Unit vectors (k, 2) of the plane at angles (k,)."""
-    return np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    vectors = np.empty((len(angles), 2))
+    vectors[:, 0] = np.cos(angles)
+    vectors[:, 1] = np.sin(angles)
+    return vectors

@@ -50,6 +50,8 @@ def known_to(
         values = singular_values(problem, points)
     sigma = values[:, problem.n - 2]
     is_clear = ~may_be_scaled_down(sigma)
+    if is_clear.all():
+        return np.asarray(ROUNDING / sigma)
     distances[is_clear] = ROUNDING / sigma[is_clear]
     weak = np.flatnonzero(~is_clear & ~is_without_equation(sigma))
     if len(weak):
@@ -78,8 +80,8 @@ def same_reach(
 def blur_along(problem: System, branch: Branch) -> float:
     """The distance, over the scale, to which the points of a curve are known, as a
     rule."""
-    points = branch(branch.length * PLACES)
-    return float(np.median(known_to(problem, points)))
+    distances = known_to(problem, branch(branch.length * PLACES))
+    return float(np.sort(distances)[len(PLACES) // 2])
 
 
 def change_by_rounding(problem: System, branch: Branch) -> float:

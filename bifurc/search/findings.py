@@ -116,7 +116,7 @@ class Findings:
         points = self.book.seeds.points[list(numbers)]
         within = self.book.reach[list(numbers)]
         reach = float(within.max())
-        distance, _ = self.traced[branch].branch.nearest(points, within=reach)
+        distance, _ = self.traced[branch].branch.nearest(points, reach)
         is_on = may_be_known(distance, within / may_be_known.threshold)
         matching = compress(numbers, is_on)
         self.book.settle(matching, SeedFate(Fate.ON_FORM, branch))
@@ -147,7 +147,7 @@ class Findings:
             points = branch(branch.length * PLACES)
             gaps = relative_gaps(self.problem, points)
             points = points[is_same_point(gaps, self.problem.domain.scale)]
-            if self._are_on(others, points):
+            if _are_on(others, points, reach_of_places(self.problem, points)):
                 self.forget_branch(number)
 
     def forget_parts(self) -> None:
@@ -175,25 +175,31 @@ class Findings:
                 return SeedFate(Fate.ON_FORM, number)
         return None
 
+    def are_on_branches(self, points: np.ndarray) -> np.ndarray:
+        """Which of the points (k, n) lie on some branch, as far as they are known."""
+        within = reach_of_places(self.problem, points)
+        unit = within / may_be_known.threshold
+        are_on = np.zeros(len(points), dtype=bool)
+        for branch in self.branches:
+            distances, _ = branch.nearest(points, float(within.max()))
+            are_on |= may_be_known(distances, unit)
+        return are_on
+
     def branch_along(self, branch: Branch) -> SeedFate | None:
         """That of a seed on the first known branch that runs along another one."""
+        if not self.traced:
+            return None
+        points = branch(branch.length * PLACES)
+        within = reach_of_places(self.problem, points)
         for number, known in self.traced.items():
-            if self._runs_along(known.branch, branch):
+            if _are_on([known.branch], points, within):
                 return SeedFate(Fate.ON_FORM, number)
         return None
 
     def _runs_along(self, one: Branch, other: Branch) -> bool:
         """Whether a branch passes all along another one."""
-        return self._are_on([one], other(other.length * PLACES))
-
-    def _are_on(self, branches: Sequence[Branch], points: np.ndarray) -> bool:
-        """Whether each of the points (k, n) lies on one of the ``branches``."""
-        within = reach_of_places(self.problem, points)
-        are_there = np.zeros(len(points), dtype=bool)
-        for branch in branches:
-            distance, _ = branch.nearest(points)
-            are_there |= is_same_point(distance, within / is_same_point.threshold)
-        return bool(np.all(are_there))
+        points = other(other.length * PLACES)
+        return _are_on([one], points, reach_of_places(self.problem, points))
 
     # --- near motions -----------------------------------------------------------------
 
@@ -378,6 +384,17 @@ class Findings:
             return True
         reach = within * self.problem.domain.scale
         return any(self._distance(one.place, u) < reach for one in self.rigid.values())
+
+
+def _are_on(branches: Sequence[Branch], points: np.ndarray, within: np.ndarray) -> bool:
+    """Whether each of the points (k, n), as far as it is known, ``within`` (k,), lies on
+    one of the ``branches``."""
+    unit = within / is_same_point.threshold
+    are_there = np.zeros(len(points), dtype=bool)
+    for branch in branches:
+        distance, _ = branch.nearest(points, float(within.max(initial=0.0)))
+        are_there |= is_same_point(distance, unit)
+    return bool(are_there.all())
 
 
 @dataclass(frozen=True)

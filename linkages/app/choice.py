@@ -63,18 +63,14 @@ def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage | Mecha
         )
     values = {}
     if parameters:
-        values = read_parameters(_family(text).parameters, parameters)
+        family: Entry | NetworkEntry = NETWORKS.get(text) or entry(text)
+        values = read_parameters(family.parameters, parameters)
     try:
         linkage = load(text, **values)
     except OverflowError:
         raise CommandError(f"{text}: it holds a number that is too large") from None
     _require_size(text, linkage)
     return linkage
-
-
-def _family(text: str) -> Entry | NetworkEntry:
-    """The entry or the network called ``text``; raises `UnknownLinkageError`."""
-    return NETWORKS[text] if text in NETWORKS else entry(text)
 
 
 def _require_size(text: str, linkage: Linkage | Mechanism) -> None:

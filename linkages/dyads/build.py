@@ -115,8 +115,9 @@ class Builder:
     ) -> tuple[Any, Any, Any]:
         """The three joints of a dyad."""
         one, contact, other = step.contacts
-        middle = self.geometry.middle(
-            inner[contact.first], inner[contact.second], self._motion(contact)
+        motion = self._motion(contact)
+        middle = self.geometry.joint(
+            inner[contact.first], inner[contact.second], motion
         )
         return self._end(one, state, inner), middle, self._end(other, state, inner)
 
@@ -126,7 +127,7 @@ class Builder:
         """A joint that leads from what stands to a part."""
         pose = state[self.plan.part[contact.first]].after(inner[contact.first])
         own = inner[contact.second]
-        return self.geometry.end(pose, own, self._motion(contact))
+        return self.geometry.joint(pose, own, self._motion(contact))
 
     def _motion(self, contact: Contact) -> Motion:
         return self.mechanism.variables[contact.variable].motion

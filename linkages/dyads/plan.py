@@ -58,20 +58,9 @@ class Plan:
 def make_plan(mechanism: Mechanism, driver: int | None) -> Plan | None:
     """How a ``mechanism`` is built where the variable of this number has a given
     value, or, without, where only locked ones have; None where dyads do not do."""
-    known = []
-    leaders = [one.leader.number for one in mechanism.variables]
-    for number, pair in enumerate(mechanism.pairs):
-        is_known = [
-            mechanism.variables[k].locked is not None or leaders[k] == driver
-            for k in pair.variables
-        ]
-        if all(is_known):
-            known.append(number)
-            continue
-        first = pair.variables[0]
-        is_coupled = leaders[first] != first or leaders.count(first) > 1
-        if len(is_known) > 1 or is_coupled:
-            return None
+    known = _known_pairs(mechanism, driver)
+    if known is None:
+        return None
     numbers = {body: k for k, body in enumerate(mechanism.bodies)}
     parts = UnionFind(range(len(numbers)))
     for number in known:
@@ -89,6 +78,26 @@ def make_plan(mechanism: Mechanism, driver: int | None) -> Plan | None:
         if steps is not None:
             return Plan(start, part, tuple(known), steps)
     return None
+
+
+def _known_pairs(mechanism: Mechanism, driver: int | None) -> list[int] | None:
+    """The pairs, by number, that have known values only; None where one has a variable
+    that is not known beside another, or that is coupled."""
+    known = []
+    leaders = [one.leader.number for one in mechanism.variables]
+    for number, pair in enumerate(mechanism.pairs):
+        is_known = [
+            mechanism.variables[k].locked is not None or leaders[k] == driver
+            for k in pair.variables
+        ]
+        if all(is_known):
+            known.append(number)
+            continue
+        first = pair.variables[0]
+        is_coupled = leaders[first] != first or leaders.count(first) > 1
+        if len(is_known) > 1 or is_coupled:
+            return None
+    return known
 
 
 def _contacts(

@@ -10,7 +10,7 @@ import numpy as np
 
 from bifurc.figures.style import COLORS
 from linkages.export.gltf import BinaryGltf
-from linkages.export.model import LinkageModel, Motion, Poses
+from linkages.export.model import Body, LinkageModel, Motion, Poses
 from linkages.mechanisms.joint import Shape
 from linkages.values import require
 
@@ -133,13 +133,7 @@ def make_glb(model: LinkageModel, generator: str) -> bytes:
     first = model.motions[0][1]
     bodies = []
     for number, body in enumerate(model.bodies):
-        rod = rods[number % len(rods)]
-        children = [_add_rod(file, rod, *ends, model.size) for ends in body.rods]
-        for one in body.symbols:
-            mesh, scale = joints[one.shape], model.size * np.array(SCALES[one.shape])
-            children.append(
-                _add_part(file, one.name, mesh, one.place, one.direction, scale)
-            )
+        children = _add_parts(file, body, rods[number % len(rods)], joints, model.size)
         # the format has no empty list of children
         parts = {"children": children} if children else {}
         node = file.add(
@@ -200,13 +194,22 @@ def _add_material(file: BinaryGltf, name: str, color: str) -> int:
     return file.add("materials", name=name, pbrMetallicRoughness=surface)
 
 
-def _add_rod(
-    file: BinaryGltf, mesh: int, start: np.ndarray, end: np.ndarray, size: float
-) -> int:
-    way = end - start
-    length = float(np.linalg.norm(way))
-    scale = np.array([ROD_RADIUS * size, ROD_RADIUS * size, length])
-    return _add_part(file, "rod", mesh, (start + end) / 2, way / length, scale)
+def _add_parts(
+    file: BinaryGltf, body: Body, rod: int, joints: dict[Shape, int], size: float
+) -> list[int]:
+    """The rods and the joints of a body."""
+    parts = []
+    for start, end in body.rods:
+        way = end - start
+        length = float(np.linalg.norm(way))
+        scale = np.array([ROD_RADIUS * size, ROD_RADIUS * size, length])
+        middle = (start + end) / 2
+        parts.append(_add_part(file, "rod", rod, middle, way / length, scale))
+    for one in body.symbols:
+        mesh, scale = joints[one.shape], size * np.array(SCALES[one.shape])
+        part = _add_part(file, one.name, mesh, one.place, one.direction, scale)
+        parts.append(part)
+    return parts
 
 
 def _add_part(

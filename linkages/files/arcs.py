@@ -3,7 +3,7 @@ them (`linkages.files.figures`); the axes of all joints run through the centre."
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -18,7 +18,7 @@ from linkages.files.figures import (
     read_figure,
     table_of_points,
 )
-from linkages.mechanisms.joint import unit_vector
+from linkages.mechanisms.joint import Vector, unit_vector
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.values import check_number, checked_list, checked_number, require
 
@@ -66,10 +66,13 @@ def read_arcs(content: Content, name: str, unit: float) -> Mechanism:
         across = [np.cross(axes[0], axis) for axis in axes[1:]]
         return any(not is_one_direction(float(np.linalg.norm(x))) for x in across)
 
-    joints = joints_of_figure(
-        figure, places, are_apart, lambda place: (place.tolist(), place.tolist())
-    )
+    joints = joints_of_figure(figure, places, are_apart, _axis_at)
     return Mechanism(joints, name)
+
+
+def _axis_at(place: np.ndarray) -> tuple[Vector, Vector]:
+    x, y, z = place.tolist()
+    return (x, y, z), (x, y, z)
 
 
 def _direction(what: str, row: object) -> np.ndarray:
@@ -160,15 +163,22 @@ def _fitted(figure: Arcs, free: Sequence[str], angles: np.ndarray) -> Places:
         lengths = np.linalg.norm(values.reshape(-1, 3), axis=1) - 1.0
         return np.concatenate([now - angles, lengths])
 
-    step = float(np.finfo(float).eps) ** (1 / 3)
-
     def derivatives(values: np.ndarray) -> np.ndarray:
-        columns = [
-            (gaps(values + move) - gaps(values - move)) / (2 * step)
-            for move in step * np.eye(len(values))
-        ]
-        return np.array(columns).T
+        return _differences(gaps, values)
 
     start = np.concatenate([figure.points[name] for name in free])
     solution = least_squares(gaps, start, xtol=1e-15, ftol=1e-15, gtol=1e-15).x
     return placed(polished(gaps, derivatives, solution, NEWTON_STEPS))
+
+
+def _differences(
+    gaps: Callable[[np.ndarray], np.ndarray], values: np.ndarray
+) -> np.ndarray:
+    """The derivatives (m, n) of ``gaps`` (m,) at ``values`` (n,), as central
+    differences."""
+    step = float(np.finfo(float).eps) ** (1 / 3)
+    columns = [
+        (gaps(values + move) - gaps(values - move)) / (2 * step)
+        for move in step * np.eye(len(values))
+    ]
+    return np.array(columns).T

@@ -155,14 +155,13 @@ def _pose(
             return np.asarray(there @ np.linalg.inv(here))
     axis = axes[first]
     # turned about the axis and shifted along it, as the table says
-    there = _frame(axis.point, axis.direction, normals[first])
+    there = _frame(*axis, normals[first])
     screw = Motion(True, axis.direction, axis.point)
     there = transforms(screw, np.array([ring.turn]))[0] @ there
     there[:3, 3] += ring.shift * axis.direction
-    own = ring.axis(first)
-    normal = _normal(ring, ring.joints.index(first))
-    own_frame = _frame(own.point, own.direction, normal)
-    return np.asarray(there @ np.linalg.inv(own_frame))
+    here = _frame(*ring.axis(first), _normal(ring, ring.joints.index(first)))
+    pose: np.ndarray = there @ np.linalg.inv(here)
+    return pose
 
 
 def _check_placed(ring: _Ring, reason: str) -> None:

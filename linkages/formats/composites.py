@@ -92,14 +92,15 @@ def joints_of_axes(
         inverse = [one._replace(direction=-one.direction) for one in reversed(axes)]
         if _is_plane(inverse):
             return [_plane(inverse, locks)._replace(is_reversed=True)]
-    joints = []
-    for axis in axes:
-        kind = SINGLE[axis.kind]
-        frame = translation(axis.point)
-        if kind.facets.moves:
-            frame = frame_along(axis.point, axis.direction)
-        joints.append(_joint(kind, [axis], locks, [frame]))
-    return joints
+    return [_single(axis, locks) for axis in axes]
+
+
+def _single(axis: Axis, locks: Mapping[str, float]) -> WorldJoint:
+    kind = SINGLE[axis.kind]
+    frame = translation(axis.point)
+    if kind.facets.moves:
+        frame = frame_along(axis.point, axis.direction)
+    return _joint(kind, [axis], locks, [frame])
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:

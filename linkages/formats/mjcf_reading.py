@@ -368,13 +368,16 @@ def _read_closures(equality: Element, model: _Model) -> None:
         groups.setdefault(key, []).append(anchor)
     closures += [_joint_of_anchors(anchors) for anchors in groups.values()]
     for joint in closures:
-        # it may have the name of a joint of the tree
-        named = model.taken.named_joint(joint, numbered(joint.name))
-        model.joints.append(named)
-        if named.name != joint.name:
-            model.notes.append(
-                f"equality {joint.name} is called {named.name}, as there is such a joint"
-            )
+        _add_closure(joint, model)
+
+
+def _add_closure(joint: BodyJoint, model: _Model) -> None:
+    """Add a joint of an equality, which may have the name of a joint of the tree."""
+    named = model.taken.named_joint(joint, numbered(joint.name))
+    model.joints.append(named)
+    if named.name != joint.name:
+        note = f"equality {joint.name} is called {named.name}, as there is such a joint"
+        model.notes.append(note)
 
 
 @dataclass

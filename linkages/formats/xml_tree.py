@@ -140,5 +140,4 @@ def parse_xml(content: bytes) -> Element:
         if isinstance(error, GeometryError):
             raise
         raise GeometryError("encoding", error, "UTF-8") from None
-    (root,) = document.children
-    return root
+    return document.children[0]

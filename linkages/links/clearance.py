@@ -14,9 +14,9 @@ import numpy as np
 
 from bifurc.branch import Branch
 from linkages.links.distances import (
-    RATE_SAMPLES,
     distances_by_ends,
     find_least_distance,
+    places_along,
 )
 from linkages.links.parts import Pair, Parts, moved_lines
 
@@ -41,11 +41,9 @@ class Approach:
 def approaches_along(parts: Parts, branch: Branch) -> list[Approach]:
     """Where every two parts that share no joint are nearest along a branch, the nearest
     first."""
-    places = branch.places(np.linspace(0.0, 1.0, RATE_SAMPLES)).ravel()
-    points, rates = branch(places), branch(places, derivative=1)
-    lines = parts.lines(points)
+    lines = parts.lines(places_along(branch)[0])
     pairs = parts.pairs_apart(lines)
-    speeds = parts.closing_speeds(pairs, lines, points, rates)
+    speeds = parts.closing_speeds(pairs, lines, branch)
     error = TOLERANCE * parts.size
     approaches = []
     for pair, speed in zip(pairs, speeds, strict=True):

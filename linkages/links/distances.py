@@ -92,9 +92,15 @@ def find_least_distance(
 
 def largest_rates(branch: Branch) -> np.ndarray:
     """The largest |d theta / ds| (n,) of each joint along a branch."""
+    _, rates = places_along(branch)
+    largest: np.ndarray = MARGIN * np.abs(rates).max(axis=0)
+    return largest
+
+
+def places_along(branch: Branch) -> tuple[np.ndarray, np.ndarray]:
+    """Points (k, n) of all pieces of a branch, and the derivatives (k, n) there."""
     places = branch.places(np.linspace(0.0, 1.0, RATE_SAMPLES)).ravel()
-    rates: np.ndarray = MARGIN * np.abs(branch(places, derivative=1)).max(axis=0)
-    return rates
+    return branch(places), branch(places, derivative=1)
 
 
 def _first_intervals(distance: Distance, count: int, length: float) -> _Intervals:

@@ -12,9 +12,10 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from bifurc.atlas import Form
+from bifurc.branch import Branch
 from bifurc.isometry import Isometry
 from linkages.geometry_table import link_name
-from linkages.links.distances import MARGIN
+from linkages.links.distances import MARGIN, largest_rates, places_along
 from linkages.links.mechanism_drawing import (
     Drawing,
     best_view_of_mechanism,
@@ -79,14 +80,10 @@ class Parts(ABC):
 
     @abstractmethod
     def closing_speeds(
-        self,
-        pairs: Sequence[Pair],
-        lines: list[np.ndarray],
-        points: np.ndarray,
-        rates: np.ndarray,
+        self, pairs: Sequence[Pair], lines: list[np.ndarray], branch: Branch
     ) -> list[float]:
         """How fast the lines of each two bodies can near each other for each unit of
-        arclength of a branch with these ``rates`` (k, n) at ``points`` (k, n)."""
+        arclength of a branch."""
 
     @abstractmethod
     def best_view(self, point: np.ndarray) -> View:
@@ -147,11 +144,7 @@ class Links(Parts):
         return pair[1] - pair[0] in (1, self.loop.n - 1)
 
     def closing_speeds(
-        self,
-        pairs: Sequence[Pair],
-        lines: list[np.ndarray],
-        points: np.ndarray,
-        rates: np.ndarray,
+        self, pairs: Sequence[Pair], lines: list[np.ndarray], branch: Branch
     ) -> list[float]:
         """Bounds that the geometry gives.
 
@@ -162,7 +155,7 @@ class Links(Parts):
         half_way = float(np.abs(lengths).sum() + np.abs(offsets).sum()) / 2
         # joints that were moved aside stand that far out at both ends
         farthest = half_way + 2 * self.size
-        largest = MARGIN * np.abs(rates).max(axis=0)[self.to_angles.columns]
+        largest = largest_rates(branch)[self.to_angles.columns]
         speeds = []
         for first, second in pairs:
             between = largest[first + 1 : second + 1].sum()
@@ -258,14 +251,11 @@ class Bodies(Parts):
         return any(names <= {*one.bodies} for one in self.structure.mechanism.joints)
 
     def closing_speeds(
-        self,
-        pairs: Sequence[Pair],
-        lines: list[np.ndarray],
-        points: np.ndarray,
-        rates: np.ndarray,
+        self, pairs: Sequence[Pair], lines: list[np.ndarray], branch: Branch
     ) -> list[float]:
         """No faster than the fastest end of a line of one, seen from the other, either
         way round."""
+        points, rates = places_along(branch)
         steps = [self.poses(points + step * rates) for step in (-STEP, STEP)]
 
         def largest(seen_from: int, body: int) -> float:

@@ -11,7 +11,6 @@ from bifurc.atlas import Event, Form, MeetingPoint, Surface
 from bifurc.branch import Branch, Outcome
 from bifurc.completeness import Doubt
 from bifurc.curves.misclosure import misclosure_at
-from bifurc.curves.monitor import largest_rates
 from bifurc.decisions import (
     hangs_on_data,
     is_faint,
@@ -197,7 +196,7 @@ def _doubts_of_form(
         yield SearchDoubt.CURVE_OR_SURFACE.doubt(name, traced.blur)
     if not traced.multiplicity:
         yield SearchDoubt.MULTIPLICITY.doubt(name, rank=profile.rank)
-    rates = largest_rates(branch)
+    rates = branch.largest_rates
     unit = unit_over_rounding(stands_still, change_by_blur(traced.blur))
     # larger than the rounding of an ordinary curve, and no larger than what this makes
     is_hidden = stands_still(rates, unit) & (rates >= stands_still.threshold)
@@ -263,10 +262,9 @@ def _ended_at_assumed_bounds(problem: Problem, branch: Branch) -> list[str]:
     if branch.outcome is not Outcome.LEFT_REGION:
         return []
     ends = branch(np.array([0.0, branch.length]))
-    is_there = (
-        _are_at_bounds(problem, ends).any(axis=0) & problem.domain.has_assumed_bounds
-    )
-    return [problem.domain.names[k] for k in np.flatnonzero(np.any(is_there, axis=1))]
+    is_at_bounds = np.asarray(_are_at_bounds(problem, ends).any(axis=0))
+    is_there: np.ndarray = is_at_bounds & problem.domain.has_assumed_bounds
+    return [problem.domain.names[k] for k in np.flatnonzero(is_there.any(axis=1))]
 
 
 def _doubts_of_halves(

@@ -93,10 +93,11 @@ def _of_form(atlas: Atlas, clearance: FormClearance) -> str:
     unit = arclength_unit(atlas)
     rows = []
     for approach in clearance.approaches:
+        gap = clearance.gap(approach)
         rows.append(
             {
                 word: " and ".join(clearance.links(approach)),
-                "clearance": _length(clearance.gap(approach), smallest),
+                "clearance": "0" if abs(gap) < smallest else f"{gap:.6g}",
                 "at most less by": f"{approach.error:.1g}",
                 f"arclength ({unit.name})": f"{unit.factor * approach.s:.3f}",
                 subject.heading(atlas): show_configuration(atlas, approach.theta),
@@ -104,8 +105,3 @@ def _of_form(atlas: Atlas, clearance: FormClearance) -> str:
         )
     least = f"{rows[0]['clearance']} ({word} {rows[0][word]})"
     return section_of(f"{clearance.form.name}: the least clearance is {least}", rows)
-
-
-def _length(length: float, smallest: float) -> str:
-    """A length to six digits; what is below the smallest one shown comes out as 0."""
-    return "0" if abs(length) < smallest else f"{length:.6g}"

@@ -109,8 +109,8 @@ def climb(atlas: Atlas, seeds: Sequence[int], errors: Floats = ERRORS) -> Ladder
     for error in errors:
         copies = [measure(atlas, float(error), seed) for seed in seeds]
         gaps.append(np.array([copy.largest for copy in copies]))
-        widths.append(np.array([_widths(copy) for copy in copies]))
-        weakest.append(np.array([_smallest_values(copy) for copy in copies]))
+        widths.append(np.array([_of_whole(copy, "distance") for copy in copies]))
+        weakest.append(np.array([_of_whole(copy, "weakest") for copy in copies]))
     return Ladder(
         np.asarray(errors), np.array(gaps), np.array(widths), np.array(weakest)
     )
@@ -126,14 +126,9 @@ def is_joined(valley: Branch) -> bool:
     return valley.outcome is Outcome.LEFT_REGION
 
 
-def _widths(copy: Tolerance) -> list[float]:
-    """Width of the near miss that every bifurcation has become."""
-    return [u.distance if is_whole(u) else np.nan for u in copy.unfoldings]
-
-
-def _smallest_values(copy: Tolerance) -> list[float]:
-    """Smallest singular value at what every bifurcation has become."""
-    return [u.weakest if is_whole(u) else np.nan for u in copy.unfoldings]
+def _of_whole(copy: Tolerance, value: str) -> list[float]:
+    """A value of what every bifurcation has become."""
+    return [getattr(u, value) if is_whole(u) else np.nan for u in copy.unfoldings]
 
 
 def slope(errors: Floats, values: Floats) -> float:

@@ -148,19 +148,13 @@ def _forms_without(
     atlas: Atlas, member: Member, joints: Sequence[JointName]
 ) -> list[int]:
     """For every one of the ``joints`` the number of forms in which it stands still."""
-    of_forms = _still_joints(atlas, member)
-    return [sum(joint in still for still in of_forms) for joint in joints]
-
-
-def _still_joints(atlas: Atlas, member: Member) -> list[set[JointName]]:
-    """For every form the joints that stand still along it."""
     subject = subject_at(atlas)
     names: dict[JointName, JointName] = dict(enumerate(member.joints, start=1))
-    still_joints = []
+    of_forms: list[set[JointName]] = []
     for form in range(len(atlas.forms)):
         still = subject.still_joints(atlas, form)
-        still_joints.append({names.get(one, one) for one in still} | {*member.replaced})
-    return still_joints
+        of_forms.append({names.get(one, one) for one in still} | {*member.replaced})
+    return [sum(joint in still for still in of_forms) for joint in joints]
 
 
 def _is_one_cycle(atlas: Atlas) -> bool:

@@ -213,7 +213,7 @@ def describe_dead_points(atlas: Atlas, readout: Readout) -> str:
     for event in sorted(
         atlas.dead_points, key=lambda one: (one.index, by_form[one.form])
     ):
-        label = readout.label_of_unknown(event.index)
+        label = atlas.names[event.index]
         if label not in labels:  # an entry of a rotation matrix, or a coordinate
             continue
         number = labels.index(label)
