@@ -268,8 +268,7 @@ class UnitProblem(EquationProblem):
 
         def home(samples: np.ndarray) -> np.ndarray:
             assert seeds.home is not None
-            shift: np.ndarray = seeds.home(units.outwards(samples)) / units.sizes
-            return shift
+            return np.asarray(seeds.home(units.outwards(samples)) / units.sizes)
 
         def more(rng: np.random.Generator, count: int, deadline: Deadline) -> Seeds:
             assert seeds.more is not None

@@ -208,7 +208,7 @@ def test_a_search_interrupted_before_anything_was_found_is_an_empty_atlas():
         lambda u: np.array([u[0] ** 2 + u[1] ** 2 - 1]), [(-2, 2)] * 2
     )
 
-    def interrupted(rng, count):
+    def interrupted(rng, count, deadline):
         raise KeyboardInterrupt
 
     problem.seeds = interrupted
