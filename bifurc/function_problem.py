@@ -273,7 +273,7 @@ class FunctionProblem(EquationProblem):
             has_assumed_bounds=is_open,
         )
         rng = np.random.default_rng(0)
-        points = rng.uniform(near[:, 0], near[:, 1], (PROBES, self.n))
+        points = rng.uniform(low, high, (PROBES, len(low)))
         self._measure(self._probes_with_value(points))
 
     def _size_of_solutions(self, is_open: np.ndarray) -> float:
@@ -385,16 +385,22 @@ class FunctionProblem(EquationProblem):
         expected = self.equations.central_difference(probe)
         if is_recorded:
             expected = self.jacobians(probe[None])[0]
-        if not np.all(np.isfinite(expected)):
-            return  # at the rim of where the function is defined
-        gaps = np.abs(jacobian - expected)
-        if not is_derivative(float(gaps.max()), 1.0 + float(np.abs(expected).max())):
-            row, column = np.unravel_index(np.argmax(gaps), gaps.shape)
-            origin = "as recorded" if is_recorded else "by differences"
-            value = f"{expected[row, column]:.6g} {origin} at {probe}"
-            allowed = f"the derivative of the function, {value}"
-            name = f"jacobian[{row}, {column}]"
-            raise ProblemError(name, jacobian[row, column], allowed)
+            origin = "as recorded"
+        if np.all(np.isfinite(expected)):  # else at the rim of where F is defined
+            _require_derivative(jacobian, expected, f"{origin} at {probe}")
+
+
+def _require_derivative(
+    jacobian: np.ndarray, expected: np.ndarray, origin: str
+) -> None:
+    """Raise `ProblemError` unless a matrix (m, n) is the derivative that is expected."""
+    gaps = np.abs(jacobian - expected)
+    if is_derivative(float(gaps.max()), 1.0 + float(np.abs(expected).max())):
+        return
+    row, column = np.unravel_index(np.argmax(gaps), gaps.shape)
+    name = f"jacobian[{row}, {column}]"
+    allowed = f"the derivative of the function, {expected[row, column]:.6g} {origin}"
+    raise ProblemError(name, jacobian[row, column], allowed)
 
 
 def accuracy_of(equations: Equations) -> Accuracy:

@@ -265,7 +265,7 @@ def near_misses_of(
             s = float(arclengths[k])
             to_points = [problem.domain.difference(places[k], p.u) for p in points]
             is_at_point = any(
-                float(np.linalg.norm(gap)) <= point.error
+                np.linalg.norm(gap) <= point.error
                 for gap, point in zip(to_points, points, strict=True)
             )
             # an end that stops short of a cusp is at it
