@@ -273,7 +273,7 @@ class FunctionProblem(EquationProblem):
             has_assumed_bounds=is_open,
         )
         rng = np.random.default_rng(0)
-        points = rng.uniform(low, high, (PROBES, len(low)))
+        points = rng.uniform(near[:, 0], near[:, 1], (PROBES, len(near)))
         self._measure(self._probes_with_value(points))
 
     def _size_of_solutions(self, is_open: np.ndarray) -> float:
@@ -381,9 +381,9 @@ class FunctionProblem(EquationProblem):
             raise ProblemError("jacobian", jacobian, "finite")
         if self.n > LARGEST_COMPARED:
             return
-        is_recorded = self.equations.tape is not None
         expected = self.equations.central_difference(probe)
-        if is_recorded:
+        origin = "by differences"
+        if self.equations.tape is not None:
             expected = self.jacobians(probe[None])[0]
             origin = "as recorded"
         if np.all(np.isfinite(expected)):  # else at the rim of where F is defined
