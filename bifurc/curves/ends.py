@@ -166,7 +166,7 @@ def _exit(problem: Problem, piece: np.ndarray, low: float, high: float) -> float
     already = problem.excess(points_on_piece(piece, begin))[0]
     if already > problem.slack:
         return low
-    level = 0.0 if already < 0.0 else problem.slack
+    level = 0.0 if already < -problem.slack else problem.slack
 
     def outside(x: np.ndarray) -> np.ndarray:
         excess: np.ndarray = problem.excess(points_on_piece(piece, x)) - level

@@ -18,6 +18,7 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.curves.monitor import NODES
 from bifurc.decisions import closes_to_rounding, is_plainly_closed
+from bifurc.errors import NOT_DEFINED
 from bifurc.numerics.null_spaces import Decomposition, decompose
 from bifurc.problem import PreciseResidual, Problem
 
@@ -107,7 +108,7 @@ def _precise_misclosures(
         for point, inverse in zip(points, inverses, strict=True):
             try:
                 value = _after_steps(problem, residual, point, inverse)
-            except (ZeroDivisionError, ValueError, OverflowError):
+            except NOT_DEFINED:
                 value = problem.relative_residuals(point[None])[0]  # at a rim of F
             measured.append(float(np.linalg.norm(value)))
     return measured

@@ -104,10 +104,15 @@ def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
         atlas = _explored_in_units(own, request, time.perf_counter())
         whole = first + atlas.provenance.seconds
         atlas = replace(atlas, provenance=replace(atlas.provenance, seconds=whole))
-    multiplicities = [
-        form.multiplicity * own.multiplicity_along(form.branch) for form in atlas.forms
+    forms = [
+        replace(
+            form,
+            multiplicity=form.multiplicity * own.multiplicity_along(form.branch),
+            labels=own.labels_along(form.branch),
+        )
+        for form in atlas.forms
     ]
-    return restated(atlas, problem, own.own_units, multiplicities)
+    return restated(replace(atlas, forms=tuple(forms)), problem, own.own_units)
 
 
 def _explored_in_units(own: UnitProblem, request: _Request, began: float) -> Atlas:

@@ -13,6 +13,7 @@ import numpy as np
 
 from bifurc.curves.misclosure import misclosure_at
 from bifurc.decisions import misses_by_rounding, solves_exactly
+from bifurc.errors import NOT_DEFINED
 from bifurc.problem import Problem
 from bifurc.singular.confirm import Differences, as_precise, gauss_newton_step
 from bifurc.singular.locate import LocatedPoint
@@ -46,7 +47,7 @@ def held_to_exact_equations(
     left = misclosure_at(problem, located.u, rank)
     try:
         rounding = problem.coefficient_rounding(located.u)
-    except (ZeroDivisionError, ValueError, OverflowError):
+    except NOT_DEFINED:
         return located  # it is at a rim of where the function is defined
     allowed = float(np.linalg.norm(rounding)) / problem.magnitude + misclosure
     error = located.error / problem.scale
@@ -76,7 +77,7 @@ def precisely_located(
         derivatives = Differences(residual, mpmath.mpf(10) ** -DIGITS)
         try:
             end = _iterate(derivatives, located, reach)
-        except (ZeroDivisionError, ValueError, OverflowError):
+        except NOT_DEFINED:
             return located  # it left where the function is defined
     if end is None:
         return located._replace(is_confirmed=False)

@@ -104,6 +104,7 @@ def _form(atlas: Atlas, form: Form) -> dict[str, Json]:
         "misclosure": form.misclosure,
         "min_singular_value": form.min_singular_value,
         "certificate": None if certificate is None else certificate.status.value,
+        "rims": list(form.labels.get("rims", ())),
     }
 
 

@@ -114,6 +114,10 @@ class SearchDoubt(DoubtKind):
         "rounding does not tell how many isolated solutions lie together, up to "
         "{amount:.1e} of the scale apart, at {count} of the places listed"
     )
+    ON_RIM = (
+        "starts end at {count:place} on the rim of where the equations are defined, and F' "
+        "is not finite there: these may be isolated solutions, or lie on curves"
+    )
     SHORT_STOPS = (
         "starts end where the equations are solved to {amount:.1e}, about nothing that is "
         "listed, and there may be more solutions"

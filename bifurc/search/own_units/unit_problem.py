@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
     from scipy.sparse import sparray
 
+    from bifurc.atlas import JsonObject
     from bifurc.branch import Branch
 
 STARTS, STARTS_OF_CALLABLE = 100, 24  # from which it is seen where solutions are
@@ -159,6 +160,10 @@ class UnitProblem(EquationProblem):
             if is_factor_of_form(float(distances[number]), self.scale):
                 powers[row] = powers.get(row, 0) + factors.powers[number]
         return self.simplified.order * math.prod(powers.values())
+
+    def labels_along(self, branch: Branch) -> JsonObject:
+        """What is to be said of a ``branch`` in these units besides: nothing."""
+        return {}
 
     @property
     def reach(self) -> float:
@@ -329,6 +334,44 @@ class UnitProblem(EquationProblem):
         return sharp
 
 
+class RimmedProblem(UnitProblem):
+    """The same where the ``simplified`` equations lack rims of the user's: what lies
+    beyond these is outside."""
+
+    def __init__(
+        self,
+        problem: FunctionProblem,
+        units: Units,
+        region: np.ndarray | None,
+        simplified: Simplified,
+    ):
+        super().__init__(problem, units, region, simplified)
+        self._rims_of_user = simplified.factors.rims
+        tape = self._rims_of_user.tape
+        assert tape is not None
+        ones = np.ones(tape.m)
+        own = tape.in_units(units.origin, units.sizes, ones)
+        self._rims = self._rims_of_user._replace(tape=own)
+
+    def labels_along(self, branch: Branch) -> JsonObject:
+        """The rims on which a ``branch`` in these units lies."""
+        depths = np.abs(self._rims.depths(branch(branch.length * PLACES)))
+        distances = np.median(depths, axis=0)
+        texts = self._rims_of_user.texts(self.names)
+        pairs = zip(distances.tolist(), texts, strict=True)
+        on = [
+            text for distance, text in pairs if is_factor_of_form(distance, self.scale)
+        ]
+        return {"rims": on} if on else {}
+
+    def excess(self, points: np.ndarray) -> np.ndarray:
+        """How far points (k, n) lie outside the bounds (k,), or beyond a rim."""
+        # some are not defined beyond others
+        beyond = -np.fmin.reduce(self._rims.depths(points), axis=1)
+        excess: np.ndarray = np.fmax(super().excess(points), beyond)
+        return excess
+
+
 def in_own_units(
     problem: Problem, deadline: Deadline | None = None
 ) -> UnitProblem | None:
@@ -392,13 +435,25 @@ def _in_units_of_solutions(problem: FunctionProblem, deadline: Deadline) -> Unit
     return own
 
 
+def _with_rims(
+    problem: FunctionProblem,
+    units: Units,
+    region: np.ndarray,
+    simplified: Simplified | None,
+) -> UnitProblem:
+    """The equations in units, within the rims that the simplified ones lack."""
+    if simplified is None or not simplified.factors.rims:
+        return UnitProblem(problem, units, region, simplified)
+    return RimmedProblem(problem, units, region, simplified)
+
+
 def in_one_size(own: UnitProblem) -> UnitProblem:
     """The same in units in which all unknowns have one size."""
     size = float(np.exp2(np.round(np.median(np.log2(own.own_units.sizes)))))
     sizes = np.full(own.n, size)
     units = replace(own.own_units, sizes=sizes)
     region = own.own_units.outwards(own.region.T).T
-    return UnitProblem(own.problem, units, region, own.simplified)
+    return _with_rims(own.problem, units, region, own.simplified)
 
 
 # --- where solutions are --------------------------------------------------------------
@@ -465,13 +520,17 @@ def _widened(own: UnitProblem, region: np.ndarray, is_point: np.ndarray) -> np.n
 
 
 def _with_written_factors(problem: FunctionProblem) -> Simplified | None:
-    """The equations with every factor once; None where they are written so, and where
-    they are not recorded."""
+    """The equations with every factor once, and without roots that are zero; None where
+    they are written so, and where they are not recorded."""
     tape = problem.recording.tape
     if tape is None or problem.n < 2:
         return None
     factors = written_factors(tape)
-    return Simplified(factors.radical(), factors) if factors.are_repeated else None
+    if not factors.are_plain:
+        # what a root leaves may be a square, along which starts seem to shrink to a point
+        rows = sorted(set(factors.rows))
+        factors = polynomial_factors(tape, rows, _first_region(problem))
+    return Simplified(factors.radical(), factors) if factors.are_simpler else None
 
 
 def _deflated(own: UnitProblem) -> UnitProblem:
@@ -489,7 +548,7 @@ def _deflated(own: UnitProblem) -> UnitProblem:
     if not len(rows):
         return own
     factors = polynomial_factors(tape, rows.tolist(), region)
-    if factors.are_repeated:
+    if factors.are_simpler:
         simplified = Simplified(factors.radical(), factors)
         own = _problem_on(own.problem, region, simplified)
         flatness = _flatness(own)
@@ -565,12 +624,12 @@ def _problem_on(
     origin = np.where(is_off | is_arc, middles, 0.0)
     rows = problem._rows if simplified is None else simplified.tape.m
     units = Units(origin, sizes, np.ones(rows))
-    own = UnitProblem(problem, units, region, simplified)
+    own = _with_rims(problem, units, region, simplified)
     weights = _weights(own)
     if np.all(weights == 1.0):
         return own
     weighted = replace(units, weights=weights)
-    return UnitProblem(problem, weighted, region, simplified)
+    return _with_rims(problem, weighted, region, simplified)
 
 
 def _weights(own: UnitProblem) -> np.ndarray:
