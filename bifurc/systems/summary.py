@@ -149,6 +149,7 @@ def _diagram_points(atlas: Atlas, diagram: Diagram, kind: Kind) -> str:
             "event": [point.label],
             "unknowns": _numbers(point.u),
             "frequency": [f"{point.value:.10g}"],
+            "pair": [point.label],
             "error": [f"{point.error:.0e}"],
         }
         own = chain.from_iterable(cells[column] for column in kind.columns)
