@@ -12,7 +12,9 @@ import numpy as np
 
 from bifurc.checks import check_callable, floats_of
 from bifurc.decisions import (
+    is_bearable_noise,
     is_derivative,
+    is_free_of_noise,
     is_period,
     is_solved_from_afar,
     is_whole_circle,
@@ -28,6 +30,7 @@ from bifurc.numerics.corrector import (
     project_by_least_squares,
     project_to_sphere_by_newton,
 )
+from bifurc.numerics.noise import noise_of
 from bifurc.problem import (
     March,
     MarchSettings,
@@ -52,6 +55,8 @@ LARGEST_COMPARED = 200  # unknowns up to which a given derivative is compared
 START_SIZES = (1.0, 1e3, 1e-3, 1e6, 1e-6)  # of starts for unknowns without bounds
 FARTHEST = 100.0  # over the size of solutions, bounds where none are given
 AT_ONCE = 14  # pieces by collocation in one march
+SOLVED_IN_NOISE = 30.0  # times the noise, below which a value is zero
+NOISE_PROBES = 5  # points about which noise is measured
 COMPLEX_STEP = 1e-100  # its square vanishes beside 1, and it costs no digits
 DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences of F
 HESSIAN_STEP = 1e-5  # the same for F'
@@ -70,6 +75,7 @@ class NumericalProblem(Problem):
     """
 
     scaled_tape: ScaledTape | None = None
+    _step_of_hessian: float = HESSIAN_STEP
 
     def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
         """F' (m, n) at one point (n,), sparse where a tape of many unknowns is."""
@@ -94,7 +100,7 @@ class NumericalProblem(Problem):
         differences of F'."""
         if self.scaled_tape is not None:
             return self.scaled_tape.hessian(point)
-        steps = HESSIAN_STEP * (1.0 + np.abs(point))
+        steps = self._step_of_hessian * (1.0 + np.abs(point))
         shifts = np.diag(steps)
         upper = self.jacobians(point + shifts)
         lower = self.jacobians(point - shifts)
@@ -167,6 +173,18 @@ class EquationProblem(NumericalProblem):
         self._jacobian = jacobian
         self.recording = recording
         self._rows = rows
+        self.noise = np.zeros(rows)
+        self._step_of_differences = DIFFERENCE_STEP
+
+    def _take_noise(self, noise: np.ndarray, unit: float | np.ndarray) -> None:
+        """Take the values of the function to be noisy (m,), in a ``unit`` of them: what
+        is within `SOLVED_IN_NOISE` of that is zero, and differences take longer steps."""
+        self.noise = noise
+        self.noise_share = float((noise / unit).max())
+        longer = self.noise_share ** (1.0 / 3.0)
+        self._step_of_differences = max(DIFFERENCE_STEP, longer)
+        of_slopes = self.noise_share / self._step_of_differences
+        self._step_of_hessian = max(HESSIAN_STEP, of_slopes ** (1.0 / 3.0))
 
     def _take_magnitude(
         self, magnitude: float, region: np.ndarray | None = None
@@ -192,7 +210,12 @@ class EquationProblem(NumericalProblem):
         function = self._function  # called thousands of times a curve
         with np.errstate(all="ignore"):  # beyond the rim of where it is defined
             values = [function(point) for point in points]
-        return np.array(values, dtype=float).reshape(len(points), self._rows)
+        exact = np.array(values, dtype=float).reshape(len(points), self._rows)
+        if not np.any(self.noise):
+            return exact
+        floor = SOLVED_IN_NOISE * self.noise
+        beyond: np.ndarray = exact - np.clip(exact, -floor, floor)
+        return beyond
 
     def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
         """F' (m, n) at one point (n,), sparse where the given ``jacobian`` makes it so,
@@ -239,7 +262,7 @@ class EquationProblem(NumericalProblem):
         columns = []
         for i in range(self.n):
             step = np.zeros(self.n)
-            step[i] = DIFFERENCE_STEP * (1.0 + abs(point[i]))
+            step[i] = self._step_of_differences * (1.0 + abs(point[i]))
             upper = self._value(point + step)
             lower = self._value(point - step)
             width = 2 * step[i]
@@ -300,8 +323,10 @@ class FunctionProblem(EquationProblem):
         self._set_unknowns(bounds, names, units, periods)
         points, probes = self._first_points()
         self._rows = len(self._value(probes[0]))
+        self.noise = np.zeros(self._rows)
         if is_recorded:
             self.recording = record(function, points)
+        self._measure_noise(probes)
         self._measure(probes)
         self._check_periods(probes)
         self._settle_open_bounds()
@@ -401,6 +426,9 @@ class FunctionProblem(EquationProblem):
         size."""
         self._take_magnitude(1.0)
         self.equations = str(self.recording)
+        if self.noise_share:
+            noise = f"{self.noise_share:.1e} of what they change by"
+            self.equations += f"; its values are noisy to {noise}"
         with np.errstate(all="ignore"):
             self.derivatives = self._choose_derivatives(probes[0])
         with np.errstate(all="ignore"):
@@ -412,6 +440,30 @@ class FunctionProblem(EquationProblem):
             allowed = "finite somewhere inside the bounds"
             raise ProblemError("derivative of the function", np.nan, allowed)
         self._take_magnitude(float(np.median(known)) or 1.0)
+
+    def _measure_noise(self, probes: np.ndarray) -> None:
+        """See how noisy the values are about the probes (k, n), where they are not
+        recorded; raises `ProblemError` where there is too much of it."""
+        if self.recording.tape is not None or self.n > LARGEST_COMPARED:
+            return
+        rng = np.random.default_rng(0)
+        with np.errstate(all="ignore"):
+            noise = noise_of(self._value, probes[:NOISE_PROBES], self.scale, rng)
+            values = np.array([self._value(probe) for probe in probes])
+        if noise is None:
+            return
+        changes = np.ptp(values, axis=0) + np.abs(values).min(axis=0) + TINY
+        share = float((noise / changes).max())
+        if is_free_of_noise(share):
+            return
+        if not is_bearable_noise(share):
+            allowed = (
+                f"at most {is_bearable_noise.threshold:.0e} of what they change by within "
+                "the bounds, so that solutions can be told"
+            )
+            what = "noise of the values of the function"
+            raise ProblemError(what, f"{share:.1e}", allowed)
+        self._take_noise(noise, changes)
 
     # --- derivatives ------------------------------------------------------------------
 

@@ -195,6 +195,8 @@ class Problem(ABC):
     ``stride``: the unit of the longest step along a curve, in scales. ``piece_norm``: the order
     of the norm of vectors when a piece is judged. ``node_corrector`` corrects all points at
     the nodes of a piece in one call; None where they are corrected one by one.
+    ``noise_share``: how noisy F is, over the magnitude and the scale, 0 where that is no more
+    than rounding; what `residuals` gives is zero within it.
     ``equation_count`` is known where there is a `bordered_solver`.
     """
 
@@ -210,6 +212,7 @@ class Problem(ABC):
     equations: str = ""
     is_exact: bool = False
     data_rounding: float = 0.0
+    noise_share: float = 0.0
     has_crossings: bool = True
     stride: float = 1.0
     piece_norm: float = np.inf

@@ -66,6 +66,7 @@ class SymbolicProblem(FunctionProblem):
         self._rows = tape.m
         self._function = _TapeFunction(tape)
         self._jacobian = None
+        self.noise = np.zeros(tape.m)
         probes = self._first_points().probes
         self._measure(probes)
         self._check_periods(probes)

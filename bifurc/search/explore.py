@@ -22,12 +22,13 @@ from bifurc.search.own_units.restated import restated
 from bifurc.search.own_units.unit_problem import UnitProblem, in_one_size, in_own_units
 from bifurc.search.search import Search
 from bifurc.seeds import Seeds
-from bifurc.settings import SearchSettings
+from bifurc.settings import LOOSEST, SearchSettings
 
 DEFAULT_SEARCH = SearchSettings()
 
 log = logging.getLogger(__name__)
 
+PIECES_IN_NOISE = 100.0  # times the noise: how well pieces of curves meet them
 LARGEST_SEED = 2**63 - 1  # what a dataset can hold
 
 
@@ -122,8 +123,19 @@ def _explored_in_units(own: UnitProblem, request: _Request, began: float) -> Atl
     return _explored(own, request, began)
 
 
+def _in_noise(problem: Problem, request: _Request) -> _Request:
+    """The request with curves followed no closer than values of a problem are good."""
+    tolerance = min(PIECES_IN_NOISE * problem.noise_share, LOOSEST)
+    tracing = request.settings.tracing
+    if tolerance <= tracing.tolerance:
+        return request
+    coarser = replace(tracing, tolerance=tolerance)
+    return request._replace(settings=replace(request.settings, tracing=coarser))
+
+
 def _explored(problem: Problem, request: _Request, began: float) -> Atlas:
     """The atlas of a problem, in the units in which it stands."""
+    request = _in_noise(problem, request)
     deadline = Deadline(request.settings.budget, began)
     search = Search(problem, *request, deadline)
     interrupted = False

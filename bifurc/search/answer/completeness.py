@@ -109,6 +109,11 @@ class SearchDoubt(DoubtKind):
     UNDECIDED = "{subject} is undecided: {reason}"
     NOT_WHOLE = "{subject} ({point_kind}) is not whole: {reason}"
     UNCONFIRMED = "{subject} is seen in doubles, and more digits do not show it"
+    # --- of the values of a function
+    NOISE = (
+        "the values of the function are noisy to {amount:.1e} of their typical change: it is "
+        "solved to within that, and what is smaller is not told from it"
+    )
     # --- of isolated solutions
     HIDDEN_ASSEMBLIES = (
         "rounding does not tell how many isolated solutions lie together, up to "

@@ -110,6 +110,8 @@ def doubts_of_findings(
 ) -> Iterator[Doubt]:
     """What is open about the ``findings`` of a search besides forms, surfaces and the
     singular ``points`` listed."""
+    if problem.noise_share:
+        yield SearchDoubt.NOISE.doubt(amount=problem.noise_share)
     others = _others(problem, findings, points)
     if others:
         yield SearchDoubt.HIDDEN_POINTS.doubt(count=others)

@@ -140,6 +140,9 @@ class UnitProblem(EquationProblem):
             sizes = [np.linalg.norm(matrix, ord=2) for matrix in self._matrices()]
             magnitude = float(np.median(sizes)) if sizes else 1.0
             self._take_magnitude(magnitude or 1.0, self.region)
+        if np.any(problem.noise):
+            noise = units.weights * problem.noise
+            self._take_noise(noise, self.magnitude * self.scale)
         if _has_own(problem, "hessian"):
             self.hessian_error = problem.hessian_error
 
