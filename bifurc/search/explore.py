@@ -15,7 +15,7 @@ from bifurc.checks import check_callable, check_type
 from bifurc.diagrams.events import EventRequests, events_of
 from bifurc.diagrams.make_diagram import diagram_of, parameter_index
 from bifurc.errors import ProblemError
-from bifurc.limits import Deadline, one_thread
+from bifurc.limits import Deadline, one_thread, until
 from bifurc.problem import Problem
 from bifurc.search.answer.assemble import assemble_atlas
 from bifurc.search.own_units.restated import restated
@@ -72,7 +72,8 @@ def explore(
         parameter_index(problem.names, parameter)
     events_of({} if events is None else events, problem.names)
     request = _Request(settings, int(seed), seeds, progress)
-    with one_thread(problem.n):
+    deadline = Deadline(settings.budget)
+    with one_thread(problem.n), until(deadline):
         atlas = _explored_in_any_units(problem, request)
         if parameter is None and not events:
             return atlas
