@@ -20,6 +20,7 @@ from .diagrams.diagram import DiagramPoint as DiagramPoint
 from .diagrams.diagram import Stability as Stability
 from .diagrams.diagram import Stretch as Stretch
 from .diagrams.make_diagram import diagram_of as diagram_of
+from .domain import Domain as Domain
 from .equations.symbolic import SymbolicProblem as SymbolicProblem
 from .errors import BifurcError as BifurcError
 from .errors import ProblemError as ProblemError
@@ -40,6 +41,8 @@ from .large.large_branch import LargePoint as LargePoint
 from .large.large_problem import LargeProblem as LargeProblem
 from .large.trace_large_branch import LargeSettings as LargeSettings
 from .large.trace_large_branch import trace_large_branch as trace_large_branch
+from .problem import Accuracy as Accuracy
+from .problem import Curvature as Curvature
 from .problem import March as March
 from .problem import MarchSettings as MarchSettings
 from .problem import MarchStatus as MarchStatus

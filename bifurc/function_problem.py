@@ -19,9 +19,10 @@ from bifurc.decisions import (
     is_solved_from_afar,
     is_whole_circle,
 )
+from bifurc.domain import Domain
+from bifurc.equations.evaluation import Equations
 from bifurc.equations.recording import Recording, record
 from bifurc.equations.system import ScaledTape
-from bifurc.equations.tape import rounding_of_constants
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.bordered import as_dense
@@ -32,12 +33,15 @@ from bifurc.numerics.corrector import (
 )
 from bifurc.numerics.noise import noise_of
 from bifurc.problem import (
+    NO_SHORTCUTS,
+    Accuracy,
     March,
     MarchSettings,
-    NodeCorrector,
     PreciseResidual,
     Problem,
+    Shortcuts,
     SphereProjection,
+    jacobian_at,
 )
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
@@ -54,20 +58,17 @@ CHECKS = 20  # more points at which a recording is compared with the function
 LARGEST_COMPARED = 200  # unknowns up to which a given derivative is compared
 START_SIZES = (1.0, 1e3, 1e-3, 1e6, 1e-6)  # of starts for unknowns without bounds
 FARTHEST = 100.0  # over the size of solutions, bounds where none are given
-AT_ONCE = 14  # pieces by collocation in one march
-SOLVED_IN_NOISE = 30.0  # times the noise, below which a value is zero
 NOISE_PROBES = 5  # points about which noise is measured
-COMPLEX_STEP = 1e-100  # its square vanishes beside 1, and it costs no digits
-DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences of F
-HESSIAN_STEP = 1e-5  # the same for F'
+HESSIAN_STEP = 1e-5  # third root of rounding: best for central differences of F'
 TINY = 1e-300  # keeps what is zero from being divided by
 NOT_RECORDED = Recording(None, "not asked for")
-EXACT_HESSIAN = 1e-14  # how far off, over a bound on it, rounding leaves an exact F''
+# how far off F'' is over a bound on it: an exact one by rounding, and by differences
+EXACT_HESSIAN, HESSIAN_ERROR = 1e-14, 1e-6
 
 
 class NumericalProblem(Problem):
-    """A problem that gives `residuals` and `jacobians`, and nothing else: second
-    derivatives by differences, pieces by collocation, solutions by least squares.
+    """A problem that gives its ``domain``, `residuals` and `jacobians`, and nothing else:
+    second derivatives by differences, pieces by collocation, solutions by least squares.
 
     Where it has its equations as a ``scaled_tape``, these come of that: exact
     derivatives, pieces by Taylor series, and all in compiled code as far as that is
@@ -75,32 +76,34 @@ class NumericalProblem(Problem):
     """
 
     scaled_tape: ScaledTape | None = None
-    _step_of_hessian: float = HESSIAN_STEP
 
-    def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
-        """F' (m, n) at one point (n,), sparse where a tape of many unknowns is."""
-        if self.scaled_tape is not None:
-            return self.scaled_tape.jacobian(point)
-        return super().jacobian(point)
+    @property
+    def shortcuts(self) -> Shortcuts:
+        """What a tape does in one call."""
+        tape = self.scaled_tape
+        if tape is None:
+            return NO_SHORTCUTS
+        return Shortcuts(
+            jacobian=tape.sparse_jacobian if tape.has_sparse_jacobian else None,
+            valley_corrector=tape.valley_points_at_nodes if tape.is_small else None,
+        )
 
     def precise_residual(self) -> PreciseResidual | None:
         """F over mpmath numbers where there is a tape; its constants are the doubles that
         it computes with. Raises `ValueError` where F is not real."""
         return None if self.scaled_tape is None else self.scaled_tape.precise_residual
 
-    def valley_corrector(self) -> NodeCorrector | None:
-        """What corrects points at the nodes of a piece of the valley along which the
-        equations are nearly solved, where the tape is small."""
-        if self.scaled_tape is None or not self.scaled_tape.is_small:
-            return None
-        return self.scaled_tape.valley_points_at_nodes
-
-    def hessian(self, point: np.ndarray) -> np.ndarray:
-        """F'' (m, n, n) at a point (n,): exact by the tape, else by central
+    def hessians(self, points: np.ndarray) -> np.ndarray:
+        """F'' (k, m, n, n) at points (k, n): exact by the tape, else by central
         differences of F'."""
         if self.scaled_tape is not None:
-            return self.scaled_tape.hessian(point)
-        steps = self._step_of_hessian * (1.0 + np.abs(point))
+            return self.scaled_tape.hessians(points)
+        return np.array([self._hessian_by_differences(point) for point in points])
+
+    def _hessian_by_differences(self, point: np.ndarray) -> np.ndarray:
+        """F'' (m, n, n) at a point (n,)."""
+        size = max(HESSIAN_STEP, self.accuracy.noise ** (2.0 / 9.0))
+        steps = size * (1.0 + np.abs(point))
         shifts = np.diag(steps)
         upper = self.jacobians(point + shifts)
         lower = self.jacobians(point - shifts)
@@ -119,8 +122,7 @@ class NumericalProblem(Problem):
         where the curve does."""
         if self.scaled_tape is not None and self.scaled_tape.is_marched:
             return self.scaled_tape.march(start, tangent, settings)
-        few = replace(settings, count=min(settings.count, AT_ONCE))
-        return march_by_collocation(self, start, tangent, few)
+        return march_by_collocation(self, start, tangent, settings)
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solutions (k, n) near starts (k, n) and the relative residual (k,) that is
@@ -138,53 +140,19 @@ class NumericalProblem(Problem):
             return self.scaled_tape.project_to_sphere(starts, center, radius)
         return project_to_sphere_by_newton(self, starts, center, radius)
 
-    def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
-        """Solutions reached from ``count`` random starts."""
-        return random_seeds(self, rng, count)
-
-    def seeds_until(
-        self, rng: np.random.Generator, count: int, deadline: Deadline
+    def seeds(
+        self, rng: np.random.Generator, count: int, deadline: Deadline | None = None
     ) -> Seeds:
-        """The same, from as many of the starts as there is time for before the
-        ``deadline``; all where a class has seeds in a way of its own."""
-        is_own = getattr(self.seeds, "__func__", None) is not NumericalProblem.seeds
-        if is_own:
-            return self.seeds(rng, count)
+        """Solutions reached from ``count`` random starts, or from as many of them as
+        there is time for before a ``deadline``."""
         return random_seeds(self, rng, count, deadline=deadline)
 
 
 class EquationProblem(NumericalProblem):
-    """The equations of a ``function``: (n,) -> (m,), of which the ``recording`` is a tape
-    or the reason why there is none.
+    """The problem of ``equations``: all values and derivatives come from their tape where
+    there is one, compiled and exact."""
 
-    All values and derivatives come from the tape where there is one, compiled and exact.
-    Otherwise F' comes from ``jacobian``: (n,) -> (m, n), dense or sparse, where given,
-    else by complex step or by central differences; ``derivatives`` says which.
-    """
-
-    def __init__(
-        self,
-        function: Callable[[np.ndarray], Sequence[float] | np.ndarray],
-        jacobian: Callable[[np.ndarray], np.ndarray | sparray] | None,
-        recording: Recording = NOT_RECORDED,
-        rows: int = 0,
-    ):
-        self._function = function
-        self._jacobian = jacobian
-        self.recording = recording
-        self._rows = rows
-        self.noise = np.zeros(rows)
-        self._step_of_differences = DIFFERENCE_STEP
-
-    def _take_noise(self, noise: np.ndarray, unit: float | np.ndarray) -> None:
-        """Take the values of the function to be noisy (m,), in a ``unit`` of them: what
-        is within `SOLVED_IN_NOISE` of that is zero, and differences take longer steps."""
-        self.noise = noise
-        self.noise_share = float((noise / unit).max())
-        longer = self.noise_share ** (1.0 / 3.0)
-        self._step_of_differences = max(DIFFERENCE_STEP, longer)
-        of_slopes = self.noise_share / self._step_of_differences
-        self._step_of_hessian = max(HESSIAN_STEP, of_slopes ** (1.0 / 3.0))
+    equations: Equations
 
     def _take_magnitude(
         self, magnitude: float, region: np.ndarray | None = None
@@ -192,86 +160,29 @@ class EquationProblem(NumericalProblem):
         """Take F' to be of this ``magnitude``; solutions are looked for in a ``region``
         (n, 2), that of the bounds unless given."""
         self.magnitude = magnitude
-        tape = self.recording.tape
+        tape = self.equations.tape
         if tape is not None:
-            self.hessian_error = EXACT_HESSIAN
-            self.is_exact = True
-            self.scaled_tape = ScaledTape(
-                tape, magnitude, self.scale, self.bounds, self.periods, region
-            )
+            self.scaled_tape = ScaledTape(tape, magnitude, self.domain, region)
 
-    # --- values and derivatives -------------------------------------------------------
+    @property
+    def recording(self) -> Recording:
+        """What came of recording the equations."""
+        return self.equations.recording
+
+    @property
+    def shortcuts(self) -> Shortcuts:
+        """What a tape does in one call; F' where it is given as a sparse matrix."""
+        if self.scaled_tape is None and self.equations.is_sparse:
+            return Shortcuts(jacobian=self.equations.jacobian_as_given)
+        return super().shortcuts
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
-        points = np.atleast_2d(points)
-        if self.scaled_tape is not None:
-            return self.scaled_tape.residuals(points)
-        function = self._function  # called thousands of times a curve
-        with np.errstate(all="ignore"):  # beyond the rim of where it is defined
-            values = [function(point) for point in points]
-        exact = np.array(values, dtype=float).reshape(len(points), self._rows)
-        if not np.any(self.noise):
-            return exact
-        floor = SOLVED_IN_NOISE * self.noise
-        beyond: np.ndarray = exact - np.clip(exact, -floor, floor)
-        return beyond
-
-    def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
-        """F' (m, n) at one point (n,), sparse where the given ``jacobian`` makes it so,
-        or the recording of many unknowns."""
-        if self.scaled_tape is not None:
-            return super().jacobian(point)
-        if self._jacobian is not None:
-            return self._given_jacobian(point)
-        with np.errstate(all="ignore"):
-            if self.derivatives == "complex step":
-                return self._complex_step(point)
-            return self._central_difference(point)
+        return self.equations.residuals(points)
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' (k, m, n) at points (k, n), dense."""
-        points = np.atleast_2d(points)
-        if self.scaled_tape is not None:
-            return self.scaled_tape.jacobians(points)
-        jacobians = [as_dense(self.jacobian(point)) for point in points]
-        return np.array(jacobians).reshape(len(points), self._rows, self.n)
-
-    def coefficient_rounding(self, point: np.ndarray) -> np.ndarray:
-        """How far off F (m,) at a point (n,) is where its coefficients are rounded to
-        doubles; 0 where it is not recorded."""
-        tape = self.recording.tape
-        if tape is None:
-            return super().coefficient_rounding(point)
-        return rounding_of_constants(tape, point)
-
-    def _given_jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
-        assert self._jacobian is not None
-        jacobian = self._jacobian(point)
-        is_sparse = hasattr(jacobian, "tocsc")
-        return jacobian if is_sparse else np.asarray(jacobian, dtype=float)
-
-    def _complex_step(self, point: np.ndarray) -> np.ndarray:
-        columns = []
-        for shifted in point + 1j * COMPLEX_STEP * np.eye(self.n):
-            value = np.asarray(self._function(shifted))
-            columns.append(np.imag(value) / COMPLEX_STEP)
-        return np.column_stack(columns)
-
-    def _central_difference(self, point: np.ndarray) -> np.ndarray:
-        columns = []
-        for i in range(self.n):
-            step = np.zeros(self.n)
-            step[i] = self._step_of_differences * (1.0 + abs(point[i]))
-            upper = self._value(point + step)
-            lower = self._value(point - step)
-            width = 2 * step[i]
-            columns.append((upper - lower) / width)
-        return np.column_stack(columns)
-
-    def _value(self, point: np.ndarray) -> np.ndarray:
-        """F (m,) at one point (n,)."""
-        return floats_of("value of the function", self._function(point))
+        return self.equations.jacobians(points)
 
 
 class _FirstPoints(NamedTuple):
@@ -319,51 +230,20 @@ class FunctionProblem(EquationProblem):
         check_callable("function", function)
         if jacobian is not None:
             check_callable("jacobian", jacobian)
-        super().__init__(function, jacobian)
-        self._set_unknowns(bounds, names, units, periods)
+        self.domain = _described_domain(bounds, names, units, periods)
+        self.equations = Equations(function, jacobian, 0, NOT_RECORDED)
         points, probes = self._first_points()
-        self._rows = len(self._value(probes[0]))
-        self.noise = np.zeros(self._rows)
-        if is_recorded:
-            self.recording = record(function, points)
+        m = len(self.equations.value(probes[0]))
+        recording = self._recorded(points) if is_recorded else NOT_RECORDED
+        self.equations = replace(self.equations, m=m, recording=recording)
         self._measure_noise(probes)
         self._measure(probes)
         self._check_periods(probes)
         self._settle_open_bounds()
 
-    def _set_unknowns(
-        self,
-        bounds: Sequence[Sequence[float]],
-        names: Sequence[str] | None,
-        units: Sequence[str] | None,
-        periods: Sequence[float] | None,
-    ) -> None:
-        """Take the unknowns as the user describes them; raises `ProblemError`."""
-        self.bounds = _checked_bounds(bounds)
-        n = len(self.bounds)
-        default_names = [f"u{i + 1}" for i in range(n)]
-        self.names = _checked_texts("names", default_names if names is None else names)
-        self.units = _checked_texts("units", [""] * n if units is None else units)
-        if len(set(self.names)) < len(self.names):
-            raise ProblemError("names", self.names, "all different")
-        self.periods = np.full(n, np.inf)
-        if periods is not None:
-            self.periods = floats_of("periods", periods)
-        self._check_lengths(n)
-        self.bounds = _without_limits_of_circles(self.bounds, self.periods)
-        low, high = self._finite_bounds
-        self.scale = float(np.median(high - low)) / 4.0
-
-    @property
-    def _finite_bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper ends (n,); where the bounds are infinite, half a period about
-        0, or from -1 to 1, or as far from the other end as that is from 0 and 1 more."""
-        low, high = self.bounds.T
-        half = np.where(np.isfinite(self.periods), 0.5 * self.periods, 1.0)
-        from_high = np.where(np.isfinite(high), np.minimum(-half, 2 * high - 1), -half)
-        low = np.where(np.isfinite(low), low, from_high)
-        from_low = np.where(np.isfinite(low), np.maximum(half, 2 * low + 1), half)
-        return low, np.where(np.isfinite(high), high, from_low)
+    def _recorded(self, points: np.ndarray) -> Recording:
+        """What came of recording the function, compared with it at points (k, n)."""
+        return record(self.equations.function, points)
 
     def _first_points(self) -> _FirstPoints:
         """Points at which the equations are looked at; many are tried where a function
@@ -374,7 +254,7 @@ class FunctionProblem(EquationProblem):
         points = self._random_points()
         probes = points[:PROBES]
         with np.errstate(all="ignore"):
-            values = [self._value(probe) for probe in probes]
+            values = [self.equations.value(probe) for probe in probes]
         if any(np.all(np.isfinite(value)) for value in values):
             return _FirstPoints(points, self._probes_with_value(probes))
         trials = self._probes_with_value(self._random_points(MOST_TRIALS))
@@ -383,24 +263,28 @@ class FunctionProblem(EquationProblem):
     def _random_points(self, count: int = PROBES + CHECKS) -> np.ndarray:
         """Points (k, n) within the bounds at which the equations are looked at."""
         rng = np.random.default_rng(0)
-        low, high = self._finite_bounds
+        low, high = _finite_bounds(self.domain)
         return rng.uniform(low, high, (count, self.n))
 
     def _settle_open_bounds(self) -> None:
         """Take the scale of unknowns without bounds or a period, and bounds for them,
         from solutions that are reached from starts about 0."""
-        is_open = ~np.isfinite(self.bounds) & ~np.isfinite(self.periods)[:, None]
+        bounds, periods = self.domain.bounds, self.domain.periods
+        is_open = ~np.isfinite(bounds) & ~np.isfinite(periods)[:, None]
         if not np.any(is_open):
             return
         size = self._size_of_solutions(is_open.any(axis=1))
-        known_ends = self.bounds[np.isfinite(self.bounds) & is_open[:, ::-1]]
+        known_ends = bounds[np.isfinite(bounds) & is_open[:, ::-1]]
         size = max(size, float(np.abs(known_ends).max(initial=0.0)))
-        half = np.where(np.isfinite(self.periods), 0.5 * self.periods, size)
+        half = np.where(np.isfinite(periods), 0.5 * periods, size)
         about_zero = half[:, None] * np.array([-1.0, 1.0])
-        low, high = np.where(np.isfinite(self.bounds), self.bounds, about_zero).T
-        self.scale = float(np.median(high - low)) / 4.0
-        self.bounds = np.where(is_open, FARTHEST * about_zero, self.bounds)
-        self.has_assumed_bounds = is_open
+        low, high = np.where(np.isfinite(bounds), bounds, about_zero).T
+        self.domain = replace(
+            self.domain,
+            bounds=np.where(is_open, FARTHEST * about_zero, bounds),
+            scale=float(np.median(high - low)) / 4.0,
+            has_assumed_bounds=is_open,
+        )
         rng = np.random.default_rng(0)
         points = rng.uniform(low, high, (PROBES, self.n))
         self._measure(self._probes_with_value(points))
@@ -425,16 +309,12 @@ class FunctionProblem(EquationProblem):
         """Choose how F' is made, check it at the probes (k, n), and take its typical
         size."""
         self._take_magnitude(1.0)
-        self.equations = str(self.recording)
-        if self.noise_share:
-            noise = f"{self.noise_share:.1e} of what they change by"
-            self.equations += f"; its values are noisy to {noise}"
         with np.errstate(all="ignore"):
-            self.derivatives = self._choose_derivatives(probes[0])
-        with np.errstate(all="ignore"):
+            self.equations = self.equations.with_derivatives_at(probes[0])
+            self.accuracy = accuracy_of(self.equations)
             for probe in probes:
                 self._check_jacobian(probe)
-            sizes = [_spectral_norm(self.jacobian(probe)) for probe in probes]
+            sizes = [_spectral_norm(jacobian_at(self, probe)) for probe in probes]
         known = [size for size in sizes if math.isfinite(size)]
         if not known:
             allowed = "finite somewhere inside the bounds"
@@ -444,12 +324,12 @@ class FunctionProblem(EquationProblem):
     def _measure_noise(self, probes: np.ndarray) -> None:
         """See how noisy the values are about the probes (k, n), where they are not
         recorded; raises `ProblemError` where there is too much of it."""
-        if self.recording.tape is not None or self.n > LARGEST_COMPARED:
+        if self.equations.tape is not None or self.n > LARGEST_COMPARED:
             return
-        rng = np.random.default_rng(0)
+        rng, value = np.random.default_rng(0), self.equations.value
         with np.errstate(all="ignore"):
-            noise = noise_of(self._value, probes[:NOISE_PROBES], self.scale, rng)
-            values = np.array([self._value(probe) for probe in probes])
+            noise = noise_of(value, probes[:NOISE_PROBES], self.domain.scale, rng)
+            values = np.array([value(probe) for probe in probes])
         if noise is None:
             return
         changes = np.ptp(values, axis=0) + np.abs(values).min(axis=0) + TINY
@@ -463,49 +343,9 @@ class FunctionProblem(EquationProblem):
             )
             what = "noise of the values of the function"
             raise ProblemError(what, f"{share:.1e}", allowed)
-        self._take_noise(noise, changes)
-
-    # --- derivatives ------------------------------------------------------------------
-
-    def _choose_derivatives(self, probe: np.ndarray) -> str:
-        """How F' is made: from the recording or as it is given, else by complex step,
-        if that agrees with differences at a point.
-
-        A function may also drop imaginary parts without a word.
-        """
-        if self.scaled_tape is not None:
-            return "recorded"
-        if self._jacobian is not None:
-            return "given"
-        try:
-            by_complex = self._complex_step(probe)
-        except (TypeError, ValueError, np.exceptions.ComplexWarning):
-            return "central differences"
-        by_difference = self._central_difference(probe)
-        if by_complex.shape != by_difference.shape:
-            return "central differences"
-        error = np.abs(by_complex - by_difference).max()
-        size = 1.0 + np.abs(by_difference).max()
-        return "complex step" if error < 1e-5 * size else "central differences"
+        self.equations = replace(self.equations, noise=noise, noise_share=share)
 
     # --- checks -----------------------------------------------------------------------
-
-    def _check_lengths(self, n: int) -> None:
-        """Raise `ProblemError` unless there is a name, a unit and a positive period for
-        each unknown."""
-        sizes = {
-            "names": len(self.names),
-            "units": len(self.units),
-            "periods": len(self.periods),
-        }
-        for what, size in sizes.items():
-            if size != n:
-                raise ProblemError(
-                    f"number of {what}", size, f"{n}, the number of bounds"
-                )
-        if not np.all(self.periods > 0):
-            allowed = "positive, inf where an unknown has none"
-            raise ProblemError("periods", self.periods.tolist(), allowed)
 
     def _probes_with_value(self, probes: np.ndarray) -> np.ndarray:
         """Those of the probes (k, n) where the function gives a finite vector.
@@ -514,7 +354,7 @@ class FunctionProblem(EquationProblem):
         none that is finite.
         """
         with np.errstate(all="ignore"):
-            values = [self._value(probe) for probe in probes]
+            values = [self.equations.value(probe) for probe in probes]
         for value in values:
             if value.ndim != 1 or not len(value):
                 allowed = "a vector of finite numbers"
@@ -537,8 +377,8 @@ class FunctionProblem(EquationProblem):
         """Raise `ProblemError` unless the equations are the same one period on from the
         probes (k, n), but for their signs, or a constant more: that of an equation
         between angles, as u_1 = 2 u_2 is."""
-        for i in np.flatnonzero(np.isfinite(self.periods)):
-            period = float(self.periods[i])
+        for i in np.flatnonzero(np.isfinite(self.domain.periods)):
+            period = float(self.domain.periods[i])
             shift = np.zeros(self.n)
             shift[i] = period
             with np.errstate(all="ignore"):
@@ -563,25 +403,27 @@ class FunctionProblem(EquationProblem):
                 f"{here[at, row]:.6g} at {probes[at]} and {there[at, row]:.6g} one "
                 "period on"
             )
-            raise ProblemError(f"period of {self.names[i]}", period, allowed)
+            raise ProblemError(f"period of {self.domain.names[i]}", period, allowed)
 
     def _check_jacobian(self, probe: np.ndarray) -> None:
         """Raise `ProblemError` unless F' has its shape and is finite at a probe (n,),
         and agrees with the recording or with differences where it is given."""
-        shape = (len(self._value(probe)), self.n)
-        jacobian = as_dense(self.jacobian(probe))
-        if self._jacobian is not None:
-            jacobian = as_dense(self._given_jacobian(probe))
+        shape = (len(self.equations.value(probe)), self.n)
+        given = self.equations.given_jacobian
+        if given is None:
+            jacobian = self.jacobians(probe[None])[0]
+        else:
+            jacobian = as_dense(self.equations.jacobian_as_given(probe))
         if jacobian.shape != shape:
             raise ProblemError("shape of the jacobian", jacobian.shape, str(shape))
-        if self._jacobian is not None and not np.all(np.isfinite(jacobian)):
+        if given is not None and not np.all(np.isfinite(jacobian)):
             raise ProblemError("jacobian", jacobian, "finite")
-        if self._jacobian is None or self.n > LARGEST_COMPARED:
+        if given is None or self.n > LARGEST_COMPARED:
             return
-        expected = self._central_difference(probe)
+        expected = self.equations.central_difference(probe)
         origin = "by differences"
-        if self.scaled_tape is not None:
-            expected = self.scaled_tape.jacobians(probe[None])[0]
+        if self.equations.tape is not None:
+            expected = self.jacobians(probe[None])[0]
             origin = "as recorded"
         if not np.all(np.isfinite(expected)):
             return  # at the rim of where the function is defined
@@ -594,6 +436,71 @@ class FunctionProblem(EquationProblem):
             )
             name = f"jacobian[{row}, {column}]"
             raise ProblemError(name, jacobian[row, column], allowed)
+
+
+def accuracy_of(equations: Equations) -> Accuracy:
+    """How exactly the equations are known."""
+    is_recorded = equations.tape is not None
+    origin = str(equations.recording)
+    if equations.noise_share:
+        noise = f"{equations.noise_share:.1e} of what they change by"
+        origin += f"; its values are noisy to {noise}"
+    return Accuracy(
+        derivatives=equations.derivatives,
+        equations=origin,
+        noise=equations.noise_share,
+        is_exact=is_recorded,
+        coefficient_rounding=equations.coefficient_rounding,
+        hessian_error=EXACT_HESSIAN if is_recorded else HESSIAN_ERROR,
+    )
+
+
+# --- the unknowns ---------------------------------------------------------------------
+
+
+def _described_domain(
+    bounds: Sequence[Sequence[float]],
+    names: Sequence[str] | None,
+    units: Sequence[str] | None,
+    periods: Sequence[float] | None,
+) -> Domain:
+    """The unknowns as the user describes them; raises `ProblemError`."""
+    ends = _checked_bounds(bounds)
+    n = len(ends)
+    default_names = [f"u{i + 1}" for i in range(n)]
+    own_names = _checked_texts("names", default_names if names is None else names)
+    own_units = _checked_texts("units", [""] * n if units is None else units)
+    if len(set(own_names)) < len(own_names):
+        raise ProblemError("names", own_names, "all different")
+    endless = np.full(n, np.inf)
+    own_periods = endless if periods is None else floats_of("periods", periods)
+    sizes = {
+        "names": len(own_names),
+        "units": len(own_units),
+        "periods": len(own_periods),
+    }
+    for what, size in sizes.items():
+        if size != n:
+            allowed = f"{n}, the number of bounds"
+            raise ProblemError(f"number of {what}", size, allowed)
+    if not np.all(own_periods > 0):
+        allowed = "positive, inf where an unknown has none"
+        raise ProblemError("periods", own_periods.tolist(), allowed)
+    ends = _without_limits_of_circles(ends, own_periods)
+    domain = Domain(own_names, own_units, own_periods, ends)
+    low, high = _finite_bounds(domain)
+    return replace(domain, scale=float(np.median(high - low)) / 4.0)
+
+
+def _finite_bounds(domain: Domain) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper ends (n,); where the bounds are infinite, half a period about
+    0, or from -1 to 1, or as far from the other end as that is from 0 and 1 more."""
+    low, high = domain.bounds.T
+    half = np.where(np.isfinite(domain.periods), 0.5 * domain.periods, 1.0)
+    from_high = np.where(np.isfinite(high), np.minimum(-half, 2 * high - 1), -half)
+    low = np.where(np.isfinite(low), low, from_high)
+    from_low = np.where(np.isfinite(low), np.maximum(half, 2 * low + 1), half)
+    return low, np.where(np.isfinite(high), high, from_low)
 
 
 def _largest_known(values: np.ndarray) -> np.ndarray:

@@ -10,23 +10,20 @@ every call.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bifurc.function_problem import NumericalProblem
+from bifurc.limits import Deadline
 from bifurc.problem import (
     CurveNodes,
     March,
     MarchSettings,
-    NodeCorrector,
     Problem,
+    Shortcuts,
     SphereProjection,
 )
 from bifurc.seeds import Seeds
-
-if TYPE_CHECKING:
-    from scipy.sparse import sparray
 
 ULPS = 2.0  # the largest error, in units of the last place of a number about 1
 
@@ -60,63 +57,64 @@ class NoisyMethods(NumericalProblem):
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) with errors in proportion to magnitude and scale."""
         residuals = super().residuals(points)  # type: ignore[safe-super]
-        return self.noise(residuals, self.magnitude * self.scale)
+        return self.noise(residuals, self.magnitude * self.domain.scale)
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' (k, m, n) with errors in proportion to the magnitude."""
         jacobians = super().jacobians(points)  # type: ignore[safe-super]
         return self.noise(jacobians, self.magnitude)
 
-    def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
-        """F' (m, n) at one point (n,), with such errors where it is dense."""
-        jacobian = super().jacobian(point)
-        if not isinstance(jacobian, np.ndarray):
-            return jacobian
-        return self.noise(jacobian, self.magnitude)
-
-    def hessian(self, point: np.ndarray) -> np.ndarray:
-        """F'' (m, n, n) with errors in proportion to magnitude over scale."""
-        return self.noise(super().hessian(point), self.magnitude / self.scale)
+    def hessians(self, points: np.ndarray) -> np.ndarray:
+        """F'' (k, m, n, n) with errors in proportion to magnitude over scale."""
+        hessians = super().hessians(points)
+        return self.noise(hessians, self.magnitude / self.domain.scale)
 
     def march(
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
     ) -> March:
         """Pieces with errors in their coefficients, from a start with errors."""
-        start = self.noise(start, self.scale)
+        start = self.noise(start, self.domain.scale)
         tangent = self.noise(tangent, 1.0)
         march = super().march(start, tangent, settings)
-        return replace(march, pieces=self.noise(march.pieces, self.scale))
+        return replace(march, pieces=self.noise(march.pieces, self.domain.scale))
 
-    def valley_corrector(self) -> NodeCorrector | None:
-        """What corrects points at the nodes of a piece of the valley, with errors."""
-        correct = super().valley_corrector()
+    @property
+    def shortcuts(self) -> Shortcuts:
+        """What is done in one call, with errors in points of a valley; sparse matrices
+        have none."""
+        shortcuts = super().shortcuts
+        correct = shortcuts.valley_corrector
         if correct is None:
-            return None
+            return shortcuts
 
         def correct_with_errors(nodes: CurveNodes) -> np.ndarray | None:
-            start = self.noise(nodes.start, self.scale)
+            start = self.noise(nodes.start, self.domain.scale)
             points = correct(nodes._replace(start=start))
-            return None if points is None else self.noise(points, self.scale)
+            return None if points is None else self.noise(points, self.domain.scale)
 
-        return correct_with_errors
+        return shortcuts._replace(valley_corrector=correct_with_errors)
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solutions (k, n) with errors, and the residuals (k,)."""
-        points, gaps = super().project(self.noise(starts, self.scale))
-        return self.noise(points, self.scale), gaps
+        points, gaps = super().project(self.noise(starts, self.domain.scale))
+        return self.noise(points, self.domain.scale), gaps
 
     def project_to_sphere(
         self, starts: np.ndarray, center: np.ndarray, radius: float
     ) -> SphereProjection:
         """Solutions on a sphere with errors."""
-        starts = self.noise(starts, self.scale)
+        starts = self.noise(starts, self.domain.scale)
         projection = super().project_to_sphere(starts, center, radius)
-        return projection._replace(points=self.noise(projection.points, self.scale))
+        return projection._replace(
+            points=self.noise(projection.points, self.domain.scale)
+        )
 
-    def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
+    def seeds(
+        self, rng: np.random.Generator, count: int, deadline: Deadline | None = None
+    ) -> Seeds:
         """Seeds with errors."""
-        seeds = super().seeds(rng, count)
-        return replace(seeds, points=self.noise(seeds.points, self.scale))
+        seeds = super().seeds(rng, count, deadline)
+        return replace(seeds, points=self.noise(seeds.points, self.domain.scale))
 
 
 def with_rounding_noise(problem: Problem, seed: int) -> Problem:

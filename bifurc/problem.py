@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
-from bifurc import torus
-from bifurc.decisions import is_in_bounds, is_solution
+from bifurc.decisions import is_solution
+from bifurc.domain import Domain
 from bifurc.limits import Deadline
 from bifurc.seeds import Seeds
 
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     # SciPy takes a second to import, and only sparse problems need it
     from scipy.sparse import sparray
 
-
-LARGE = 64  # unknowns of a problem beyond which it is large
 
 # Maps a right-hand side to the solution (n,) of one linear system.
 Solver: TypeAlias = Callable[[np.ndarray], np.ndarray]
@@ -173,75 +171,95 @@ class SphereProjection(NamedTuple):
     last_steps: np.ndarray
 
 
+@dataclass(frozen=True, eq=False)
+class Accuracy:
+    """How exactly a system F = 0 is known.
+
+    ``derivatives`` says how F' was made, ``equations`` whether a function was recorded,
+    and why not. ``is_exact``: its equations are what is meant, and not made of numbers
+    that are rounded. ``data_rounding``: how far off F may be, over the magnitude and the
+    scale, as those numbers are rounded; 0 where that is not known. ``coefficient_rounding``
+    gives how far off F (m,) is at a point (n,) where the numbers in it are rounded;
+    by the rounding of the data where it is None. ``hessian_error`` is how far off F'' may
+    be, over a bound on it. ``noise``: how noisy F is, over what it changes by within the
+    bounds; 0 where that is no more than rounding. Within it `Problem.residuals` are zero.
+    """
+
+    derivatives: str = "exact"
+    equations: str = ""
+    is_exact: bool = False
+    data_rounding: float = 0.0
+    coefficient_rounding: Callable[[np.ndarray], np.ndarray] | None = None
+    hessian_error: float = 1e-6
+    noise: float = 0.0
+
+
+class Curvature(NamedTuple):
+    """Bounds on F'', over the magnitude.
+
+    ``bound`` is a constant K with |F'(x) - F'(y)| <= K |x - y|. ``at_complex_points``
+    gives bounds (k,) on |F''| at all complex points no farther than so much (k,) from a
+    real point within the bounds; F is taken as the analytic function that it is next to a
+    solution. Both need hold only where the relative residual is at most ``residual``.
+    """
+
+    bound: float
+    at_complex_points: Callable[[np.ndarray], np.ndarray]
+    residual: float = np.inf
+
+
+class Shortcuts(NamedTuple):
+    """What a system does in one call, where others go step by step; None where it has
+    no way of its own.
+
+    ``jacobian`` gives F' (m, n) at one point (n,), as a sparse matrix. ``bordered_solver``
+    gives what solves systems with F' (m, n) at a point (n,), over the magnitude, and
+    under it a row ``tangent`` (n,), or None where that matrix is to be factored; ``m`` is
+    its number of equations. ``valley_corrector`` corrects all points at the nodes of a
+    piece of the valley along which the system is nearly solved
+    (`bifurc.curves.valley_problem`).
+    """
+
+    m: int = 0
+    jacobian: Callable[[np.ndarray], np.ndarray | sparray] | None = None
+    bordered_solver: Callable[[np.ndarray, np.ndarray], Solver | None] | None = None
+    valley_corrector: NodeCorrector | None = None
+
+
+NO_SHORTCUTS = Shortcuts()
+
+
 class Problem(ABC):
     """F: R^n -> R^m with any m; the curves are where rank F' = n - 1 and F = 0.
 
     Redundant equations are normal: a spatial loop has six for five or fewer that are
     independent. This is what a search asks of its equations; `NumericalProblem` answers
-    all of it from `residuals` and `jacobians` alone, and a problem that knows more
-    about itself answers faster.
+    all of it from a domain, `residuals` and `jacobians` alone, and a problem that knows
+    more about itself answers faster.
 
-    ``names`` and ``units`` (n,) label the unknowns, ``periods`` (n,) are their periods
-    (inf where there is none), ``bounds`` (n, 2) the region of interest (infinite where
-    there is none), ``magnitude`` the typical size of F', by which residuals and
-    singular values are divided, ``scale`` the typical size of the unknowns, and
-    ``derivatives`` says how F' was made, ``equations`` whether a function was recorded,
-    and why not. ``is_exact``: its equations are what is meant, and not made of numbers that
-    are rounded. ``data_rounding``: how far off F may be, over the magnitude and the
-    scale, as those numbers are rounded; 0 where that is not known. ``hessian_error`` is
-    how far off `hessian` may be, over a bound on F''. ``has_assumed_bounds`` (n, 2): which
-    ends of the bounds were chosen, as none were given; a single False for none of them.
-    ``has_crossings``: curves may cross, so that short steps are a sign of a crossing.
-    ``stride``: the unit of the longest step along a curve, in scales. ``piece_norm``: the order
-    of the norm of vectors when a piece is judged. ``node_corrector`` corrects all points at
-    the nodes of a piece in one call; None where they are corrected one by one.
-    ``noise_share``: how noisy F is, over the magnitude and the scale, 0 where that is no more
-    than rounding; what `residuals` gives is zero within it.
-    ``equation_count`` is known where there is a `bordered_solver`.
+    ``domain`` says what the unknowns are and where solutions are looked for,
+    ``magnitude`` is the typical size of F', by which residuals and singular values are
+    divided, ``accuracy`` says how exactly F is known.
     """
 
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-    periods: np.ndarray
-    bounds: np.ndarray
-    curvature_residual: float = np.inf
-    hessian_error: float = 1e-6
+    domain: Domain
     magnitude: float = 1.0
-    scale: float = 1.0
-    derivatives: str = "exact"
-    equations: str = ""
-    is_exact: bool = False
-    data_rounding: float = 0.0
-    noise_share: float = 0.0
-    has_crossings: bool = True
-    stride: float = 1.0
-    piece_norm: float = np.inf
-    node_corrector: NodeCorrector | None = None
-    equation_count: int
-    has_assumed_bounds: np.ndarray = np.array(False)
+    accuracy: Accuracy = Accuracy()
 
     @property
     def n(self) -> int:
         """Number of unknowns."""
-        return len(self.names)
+        return len(self.domain.names)
 
     @property
-    def is_large(self) -> bool:
-        """Whether it has so many unknowns that F' is bordered instead of decomposed, and
-        F'' is not formed."""
-        return self.n > LARGE
+    def curvature(self) -> Curvature | None:
+        """Bounds on F''; None where none are known."""
+        return None
 
     @property
-    def reach(self) -> float:
-        """The unit of the length that a curve may have before it is cut off."""
-        return self.scale
-
-    def take_unknowns_of(self, other: Problem) -> None:
-        """Take the unknowns of another problem, with its region and its sizes."""
-        self.names, self.units = other.names, other.units
-        self.periods, self.bounds = other.periods, other.bounds
-        self.magnitude, self.scale = other.magnitude, other.scale
-        self.derivatives = other.derivatives
+    def shortcuts(self) -> Shortcuts:
+        """What is done in one call."""
+        return NO_SHORTCUTS
 
     @abstractmethod
     def residuals(self, points: np.ndarray) -> np.ndarray:
@@ -251,88 +269,13 @@ class Problem(ABC):
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' (k, m, n) at points (k, n)."""
 
-    def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
-        """F' (m, n) at one point (n,), sparse where that is how it is made."""
-        return self.jacobians(point[None])[0]
-
-    def bordered_solver(self, point: np.ndarray, tangent: np.ndarray) -> Solver | None:
-        """What solves systems with F' (m, n) at a point (n,), over the magnitude, and
-        under it the row ``tangent`` (n,); None where that matrix is to be factored."""
-        return None
-
-    def valley_corrector(self) -> NodeCorrector | None:
-        """What corrects all points at the nodes of a piece of the valley along which the
-        system is nearly solved (`bifurc.curves.valley_problem`) in one call; None where
-        they are corrected one by one."""
-        return None
-
     @abstractmethod
-    def hessian(self, point: np.ndarray) -> np.ndarray:
-        """F'' (m, n, n) at a point (n,)."""
-
-    def relative_residuals(self, points: np.ndarray) -> np.ndarray:
-        """F over the magnitude (k, m) at points (k, n)."""
-        return self.residuals(points) / self.magnitude
-
-    def relative_jacobians(self, points: np.ndarray) -> np.ndarray:
-        """F' over the magnitude (k, m, n) at points (k, n)."""
-        return self.jacobians(points) / self.magnitude
-
     def hessians(self, points: np.ndarray) -> np.ndarray:
         """F'' (k, m, n, n) at points (k, n)."""
-        return np.array([self.hessian(point) for point in points])
-
-    def gaps(self, points: np.ndarray) -> np.ndarray:
-        """|F| over the magnitude (k,) at points (k, n)."""
-        sizes: np.ndarray = np.linalg.norm(self.residuals(points), axis=1)
-        return sizes / self.magnitude
-
-    def excess(self, points: np.ndarray) -> np.ndarray:
-        """How far points (k, n) lie outside the bounds (k,), in the unknown that is
-        farthest; negative inside."""
-        low, high = self.bounds.T
-        excess = np.maximum(low - points, points - high)
-        farthest: np.ndarray = excess.max(axis=1)
-        return farthest
-
-    def are_inside(self, points: np.ndarray) -> np.ndarray:
-        """Which points (k, n) lie within the bounds (k,), or outside by rounding: a
-        curve may run in a bound."""
-        outside: np.ndarray = np.maximum(self.excess(points), 0.0)
-        are_inside: np.ndarray = is_in_bounds(outside, self.scale)
-        return are_inside
-
-    @property
-    def slack(self) -> float:
-        """How far outside the bounds a point still counts as inside."""
-        return is_in_bounds.threshold * self.scale
 
     def precise_residual(self) -> PreciseResidual | None:
         """F over mpmath numbers, n of them in and m out, right to whatever precision
         is set when it is called; None where F is known in doubles only."""
-        return None
-
-    def coefficient_rounding(self, point: np.ndarray) -> np.ndarray:
-        """How far off F (m,) at a point (n,) is where the numbers in it are rounded:
-        by the rounding of the data, unless a class knows better."""
-        rows = len(self.residuals(point[None])[0])
-        return np.full(rows, self.data_rounding * self.magnitude * self.scale)
-
-    def curvature_bound(self) -> float | None:
-        """A constant K with |F'(x) - F'(y)| <= K |x - y|, over the magnitude; None
-        where none is known.
-
-        It need hold only where the relative residual is at most ``curvature_residual``.
-        """
-        return None
-
-    def complex_curvature(self, reach: np.ndarray) -> np.ndarray | None:
-        """Bounds (k,) on |F''|, over the magnitude, at all complex points no farther
-        than ``reach`` (k,) from a real point within the bounds where the relative
-        residual is at most ``curvature_residual``; None where none are known.
-
-        F is taken as the analytic function that it is next to a solution.
-        """
         return None
 
     @abstractmethod
@@ -353,16 +296,36 @@ class Problem(ABC):
         """Solutions near starts (k, n) at distance ``radius`` from ``center`` (n,)."""
 
     @abstractmethod
-    def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
-        """Solutions to start from, ``count`` random starts among what they come of."""
-
-    def seeds_until(
-        self, rng: np.random.Generator, count: int, deadline: Deadline
+    def seeds(
+        self, rng: np.random.Generator, count: int, deadline: Deadline | None = None
     ) -> Seeds:
-        """The same before a ``deadline``: all of them, unless a class knows how to stop
-        earlier."""
-        return self.seeds(rng, count)
+        """Solutions to start from, ``count`` random starts among what they come of, or
+        as many of these as there is time for before a ``deadline``."""
 
-    def difference(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        """a - b (..., n) with periodic unknowns taken to within half a period of 0."""
-        return torus.difference(a, b, self.periods)
+
+def relative_residuals(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """F over the magnitude (k, m) at points (k, n)."""
+    return problem.residuals(points) / problem.magnitude
+
+
+def relative_jacobians(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """F' over the magnitude (k, m, n) at points (k, n)."""
+    return problem.jacobians(points) / problem.magnitude
+
+
+def relative_gaps(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """|F| over the magnitude (k,) at points (k, n)."""
+    sizes: np.ndarray = np.linalg.norm(problem.residuals(points), axis=1)
+    return sizes / problem.magnitude
+
+
+def jacobian_at(problem: Problem, point: np.ndarray) -> np.ndarray | sparray:
+    """F' (m, n) at one point (n,), sparse where that is how it is made."""
+    jacobian = problem.shortcuts.jacobian
+    return problem.jacobians(point[None])[0] if jacobian is None else jacobian(point)
+
+
+def hessian_at(problem: Problem, point: np.ndarray) -> np.ndarray:
+    """F'' (m, n, n) at one point (n,)."""
+    hessian: np.ndarray = problem.hessians(point[None])[0]
+    return hessian

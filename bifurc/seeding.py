@@ -39,11 +39,11 @@ def random_seeds(
     points, gaps = _projected(problem, starts, deadline)
     points = _next_to_bounds(problem, points)
     if region is not None:
-        points = wrap(points, problem.periods)
+        points = wrap(points, problem.domain.periods)
     is_solved = is_start_solved(gaps)
     if homes is not None:
         points[is_solved] = homes(points[is_solved])
-    is_taken = is_solved & problem.are_inside(points)
+    is_taken = is_solved & problem.domain.are_inside(points)
     solutions = points[is_taken]
     return Seeds(
         points=solutions,
@@ -59,10 +59,10 @@ def _projected(
     """What `Problem.project` makes of the first of the starts (k, n), as many as there
     is time for, a few of them in any case."""
     deadline = deadline or current_deadline()
-    is_whole = deadline.is_endless and not problem.is_large
+    is_whole = deadline.is_endless and not problem.domain.is_large
     if is_whole or not len(starts):
         return problem.project(starts)
-    at_once = 1 if problem.is_large else AT_ONCE
+    at_once = 1 if problem.domain.is_large else AT_ONCE
     parts = []
     for begin in range(0, len(starts), at_once):
         parts.append(problem.project(starts[begin : begin + at_once]))
@@ -74,9 +74,9 @@ def _projected(
 
 def start_region(problem: Problem) -> np.ndarray:
     """The box (n, 2) from which starts are drawn."""
-    low, high = problem.bounds.T
-    periodic = np.isfinite(problem.periods)
-    half = np.where(periodic, 0.5 * problem.periods, problem.scale)
+    low, high = problem.domain.bounds.T
+    periodic = np.isfinite(problem.domain.periods)
+    half = np.where(periodic, 0.5 * problem.domain.periods, problem.domain.scale)
     low = np.where(np.isfinite(low), low, -half)
     high = np.where(np.isfinite(high), high, half)
     return np.column_stack([low, high])
@@ -85,13 +85,13 @@ def start_region(problem: Problem) -> np.ndarray:
 def _next_to_bounds(problem: Problem, points: np.ndarray) -> np.ndarray:
     """Points (k, n) with unknowns that have a period and bounds within half a period of
     the middle of these."""
-    has_bounds = np.isfinite(problem.bounds).all(axis=1)
-    is_limited = np.isfinite(problem.periods) & has_bounds
+    has_bounds = np.isfinite(problem.domain.bounds).all(axis=1)
+    is_limited = np.isfinite(problem.domain.periods) & has_bounds
     if not np.any(is_limited):
         return points
     out = points.copy()
-    period = problem.periods[is_limited]
-    beside = out[:, is_limited] - problem.bounds[is_limited].mean(axis=1)
+    period = problem.domain.periods[is_limited]
+    beside = out[:, is_limited] - problem.domain.bounds[is_limited].mean(axis=1)
     out[:, is_limited] -= period * np.round(beside / period)
     return out
 

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    # SciPy takes longer to import than a small problem to solve
+    from scipy.sparse import sparray
 
 
 @dataclass(frozen=True)
@@ -41,3 +46,13 @@ class Units:
         lengths = np.linalg.norm(restated, axis=-1, keepdims=True)
         unit: np.ndarray = restated / np.where(lengths > 0.0, lengths, 1.0)
         return unit
+
+    def jacobian(self, outer: np.ndarray | sparray) -> np.ndarray | sparray:
+        """F' (m, n) in these units, from that of the user, ``outer``, dense or sparse."""
+        if isinstance(outer, np.ndarray):
+            matrix: np.ndarray = self.weights[:, None] * outer * self.sizes
+            return matrix
+        from scipy.sparse import diags_array
+
+        sparse: sparray = diags_array(self.weights) @ outer @ diags_array(self.sizes)
+        return sparse

@@ -13,6 +13,7 @@ import numpy as np
 
 from bifurc.errors import BifurcError
 from linkages.closed_forms.closed_form import ClosedForm
+from linkages.closed_forms.form_table import closed_form, form_tables
 from linkages.construction.equations import equation_gaps
 from linkages.construction.numbers import Number
 from linkages.loop import Loop
@@ -126,8 +127,8 @@ class Entry:
     `Loop`, or raises `GeometryError` that says by how much a condition is violated.
     ``conditions`` state the geometry; ``facts`` are the published invariants that the
     tests assert, such as ``mobility`` or ``forms``. ``patterns`` takes the same
-    parameters (floats) and returns the named forms. ``formulas`` takes the name and
-    returns the closed forms, and may import sympy.
+    parameters (floats) and returns the named forms. The closed forms stand in the table of
+    the ``family``.
 
     Most parameters stand in the table of a member as they are, and recognition reads
     them there. For the others ``guesses`` maps a table (3, n) in normal form (lengths
@@ -138,13 +139,13 @@ class Entry:
     """
 
     name: str
+    family: str
     title: str
     source: str
     construct: Callable[..., Loop]
     parameters: tuple[Parameter, ...]
     conditions: tuple[Condition, ...] = ()
     patterns: Callable[..., tuple[FormPattern, ...]] | None = None
-    formulas: Callable[[str], tuple[ClosedForm, ...]] | None = None
     guesses: Guesses | None = None
     scan: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     relations: tuple[Relation, ...] = ()
@@ -160,7 +161,8 @@ class Entry:
     @cached_property
     def closed_forms(self) -> tuple[ClosedForm, ...]:
         """The closed forms of the motion; none where the sources give none."""
-        return () if self.formulas is None else self.formulas(self.name)
+        tables = form_tables(self.family).get(self.name, [])
+        return tuple(closed_form(self.name, table) for table in tables)
 
     def complete(self, values: Mapping[str, Any]) -> dict[str, Any]:
         """``values`` completed by the defaults; raises `UnknownParameterError`."""

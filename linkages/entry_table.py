@@ -28,7 +28,6 @@ from importlib import resources
 from math import radians
 from typing import Any
 
-from linkages.closed_forms.closed_form import ClosedForm
 from linkages.construction.equations import evaluate
 from linkages.entry import (
     Condition,
@@ -56,7 +55,6 @@ class Model:
 
     construct: Callable[..., Loop]
     patterns: Callable[..., tuple[FormPattern, ...]] | None = None
-    formulas: Callable[[str], tuple[ClosedForm, ...]] | None = None
     guesses: Guesses | None = None
     scan: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
@@ -71,7 +69,9 @@ def read_entries(family: str, models: Mapping[str, Model]) -> tuple[Entry, ...]:
     names = {linkage["name"] for linkage in linkages}
     if names != models.keys():
         raise ValueError(f"{family}: {names ^ models.keys()} without table or model")
-    return tuple(Entry(**one, **vars(models[one["name"]])) for one in linkages)
+    return tuple(
+        Entry(family=family, **one, **vars(models[one["name"]])) for one in linkages
+    )
 
 
 def read_records(package: str, name: str, kind: str) -> list[dict[str, Any]]:

@@ -38,7 +38,16 @@ from linkages.axes import Vectors, loop_from_axes
 from linkages.formats.table import format_of
 from linkages.loop import MAX_JOINTS, MIN_JOINTS, Loop
 from linkages.mechanisms.origin import WrittenNumber, counted_from_near
-from linkages.values import GeometryError, check_angle, check_keys, check_number, quoted
+from linkages.values import (
+    GeometryError,
+    check_angle,
+    check_keys,
+    checked_list,
+    checked_number,
+    checked_text,
+    quoted,
+    require,
+)
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
@@ -155,30 +164,21 @@ def read_precisely(path: Path | str) -> Loop:
 def _read_loop(content: Content, name: str) -> tuple[Loop, np.ndarray | None]:
     """A loop, called as the content says or else by ``name``, and its joint angles (n,),
     rad, where axes are given."""
-    _check_keys(content)
-    given = content.get("name", name)
-    if not isinstance(given, str):
-        raise GeometryError("name", quoted(given), "a text in quotes")
-    if any(key in content for key in AXES):
-        return _read_axes(content, given)
-    return _read_table(content, given), None
-
-
-def _check_keys(content: Content) -> None:
-    """Every key is known, and they make one of the two formats, whole."""
     check_keys("key", content, KEYS)
     of_table = [key for key in TABLE if key in content]
     of_axes = [key for key in AXES if key in content]
-    if of_table and of_axes:
-        value = f"{of_table[0]} with {of_axes[0]}"
-        raise GeometryError(
-            "keys", value, "those of a table or those of axes, not both"
-        )
+    both = " with ".join([*of_table[:1], *of_axes[:1]])
+    is_one = not (of_table and of_axes)
+    require(is_one, "keys", both, "those of a table or those of axes, not both")
     wanted = AXES if of_axes else TABLE
     for key in wanted:
-        if key not in content:
-            others = " and ".join(other for other in wanted if other != key)
-            raise GeometryError(key, "a missing list", f"given together with {others}")
+        others = " and ".join(other for other in wanted if other != key)
+        is_given = key in content
+        require(is_given, key, "a missing list", f"given together with {others}")
+    given = checked_text("name", content.get("name", name))
+    if of_axes:
+        return _read_axes(content, given)
+    return _read_table(content, given), None
 
 
 # --- the two formats ------------------------------------------------------------------
@@ -189,9 +189,9 @@ def _read_table(content: Content, name: str) -> Loop:
     twists = _numbers(content, "twists")
     offsets = _numbers(content, "offsets")
     for key, values in (("twists", twists), ("offsets", offsets)):
-        if len(values) != len(lengths):
-            allowed = f"{len(lengths)}, the number of lengths"
-            raise GeometryError(f"number of {key}", len(values), allowed)
+        is_whole = len(values) == len(lengths)
+        allowed = f"{len(lengths)}, the number of lengths"
+        require(is_whole, f"number of {key}", len(values), allowed)
     if _angle_unit(content) is AngleUnit.DEGREES:
         for i, twist in enumerate(twists, start=1):
             check_angle(f"twists[{i}]", twist, in_degrees=True)
@@ -214,13 +214,10 @@ def _read_axes(content: Content, name: str) -> tuple[Loop, np.ndarray]:
 
 def _angle_unit(content: Content) -> AngleUnit:
     allowed = '"deg" or "rad"'
-    if "angles" not in content:
-        raise GeometryError(
-            "angles", "a missing key", f"{allowed}, the unit of the twists"
-        )
+    why = f"{allowed}, the unit of the twists"
+    require("angles" in content, "angles", "a missing key", why)
     unit = content["angles"]
-    if unit not in tuple(AngleUnit):
-        raise GeometryError("angles", quoted(unit), allowed)
+    require(unit in tuple(AngleUnit), "angles", quoted(unit), allowed)
     return AngleUnit(str(unit))
 
 
@@ -236,18 +233,13 @@ def _warn_of_degrees(twists: list[float]) -> None:
 
 
 def _list(content: Content, key: str, items: str) -> list[object]:
-    values = content[key]
-    if not isinstance(values, list):
-        raise GeometryError(key, quoted(values), f"a list of {items}")
-    if not MIN_JOINTS <= len(values) <= MAX_JOINTS:
-        allowed = f"one for each joint, {MIN_JOINTS} to {MAX_JOINTS} joints"
-        raise GeometryError(f"number of {key}", len(values), allowed)
+    values = checked_list(key, content[key], f"a list of {items}")
+    is_loop = MIN_JOINTS <= len(values) <= MAX_JOINTS
+    allowed = f"one for each joint, {MIN_JOINTS} to {MAX_JOINTS} joints"
+    require(is_loop, f"number of {key}", len(values), allowed)
     return values
 
 
 def _numbers(content: Content, key: str) -> list[float]:
-    numbers = []
-    for i, value in enumerate(_list(content, key, "numbers"), start=1):
-        check_number(f"{key}[{i}]", value)
-        numbers.append(float(cast(float, value)))
-    return numbers
+    values = enumerate(_list(content, key, "numbers"), start=1)
+    return [checked_number(f"{key}[{i}]", value) for i, value in values]

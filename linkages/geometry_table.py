@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from html import escape
 from typing import NamedTuple
 
+from bifurc.tables import table
 from linkages.kinematics import Number
 
 
@@ -23,6 +24,13 @@ class GeometryRow(NamedTuple):
 HEADS = GeometryRow("joint", "link", "length", "twist (deg)", "offset")
 
 
+def link_name(joint: int, joints: int) -> str:
+    """The link from ``joint`` (from 0) to the next one, both counted from 1: "12", or
+    "9-10" where numbers have two digits."""
+    dash = "-" if joints > 9 else ""
+    return f"{joint + 1}{dash}{(joint + 1) % joints + 1}"
+
+
 def geometry_rows(
     lengths: Sequence[Number], twists: Sequence[Number], offsets: Sequence[Number]
 ) -> list[GeometryRow]:
@@ -30,26 +38,16 @@ def geometry_rows(
     n = len(lengths)
     rows = []
     for i in range(n):
-        joint = i + 1
-        following = (i + 1) % n + 1
-        link = f"{joint}-{following}" if n > 9 else f"{joint}{following}"
         length = _number(lengths[i])
         offset = _number(offsets[i])
-        rows.append(GeometryRow(str(joint), link, length, _degrees(twists[i]), offset))
+        twist = _degrees(twists[i])
+        rows.append(GeometryRow(str(i + 1), link_name(i, n), length, twist, offset))
     return rows
 
 
 def geometry_text(rows: Sequence[GeometryRow]) -> str:
     """The table as lines, columns two spaces apart."""
-    lines = [HEADS, *rows]
-    widths = []
-    for column in zip(*lines, strict=True):
-        widths.append(max(len(cell) for cell in column))
-    texts = []
-    for line in lines:
-        cells = [cell.ljust(width) for cell, width in zip(line, widths, strict=True)]
-        texts.append(f"  {'  '.join(cells)}".rstrip())
-    return "\n".join(texts)
+    return table(HEADS, rows)
 
 
 def geometry_html(rows: Sequence[GeometryRow]) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TypedDict, cast
+from typing import Any, TypedDict, cast
 
 import numpy as np
 
@@ -34,12 +34,6 @@ class LoopTable(TypedDict):
     offsets: list[float]
 
 
-class Subject(LoopTable, total=False):
-    """A loop in values that JSON can hold; ``rounding`` where its lengths have one."""
-
-    rounding: float
-
-
 class LabelValues(TypedDict):
     """`FormLabels` in values that JSON can hold."""
 
@@ -57,18 +51,21 @@ class NoLinkageError(BifurcError, ValueError):
         super().__init__(f"this atlas is not of a linkage: {reason}")
 
 
-def subject_of(loop: Loop) -> Subject:
-    """The ``subject`` of an atlas of ``loop``."""
-    table = loop.arrays
-    subject: Subject = {
+def table_values(loop: Loop) -> LoopTable:
+    """The name and the table of a loop."""
+    lengths, twists, offsets = loop.arrays
+    return {
         "name": loop.name,
-        "lengths": table.lengths.tolist(),
-        "twists": table.twists.tolist(),
-        "offsets": table.offsets.tolist(),
+        "lengths": lengths.tolist(),
+        "twists": twists.tolist(),
+        "offsets": offsets.tolist(),
     }
-    if loop.rounding:
-        subject["rounding"] = loop.rounding
-    return subject
+
+
+def subject_of(loop: Loop) -> dict[str, Any]:
+    """The ``subject`` of an atlas of ``loop``, with its ``rounding`` where it has one."""
+    rounding = {"rounding": loop.rounding} if loop.rounding else {}
+    return {**table_values(loop), **rounding}
 
 
 def loop_of(atlas: Atlas) -> Loop:

@@ -1,5 +1,4 @@
-"""A linkage as a workshop makes it: every entry of its table, or every joint of a
-mechanism on each of its bodies, a little off."""
+"""A loop as a workshop makes it: every entry of its table a little off."""
 
 from __future__ import annotations
 
@@ -7,30 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from bifurc.problem import Problem
-from linkages.closure.errors import draw_errors
-from linkages.closure.loop_closure import LoopClosure
-from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.loop import Loop
-from linkages.mechanisms.mechanism import Mechanism
-from linkages.structure.structure import Structure
 from linkages.values import GeometryError
-
-
-def closure_with_errors(
-    linkage: Loop | Mechanism, error: float, rng: np.random.Generator
-) -> Problem:
-    """The closure equations of a linkage made with errors, in the unknowns of its
-    atlas: of a loop the joint angles, of a mechanism its joint variables.
-
-    Those of a loop are the errors of `make_with_errors`, those of a mechanism are of
-    `linkages.closure.errors.draw_errors`: out of the plane, too, where it is planar.
-    Raises `GeometryError` for an ``error`` that is negative or not finite.
-    """
-    if isinstance(linkage, Loop):
-        return LoopClosure(make_with_errors(linkage, error, rng))
-    structure = Structure(linkage)
-    return MechanismClosure(linkage, draw_errors(structure, error, rng), structure)
 
 
 def make_with_errors(loop: Loop, error: float, rng: np.random.Generator) -> Loop:

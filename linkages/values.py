@@ -5,7 +5,8 @@ from __future__ import annotations
 import difflib
 import math
 import numbers
-from collections.abc import Iterable, Sequence
+import sys
+from collections.abc import Container, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ SHORTEST, LONGEST = 1e-100, 1e100  # vectors whose squares are in the range of d
 # of a word with a typo to the word; 'lengths' has 0.6 to 'angles', 'turns' 0.9 to 'turn'
 LIKENESS = 0.75
 FEWEST_DIGITS, ALL_DIGITS = 6, 17  # of numbers in errors
+ANY, SOME = range(sys.maxsize), range(1, sys.maxsize)  # entries of a list
 
 
 class GeometryError(BifurcError, ValueError):
@@ -32,6 +34,12 @@ class GeometryError(BifurcError, ValueError):
         super().__init__(f"{name}: {value} is not allowed; it must be {allowed}")
 
 
+def require(is_met: bool, name: str, value: object, allowed: str) -> None:
+    """Raises `GeometryError` of these parts unless what must be ``is_met``."""
+    if not is_met:
+        raise GeometryError(name, value, allowed)
+
+
 def check_keys(what: str, keys: Iterable[object], allowed: Sequence[str]) -> None:
     """Raises `GeometryError` for a key of a table of a file that is not ``allowed``,
     with the one that is nearly it, if there is one."""
@@ -40,6 +48,36 @@ def check_keys(what: str, keys: Iterable[object], allowed: Sequence[str]) -> Non
             near = difflib.get_close_matches(str(key), allowed, n=1, cutoff=LIKENESS)
             value = f"{key!r} (the nearest is {near[0]!r})" if near else f"{key!r}"
             raise GeometryError(what, value, "one of " + ", ".join(allowed))
+
+
+def checked_list(
+    name: str, value: object, allowed: str, counts: Container[int] = ANY
+) -> list[Any]:
+    """A list of a file; raises `GeometryError` for what is none, and for another number
+    of entries than one of ``counts``."""
+    if not isinstance(value, list) or len(value) not in counts:
+        raise GeometryError(name, quoted(value), allowed)
+    return value
+
+
+def checked_table(name: str, value: object, allowed: str) -> Mapping[str, Any]:
+    """A table of a file; raises `GeometryError` for what is none."""
+    if not isinstance(value, Mapping):
+        raise GeometryError(name, quoted(value), allowed)
+    return value
+
+
+def checked_text(name: str, value: object) -> str:
+    """A text of a file; raises `GeometryError` for what is none."""
+    if not isinstance(value, str):
+        raise GeometryError(name, quoted(value), "a text in quotes")
+    return value
+
+
+def checked_number(name: str, value: Any) -> float:
+    """A float; raises `GeometryError` as `check_number`."""
+    check_number(name, value)
+    return float(value)
 
 
 def check_number(name: str, value: object) -> None:

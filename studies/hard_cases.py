@@ -10,7 +10,7 @@ from math import sqrt
 import numpy as np
 from scipy.optimize import brentq
 
-from bifurc import FunctionProblem, Problem, trace_branch
+from bifurc import Curvature, FunctionProblem, Problem, trace_branch
 from linkages import Loop, LoopClosure
 from linkages.catalogue import entry
 
@@ -70,15 +70,18 @@ class _Pitchfork(FunctionProblem):
             jacobian=lambda u: np.array([[u[1], u[0] - 3 * u[1] ** 2]]),
         )
 
-    def curvature_bound(self) -> float:
-        """The norm of [[0, 1], [1, -6 x]] where |x| <= 1.5, over the magnitude."""
-        return (4.5 + sqrt(4.5**2 + 1.0)) / self.magnitude
+    @property
+    def curvature(self) -> Curvature:
+        """The norm of [[0, 1], [1, -6 x]] where |x| <= 1.5 and, at complex points, where
+        |x| is more by how far these may be, over the magnitude."""
 
-    def complex_curvature(self, reach: np.ndarray) -> np.ndarray:
-        """The same with |x| <= 1.5 + ``reach``."""
-        diagonal = 3.0 * (1.5 + reach)
-        largest: np.ndarray = diagonal + np.hypot(diagonal, 1.0)
-        return largest / self.magnitude
+        def at_complex_points(reach: np.ndarray) -> np.ndarray:
+            diagonal = 3.0 * (1.5 + reach)
+            largest: np.ndarray = diagonal + np.hypot(diagonal, 1.0)
+            return largest / self.magnitude
+
+        bound = (4.5 + sqrt(4.5**2 + 1.0)) / self.magnitude
+        return Curvature(bound, at_complex_points)
 
 
 def pitchfork(e: float) -> Ladder:

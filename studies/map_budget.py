@@ -55,7 +55,7 @@ STEPS = (
     ("slices.completeness", "__call__", "audit by slices"),
     ("slices.assemblies", "isolated_assemblies", "isolated assemblies"),
     ("search.answer.assemble", "assemble_atlas", "the atlas"),
-    ("mapping", "name_atlas", "names of forms"),
+    ("labelling", "name_atlas", "names of forms"),
 )
 
 

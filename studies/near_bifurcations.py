@@ -52,7 +52,7 @@ class Trace:
 def follow(case: NearMiss, step: float, certify: bool = False) -> Trace:
     """Trace one linkage and judge it; without ``certify`` only wrong curves are held
     against their certificates."""
-    settings = TraceSettings(longest=step / case.problem.scale)
+    settings = TraceSettings(longest=step / case.problem.domain.scale)
     start = time.process_time()
     branch = trace_branch(case.problem, case.start, None, settings)
     seconds = time.process_time() - start
@@ -90,7 +90,7 @@ def certify_trace(case: NearMiss, branch: Branch) -> tuple[str, int]:
     status = certificate.status
     if status == CertificateStatus.UP_TO_ROUNDING:
         middles = branch(certificate.blurred.mean(axis=1))
-        reach = 1e-3 * problem.scale
+        reach = 1e-3 * problem.domain.scale
         located = [locate_singular_point(problem, u, 2, reach) for u in middles]
         if all(point is not None for point in located):
             status = CertificateStatus.UP_TO_SINGULAR_POINTS

@@ -21,7 +21,7 @@ from linkages import load_linkage, map_linkage
 from linkages.app.answer.document import Document, make_document
 from linkages.app.options import NamedPath
 from linkages.catalogue import catalogue
-from linkages.mapping import name_atlas
+from linkages.labelling import name_atlas
 from studies.document_differences import differences
 from studies.noisy_loop import noisy_closure
 

@@ -26,6 +26,7 @@ import click
 import numpy as np
 
 from bifurc import Atlas, SearchSettings
+from bifurc.problem import relative_gaps
 from bifurc.singular.dimension import local_dimensions
 from bifurc.tables import count_of, section
 from linkages import Mechanism, MechanismClosure, map_linkage
@@ -115,7 +116,7 @@ def fact_misses(known: KnownMechanism) -> tuple[str, ...]:
     """Where the configuration in which a mechanism is given is not what is known."""
     problem = MechanismClosure(known.mechanism)
     reference = problem.reference[None]
-    gap = float(problem.gaps(reference)[0])
+    gap = float(relative_gaps(problem, reference)[0])
     about = local_dimensions(problem, reference)
     lines = []
     if gap > CLOSED:

@@ -87,7 +87,7 @@ def tolerance_for(step: float) -> float:
 
 
 def _this_project(case: Ladder, problem: Problem, step: float) -> FollowedCurve:
-    settings = TraceSettings(longest=step / problem.scale)
+    settings = TraceSettings(longest=step / problem.domain.scale)
     branch = trace_branch(problem, case.start, case.tangent, settings)
     if not len(branch.pieces) or branch.outcome.name in ("STALLED", "OPEN"):
         raise MethodFailure(branch.outcome.value)
@@ -154,7 +154,7 @@ def _pseudo_arclength(case: Ladder, problem: Problem, step: float) -> FollowedCu
         case.tangent,
         case.length,
         tolerance_for(step),
-        longest=step / problem.scale,
+        longest=step / problem.domain.scale,
     )
     return FollowedCurve(curve.sample(DENSE))
 

@@ -111,7 +111,7 @@ def main(names: tuple[str, ...]) -> None:
         runs = [_runs(case, method) for method in methods]
         cells: list[str] = []
         for error in ERRORS:
-            cells += _cells(case, methods, runs, error * case.problem.scale)
+            cells += _cells(case, methods, runs, error * case.problem.domain.scale)
         print(f"| {problem.name} | " + " | ".join(cells) + " |", flush=True)
 
 

@@ -55,8 +55,6 @@ LONGER = {
     ],
     "formulas, written out as their source has them": [
         "bifurc.singular.sphere._circle_section",
-        "linkages.families.bricard._closed_form",
-        "linkages.families.bricard.closure_equations",
         "linkages.families.bricard_collapsible.doubly_collapsible_octahedral",
         "linkages.printing.assembly.link_corners",
         "linkages.readout.poses._displacement",
@@ -66,7 +64,6 @@ LONGER = {
         "bifurc.files.dataset._attributes",
         "bifurc.search.answer.assemble.assemble_atlas",
         "bifurc.search.own_units.restated.restated_branch",
-        "bifurc.systems.document.make_document",
         "linkages.app.answer.document.make_document",
         "linkages.app.sweep.member.summarise",
         "linkages.app.texts.mechanism_text.describe_dead_points",

@@ -67,4 +67,4 @@ def test_a_cusp_too_sharp_for_a_small_sphere_is_looked_at_on_a_larger_one():
     null_space = np.linalg.svd(problem.jacobians(middle[None])[0])[2][6:].T
     point = classify_singular_point(problem, LocatedPoint(middle, null_space, 1e-14))
     assert point.kind is Kind.CUSP
-    assert point.radius > 0.02 * problem.scale
+    assert point.radius > 0.02 * problem.domain.scale

@@ -1,5 +1,5 @@
 // A mechanism: its bodies, placed one after the other along a tree, and what is drawn of them. The document is that of
-// linkages/viewing/mechanism_document.py; lengths are in characteristic lengths.
+// linkages/links/motion_document.py; lengths are in characteristic lengths.
 
 import { compose, invert, moved } from "./kinematics.js";
 import { along, distance } from "./rods.js";

@@ -14,7 +14,7 @@ const OPERATIONS = {
   cos: (a) => [Math.cos(a), -Math.sin(a), 0],
 };
 
-/** The columns of F', each of m numbers, of a tape of linkages/viewing/mechanism_document.py at unknowns `u`. */
+/** The columns of F', each of m numbers, of a tape of linkages/links/motion_document.py at unknowns `u`. */
 export function jacobianColumns({ operations, left, right, constants, outputs }, u) {
   const n = u.length;
   const values = [];

@@ -47,12 +47,12 @@ def bridge_from(problem: Problem, track: Track, tolerance: float) -> Bridge | No
     if only_singular and not _is_near_singular(problem, track.front.point, misclosure):
         return None
     for reach in REACHES:
-        begin = track.reached - reach * problem.scale
+        begin = track.reached - reach * problem.domain.scale
         if begin < track.centers[0]:
             continue
         last = track.piece_at(begin)
         place = track.at(last, begin)
-        width = 2 * reach * problem.scale
+        width = 2 * reach * problem.domain.scale
         piece = _piece_across(problem, place, width, track.order, tolerance, misclosure)
         if piece is not None:
             return Bridge(last, begin, piece)
@@ -74,12 +74,12 @@ def _bridge_of_valley(
     """A bridge across points where the valley is not single, which reach as far ahead
     as ``blurred``."""
     for reach in BLURRED_REACHES:
-        begin = track.reached - reach * valley.scale
-        if begin < track.centers[0] or reach * valley.scale < BEYOND * blurred:
+        begin = track.reached - reach * valley.domain.scale
+        if begin < track.centers[0] or reach * valley.domain.scale < BEYOND * blurred:
             continue
         last = track.piece_at(begin)
         place = track.at(last, begin)
-        width = 2 * reach * valley.scale
+        width = 2 * reach * valley.domain.scale
         piece = valley.bridge(place.point, place.tangent, width, track.order)
         if piece is not None:
             return Bridge(last, begin, piece)
@@ -111,12 +111,12 @@ def _piece_across(
 def _is_near_singular(problem: Problem, point: np.ndarray, misclosure: float) -> bool:
     """Whether a singular point can be located near ``point``, so that a bridge is worth
     trying."""
-    if problem.is_large:
+    if problem.domain.is_large:
         return False
     values = singular_values(problem, point)
     small = problem.n - int(np.count_nonzero(values > 1e-2))
     nullities = sorted({2, min(small, 4)} - {0, 1})
-    reach = 0.05 * problem.scale
+    reach = 0.05 * problem.domain.scale
     return any(
         locate_singular_point(problem, point, nullity, reach, misclosure) is not None
         for nullity in nullities

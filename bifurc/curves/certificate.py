@@ -135,30 +135,23 @@ class Certificate:
         )
 
 
-def is_certifiable(problem: Problem) -> bool:
-    """Whether the bounds on F'' are known that a certificate takes."""
-    is_bounded = problem.curvature_bound() is not None
-    return is_bounded and problem.complex_curvature(np.zeros(1)) is not None
-
-
 def certify_branch(
     problem: Problem, branch: Branch, profile: Profile, singular: Sequence[float] = ()
 ) -> Certificate:
     """Whether the dense curve follows one arc from every singular point to the next.
 
     ``singular`` are the arclengths of located singular points, next to which nothing is
-    claimed. Needs `Problem.curvature_bound` and `Problem.complex_curvature`; without
-    them nothing is certified, nor where F' has a lower rank all along. Raises nothing:
-    what is missing is in the result.
+    claimed. Nothing is certified without `Problem.curvature`, nor where F' has a lower
+    rank all along. Raises nothing: what is missing is in the result.
     """
-    bound = problem.curvature_bound()
+    curvature = problem.curvature
     nowhere = np.empty((0, 2))
     is_curve = branch.length > 0 and profile.rank >= problem.n - 1
-    if bound is None or not is_certifiable(problem) or not is_curve:
+    if curvature is None or not is_curve:
         whole = np.array([[0.0, branch.length]])
         status = CertificateStatus.NOT_CERTIFIED
         return Certificate(status, whole, nowhere, points=0, bound=np.inf)
-    handover = HANDOVER * problem.scale
+    handover = HANDOVER * problem.domain.scale
     survey = _Survey(problem, branch)
     survey.look_at(_arcs_between(branch, singular, handover))
     gaps, blurred = survey.refused(widest_blur=2 * handover)
@@ -169,7 +162,7 @@ def certify_branch(
         status = CertificateStatus.NOT_CERTIFIED
     elif len(blurred):
         status = CertificateStatus.UP_TO_ROUNDING
-    return Certificate(status, gaps, blurred, survey.points, float(bound))
+    return Certificate(status, gaps, blurred, survey.points, float(curvature.bound))
 
 
 class _Survey:
@@ -203,7 +196,7 @@ class _Survey:
         checks = check_arcs(self._problem, self._branch, arcs, self._joints)
         for k in np.flatnonzero(~checks.holds.all(axis=1)):
             refused = _runs(checks.edges[k], ~checks.holds[k])
-            is_long = np.ptp(arcs[k]) > SHORTEST * self._problem.scale
+            is_long = np.ptp(arcs[k]) > SHORTEST * self._problem.domain.scale
             if checks.is_promising[k] and is_long:
                 yield _divided(refused, arcs[k])
             elif checks.is_closed[k]:

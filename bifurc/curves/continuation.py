@@ -16,7 +16,14 @@ from bifurc.decisions import is_solution
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline, is_time_over
 from bifurc.numerics.null_spaces import null_vector
-from bifurc.problem import Anchor, March, MarchSettings, MarchStatus, Problem
+from bifurc.problem import (
+    Anchor,
+    March,
+    MarchSettings,
+    MarchStatus,
+    Problem,
+    relative_gaps,
+)
 from bifurc.settings import TraceSettings
 
 # Pieces made before the end of the curve is looked for: beside a bend, at least, and at
@@ -115,7 +122,7 @@ def _places_with_room(problem: Problem, ways: _Ways) -> list[tuple[Place, bool]]
     forward, backward = ways
     if backward is None or ways.branch.closed:
         return []
-    room = MOST_ROOM * problem.scale
+    room = MOST_ROOM * problem.domain.scale
     places = []
     for way, other in ((forward, backward), (backward, forward)):
         if way.outcome is not Outcome.STALLED or way.length > room:
@@ -144,12 +151,12 @@ def follow_curve(
 ) -> Branch:
     """The curve from ``start`` to the side of its tangent until it closes, leaves the
     region, stalls or grows too long, or the ``deadline`` has passed."""
-    track = Track(start, settings.order, problem.has_crossings)
+    track = Track(start, settings.order, problem.domain.has_crossings)
     while True:
         march = _march(problem, track, settings, closing)
         if march.status is MarchStatus.OPEN and not len(track):
             gap = float(march.residuals[-1])
-            return track.empty_branch(Outcome.OPEN, problem.periods, gap)
+            return track.empty_branch(Outcome.OPEN, problem.domain.periods, gap)
         first = max(len(track) - 1, 0)  # the former last piece may reach over the end
         track.append(march)
         end = end_of_curve(problem, track, first, settings.tolerance)
@@ -159,7 +166,7 @@ def follow_curve(
         if end is None and (is_late or is_time_over()):
             end = End(Outcome.TIME_LIMIT, track.reached)
         if end is not None:
-            return track.branch(end, problem.periods)
+            return track.branch(end, problem.domain.periods)
 
 
 def _end_of_patience(
@@ -173,7 +180,8 @@ def _end_of_patience(
         end = _overcome_stall(problem, track, settings)
     elif _is_clear(problem, march, settings):
         track.allow_long_steps_only()
-    if end is None and track.reached > settings.max_length * problem.reach:
+    longest = settings.max_length * problem.domain.reach * problem.domain.scale
+    if end is None and track.reached > longest:
         end = End(Outcome.STEP_LIMIT, track.reached)
     return end
 
@@ -182,22 +190,25 @@ def _march(
     problem: Problem, track: Track, settings: TraceSettings, closing: float
 ) -> March:
     """Some pieces from the front of the track on."""
+    domain = problem.domain
     count = min(max(AT_ONCE, len(track)), MOST_AT_ONCE)
     march_settings = MarchSettings(
         order=settings.order,
         tolerance=settings.tolerance,
-        shortest=max(track.caution.shortest, settings.shortest) * problem.scale,
-        longest=settings.longest * problem.stride * problem.scale,
+        shortest=max(track.caution.shortest, settings.shortest) * problem.domain.scale,
+        longest=settings.longest * domain.stride * domain.scale,
         count=AT_A_BEND if track.is_at_a_bend else count,
         closing=closing,
-        length=settings.max_length * problem.reach - track.reached,
+        length=settings.max_length * domain.reach * domain.scale - track.reached,
         first=GROWTH * track.last_width,
-        anchor=Anchor(*track.begin, same_place(settings.tolerance) * problem.scale),
+        anchor=Anchor(
+            *track.begin, same_place(settings.tolerance) * problem.domain.scale
+        ),
     )
     if closing > is_solution.threshold and len(
         track
     ):  # an ordinary curve misses rounding alone
-        gaps = problem.gaps(track.pieces[-AT_A_BEND:, 0])
+        gaps = relative_gaps(problem, track.pieces[-AT_A_BEND:, 0])
         march_settings = replace(march_settings, misclosure=gaps.max(initial=0.0))
     front = track.front
     return problem.march(front.point, front.tangent, march_settings)
@@ -207,7 +218,7 @@ def _is_clear(problem: Problem, march: March, settings: TraceSettings) -> bool:
     """Whether the last step of a march is long enough for the least caution."""
     if not len(march.radii):
         return False
-    shortest = max(CAUTIOUS[0].shortest, settings.shortest) * problem.scale
+    shortest = max(CAUTIOUS[0].shortest, settings.shortest) * problem.domain.scale
     return bool(march.radii[-1] > CLEAR * shortest)
 
 

@@ -34,6 +34,7 @@ from bifurc.decisions import (
     may_be_crossed,
     may_be_shaky,
 )
+from bifurc.domain import Domain
 from bifurc.function_problem import NumericalProblem
 from bifurc.numerics.collocation import march_by_collocation, reparametrised
 from bifurc.numerics.null_spaces import null_spaces
@@ -62,13 +63,15 @@ class WithNullVector(NumericalProblem):
         n = problem.n
         self._problem = problem
         self._normal = np.vstack([a, t])
-        self.names = problem.names * 2
-        self.units = problem.units + ("",) * n
-        endless = np.full(n, np.inf)
-        self.periods = np.concatenate([problem.periods, endless])
-        self.bounds = np.tile([-np.inf, np.inf], (2 * n, 1))
+        domain = problem.domain
+        self.domain = Domain(
+            names=domain.names * 2,
+            units=domain.units + ("",) * n,
+            periods=np.concatenate([domain.periods, np.full(n, np.inf)]),
+            bounds=np.tile([-np.inf, np.inf], (2 * n, 1)),
+            scale=domain.scale,
+        )
         self.magnitude = problem.magnitude
-        self.scale = problem.scale
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         u, v = np.split(points, 2, axis=1)
@@ -87,8 +90,9 @@ class WithNullVector(NumericalProblem):
         equations, products, borders = np.split(out, [m, 2 * m], axis=1)
         equations[:, :, :n] = jacobians
         products[:, :, n:] = jacobians
+        hessians = self._problem.hessians(u)
         for i in range(k):
-            products[i, :, :n] = self._problem.hessian(u[i]) @ v[i]
+            products[i, :, :n] = hessians[i] @ v[i]
         borders[:, :, n:] = self._normal * self.magnitude
         return out
 
@@ -101,7 +105,7 @@ class Deflated(NumericalProblem):
 
     def __init__(self, problem: Problem):
         self._problem = problem
-        self.take_unknowns_of(problem)
+        self.domain, self.magnitude = problem.domain, problem.magnitude
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
@@ -111,9 +115,9 @@ class Deflated(NumericalProblem):
         """F' (k, m, n) at points (k, n)."""
         return self._problem.jacobians(points)
 
-    def hessian(self, point: np.ndarray) -> np.ndarray:
-        """F'' (m, n, n) at a point (n,)."""
-        return self._problem.hessian(point)
+    def hessians(self, points: np.ndarray) -> np.ndarray:
+        """F'' (k, m, n, n) at points (k, n)."""
+        return self._problem.hessians(points)
 
     def march(
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
@@ -166,8 +170,8 @@ def deflated_singular_values(
         t, a = _tangent_and_normal(problem, point, tangent)
         system = WithNullVector(problem, a, t)
         matrix = system.jacobians(np.concatenate([point, a])[None])[0]
-        matrix[:, : problem.n] *= problem.scale
-        matrix[: len(matrix) // 2 - 1] /= problem.scale  # F' itself
+        matrix[:, : problem.n] *= problem.domain.scale
+        matrix[: len(matrix) // 2 - 1] /= problem.domain.scale  # F' itself
         sigma = values_of(matrix / problem.magnitude)
         values[k] = sigma[2 * problem.n - 2]
     return values
@@ -184,7 +188,7 @@ def lower_rank_direction(problem: Problem, point: np.ndarray) -> np.ndarray | No
     if np.count_nonzero(may_be_shaky(sigma[0])) != 2:
         return None
     null_space = right[0, problem.n - 2 :].T
-    cut = section(problem, point, null_space, SECTION_RADIUS * problem.scale)
+    cut = section(problem, point, null_space, SECTION_RADIUS * problem.domain.scale)
     if cut.dimension != 1 or len(cut.points) != 2:
         return None
     sigma = singular_values(problem, cut.points)
@@ -192,7 +196,7 @@ def lower_rank_direction(problem: Problem, point: np.ndarray) -> np.ndarray | No
         return None
     chord: np.ndarray = cut.points[1] - cut.points[0]
     length = np.linalg.norm(chord)
-    are_opposite = length > SECTION_RADIUS * problem.scale
+    are_opposite = length > SECTION_RADIUS * problem.domain.scale
     return chord / length if are_opposite else None
 
 
@@ -247,9 +251,11 @@ def _bottom(problem: Problem, branch: Branch, nodes: np.ndarray, k: int) -> floa
         middle = float(trial[np.argmin(values)])
         reach /= NARROWER
     for step in STEPS:  # about a zero the two slopes are as steep as each other
-        sides = middle + step * problem.scale * np.array([-1.0, 1.0])
+        sides = middle + step * problem.domain.scale * np.array([-1.0, 1.0])
         left, right = deflated_singular_values(problem, branch, _within(branch, sides))
-        middle += step * problem.scale * float((left - right) / (left + right + TINY))
+        middle += (
+            step * problem.domain.scale * float((left - right) / (left + right + TINY))
+        )
     return float(_within(branch, np.array([middle]))[0])
 
 
@@ -277,7 +283,7 @@ class RankDeflated(NumericalProblem):
     def __init__(self, problem: Problem, rank: int):
         self._problem = problem
         self._rank = rank
-        self.take_unknowns_of(problem)
+        self.domain, self.magnitude = problem.domain, problem.magnitude
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F and the singular values after number ``rank``, as a matrix (k, m + e)."""
@@ -301,8 +307,10 @@ class RankDeflated(NumericalProblem):
         """Solutions (k, n) of lower rank next to solutions ``points`` (k, n) known to
         half the digits, and whether there is one (k,)."""
         solutions, gaps = self.project(points)
-        offsets = np.linalg.norm(self.difference(solutions, points), axis=1)
-        return solutions, closes_to_rounding(gaps) & (offsets < NEXT * self.scale)
+        offsets = np.linalg.norm(self.domain.difference(solutions, points), axis=1)
+        return solutions, closes_to_rounding(gaps) & (
+            offsets < NEXT * self.domain.scale
+        )
 
     def _last_vectors(
         self, points: np.ndarray

@@ -12,7 +12,7 @@ from bifurc.curves.track import End, Track
 from bifurc.decisions import is_back, is_nearly_back, is_other_way, is_solution
 from bifurc.numerics.blur import same_reach
 from bifurc.numerics.roots import bracketed_roots
-from bifurc.problem import Problem
+from bifurc.problem import Problem, jacobian_at
 
 GRID = np.linspace(0.0, 1.0, 33)  # of a piece, where it is held against its region
 LOOSE = 30.0  # times the tolerance: the largest residual that pieces may have
@@ -80,7 +80,7 @@ def _closing(
         pieces=track.pieces,
         centers=track.centers,
         radii=track.radii,
-        periods=problem.periods,
+        periods=problem.domain.periods,
         number=anchor.number,
         s=anchor.s,
         first=first,
@@ -99,15 +99,17 @@ def _is_same_pass(
     same direction."""
     if is_other_way(place.forward, place.speed):
         return False
-    distance = place.distance / problem.scale
+    distance = place.distance / problem.domain.scale
     loose = LOOSE * tolerance
     nearness = distance / same_place(tolerance)
     if nearness > PLAIN:
         # where a singular value is small a point is known no better than rounding over it
         point = track.at(anchor.number, anchor.s).point
         known = _known_to(problem, point)
-        residual = problem.jacobian(point) @ place.offset
-        apart = float(np.linalg.norm(residual)) / (problem.magnitude * problem.scale)
+        residual = jacobian_at(problem, point) @ place.offset
+        apart = float(np.linalg.norm(residual)) / (
+            problem.magnitude * problem.domain.scale
+        )
         nearness = min(nearness, max(distance / known, apart / loose))
     is_exact = tolerance < is_solution.threshold
     return is_back(nearness) if is_exact else is_nearly_back(nearness)
@@ -116,7 +118,7 @@ def _is_same_pass(
 def _known_to(problem: Problem, point: np.ndarray) -> float:
     """How far, over the scale, from a point (n,) of a curve it may be found again; of a
     large problem singular values are not taken."""
-    if problem.is_large:
+    if problem.domain.is_large:
         return NEAR
     return max(float(same_reach(problem, point[None])[0]), NEAR)
 
@@ -128,12 +130,12 @@ def _leaving(problem: Problem, track: Track, first: int) -> float | None:
         pieces=track.pieces,
         centers=track.centers,
         radii=track.radii,
-        periods=problem.periods,
+        periods=problem.domain.periods,
         first=first,
-        bounds=problem.bounds,
-        slack=problem.slack,
+        bounds=problem.domain.bounds,
+        slack=problem.domain.slack,
     )
-    if type(problem).excess is Problem.excess:
+    if problem.domain.rim is None:
         return by_bounds
     by_samples = _leaving_by_samples(problem, track, first)
     exits = [s for s in (by_bounds, by_samples) if s is not None]
@@ -141,15 +143,14 @@ def _leaving(problem: Problem, track: Track, first: int) -> float | None:
 
 
 def _leaving_by_samples(problem: Problem, track: Track, first: int) -> float | None:
-    """The same for a problem whose class says in a way of its own, by `Problem.excess`,
-    what besides lies outside."""
+    """The same where something besides the bounds ends the region."""
     breaks = track.breaks(track.reached)[first:]
     centers, radii = track.centers[first:, None], track.radii[first:, None]
     lengths = np.diff(breaks)[:, None]
     grids = (breaks[:-1, None] + lengths * GRID - centers) / radii
     points = points_on_pieces(track.pieces[first:], grids)
-    excess = problem.excess(points.reshape(-1, problem.n)).reshape(grids.shape)
-    outside = np.argwhere(excess > problem.slack)
+    excess = problem.domain.excess(points.reshape(-1, problem.n)).reshape(grids.shape)
+    outside = np.argwhere(excess > problem.domain.slack)
     if not len(outside):
         return None
     number, place = outside[0].tolist()
@@ -163,13 +164,13 @@ def _exit(problem: Problem, piece: np.ndarray, low: float, high: float) -> float
     point on or inside it, ``low``, and one of a point outside, ``high``: from a place on
     its rim, along which it may run, where it is plainly outside."""
     begin = np.array([low])
-    already = problem.excess(points_on_piece(piece, begin))[0]
-    if already > problem.slack:
+    already = problem.domain.excess(points_on_piece(piece, begin))[0]
+    if already > problem.domain.slack:
         return low
-    level = 0.0 if already < -problem.slack else problem.slack
+    level = 0.0 if already < -problem.domain.slack else problem.domain.slack
 
     def outside(x: np.ndarray) -> np.ndarray:
-        excess: np.ndarray = problem.excess(points_on_piece(piece, x)) - level
+        excess: np.ndarray = problem.domain.excess(points_on_piece(piece, x)) - level
         return excess
 
     return float(bracketed_roots(outside, begin, np.array([high]))[0])

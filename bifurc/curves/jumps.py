@@ -35,7 +35,7 @@ LEAST = 4  # samples of a stretch that is compared
 def repeats_itself(problem: Problem, branch: Branch) -> bool:
     """Whether a curve passes several of its places more than once along the same
     line."""
-    within = is_same_point.threshold * problem.scale
+    within = is_same_point.threshold * problem.domain.scale
     repeated = 0
     places = branch.length * PLACES
     for point, along in zip(branch(places), branch(places, 1), strict=True):

@@ -25,7 +25,7 @@ from bifurc import _core
 from bifurc.branch import Branch
 from bifurc.decisions import is_closed_to_rounding, is_unique
 from bifurc.numerics.chebyshev import CELL_EDGES, CHEBYSHEV, NODE_COUNT, NODES
-from bifurc.problem import Problem
+from bifurc.problem import Problem, relative_jacobians, relative_residuals
 
 PROMISING = 0.05  # omega |G| at a node: shorter arcs about it may hold
 LONG = 1e-4  # arc, in scales, on which interpolation may be what is in the way
@@ -78,10 +78,10 @@ class Joints:
             left, right = ends, np.roll(begins, -1, axis=0)
             once = branch.breaks[1:]
             arclengths = np.concatenate([[0.0], once, once + branch.length])
-        steps = problem.difference(right, left)
-        jacobians = problem.relative_jacobians(ends)[: len(left)]
+        steps = problem.domain.difference(right, left)
+        jacobians = relative_jacobians(problem, ends)[: len(left)]
         images = np.einsum("jmn,jn->jm", jacobians, steps)
-        is_wide = np.linalg.norm(steps, axis=1) > WIDEST_JOINT * problem.scale
+        is_wide = np.linalg.norm(steps, axis=1) > WIDEST_JOINT * problem.domain.scale
         images[is_wide] = np.inf
         if branch.closed:
             images = np.concatenate([images[-1:], images, images])
@@ -146,14 +146,14 @@ class _Nodes:
         shape = (len(arcs), NODE_COUNT)
         flat = branch(s)
         points = flat.reshape(*shape, -1)
-        residuals = problem.relative_residuals(flat)
-        jacobians = problem.relative_jacobians(flat)
+        residuals = relative_residuals(problem, flat)
+        jacobians = relative_jacobians(problem, flat)
         jacobians = jacobians.reshape(*shape, *jacobians.shape[1:])
         left, _, _ = np.linalg.svd(jacobians[:, MIDDLE], full_matrices=False)
         degree = branch.pieces.shape[1] - 1
         travel = _core.travel_of_arcs(CHEBYSHEV, points, degree)
-        curvature = problem.complex_curvature(travel.ravel())
-        assert curvature is not None
+        assert problem.curvature is not None
+        curvature = problem.curvature.at_complex_points(travel.ravel())
         return _Nodes(
             problem=problem,
             edges=edges,
@@ -200,7 +200,7 @@ class _Nodes:
             CHEBYSHEV, self._second_derivative, self.arcs, self.degree, hessians
         )
         # on a part of an arc that is neither, everything would be the same
-        is_long = np.ptp(self.edges, axis=1) > LONG * self.problem.scale
+        is_long = np.ptp(self.edges, axis=1) > LONG * self.problem.domain.scale
         is_solved = is_closed_to_rounding(_largest_rows(self.residuals))
         is_joined = is_closed_to_rounding(_largest_rows(self.images))
         may_change = is_long | is_uneven | ~is_joined
@@ -228,17 +228,16 @@ class _Nodes:
     def _second_derivative(self) -> _core.SecondDerivative:
         """What is known of F''; by how much it changes is Cauchy's estimate."""
         problem = self.problem
-        bound = problem.curvature_bound()
-        reach = CAUCHY_REACH * problem.scale
-        largest = problem.complex_curvature(np.array([reach]))
-        assert bound is not None
-        assert largest is not None
+        curvature = problem.curvature
+        reach = CAUCHY_REACH * problem.domain.scale
+        assert curvature is not None
+        largest = curvature.at_complex_points(np.array([reach]))
         return _core.SecondDerivative(
-            bound=bound,
-            residual=problem.curvature_residual,
+            bound=curvature.bound,
+            residual=curvature.residual,
             growth=2.0 * float(largest[0]) / reach,
             reach=reach,
-            error=problem.hessian_error,
+            error=problem.accuracy.hessian_error,
         )
 
 

@@ -53,7 +53,7 @@ def singular_value_minima(problem: Problem, branch: Branch, profile: Profile) ->
         return Minima(np.empty(0), np.empty(0))
     places = _places_to_look(branch, profile)
     here = _values_and_slopes(problem, branch, rank, places)
-    before, after = _valleys(branch, here.slopes * problem.scale)
+    before, after = _valleys(branch, here.slopes * problem.domain.scale)
     if not len(before):
         return Minima(np.empty(0), np.empty(0))
     low, high = places[before], places[after]
@@ -64,7 +64,7 @@ def singular_value_minima(problem: Problem, branch: Branch, profile: Profile) ->
         return there.slopes_of_squares
 
     at_ends = here.slopes_of_squares[before], here.slopes_of_squares[after]
-    tolerance = LOCATED * problem.scale
+    tolerance = LOCATED * problem.domain.scale
     bottoms = bracketed_roots(slope_of_square, low, high, tolerance, at_ends)
     samples = np.concatenate([profile.arclength.ravel(), places])
     heights = np.concatenate([profile.smallest.ravel(), here.values])
@@ -234,7 +234,7 @@ def _values_and_slopes(
     tangent is a central difference of F'.
     """
     points = branch(s)
-    step = DIFFERENCE * problem.scale
+    step = DIFFERENCE * problem.domain.scale
     along = step * branch(s, 1)
     rows = np.concatenate([points, points + along, points - along])
     jacobians = problem.jacobians(rows) / problem.magnitude

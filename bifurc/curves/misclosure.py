@@ -20,7 +20,7 @@ from bifurc.curves.monitor import NODES
 from bifurc.decisions import closes_to_rounding, is_plainly_closed
 from bifurc.errors import NOT_DEFINED
 from bifurc.numerics.null_spaces import Decomposition, decompose
-from bifurc.problem import PreciseResidual, Problem
+from bifurc.problem import PreciseResidual, Problem, relative_gaps, relative_residuals
 
 if TYPE_CHECKING:
     import mpmath
@@ -46,7 +46,9 @@ def misclosures(problem: Problem, points: np.ndarray) -> np.ndarray:
 def visible_misclosure(problem: Problem, points: np.ndarray) -> float:
     """The largest misclosure that doubles see at points (k, n) of a curve, 0 where it
     is rounding."""
-    if not len(points) or is_plainly_closed(float(problem.gaps(points).max())):
+    if not len(points) or is_plainly_closed(
+        float(relative_gaps(problem, points).max())
+    ):
         return 0.0
     largest = float(misclosures(problem, points).max())
     return 0.0 if closes_to_rounding(largest) else largest
@@ -59,11 +61,11 @@ def largest_misclosure(problem: Problem, branch: Branch) -> float:
     It is looked for at the centres of the pieces, and where the residual is largest.
     """
     centres = branch.pieces[:, 0]
-    largest = float(problem.gaps(centres).max(initial=0.0))
+    largest = float(relative_gaps(problem, centres).max(initial=0.0))
     if is_plainly_closed(largest):
         return largest
     points = branch(branch.places(NODES).ravel())
-    highest = np.argsort(-problem.gaps(points), kind="stable")[:HIGHEST]
+    highest = np.argsort(-relative_gaps(problem, points), kind="stable")[:HIGHEST]
     candidates = np.concatenate([centres, points[highest]])
     return largest_of(problem, candidates, misclosures(problem, candidates))
 
@@ -86,7 +88,7 @@ def misclosure_at(problem: Problem, point: np.ndarray, rank: int) -> float:
     digits where the problem has them, else the residual."""
     residual = problem.precise_residual()
     if residual is None:
-        return float(problem.gaps(point[None])[0])
+        return float(relative_gaps(problem, point[None])[0])
     return _precise_misclosures(problem, residual, point[None], rank)[0]
 
 
@@ -109,7 +111,7 @@ def _precise_misclosures(
             try:
                 value = _after_steps(problem, residual, point, inverse)
             except NOT_DEFINED:
-                value = problem.relative_residuals(point[None])[0]  # at a rim of F
+                value = relative_residuals(problem, point[None])[0]  # at a rim of F
             measured.append(float(np.linalg.norm(value)))
     return measured
 

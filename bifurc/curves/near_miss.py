@@ -17,7 +17,7 @@ from bifurc.branch import Branch
 from bifurc.curves.misclosure import as_floats
 from bifurc.errors import NOT_DEFINED
 from bifurc.numerics.null_spaces import TINY, Decomposition, decompose
-from bifurc.problem import PreciseResidual, Problem
+from bifurc.problem import PreciseResidual, Problem, hessian_at
 
 if TYPE_CHECKING:
     import mpmath
@@ -65,13 +65,13 @@ def near_miss_value(
     """
     point = branch(s)
     step = _visible_step(decompose(problem, point[None]), rank)
-    if np.linalg.norm(step) < LONGEST_STEP * problem.scale:
+    if np.linalg.norm(step) < LONGEST_STEP * problem.domain.scale:
         point = point + step
     decomposition = decompose(problem, point[None])
     sigma = decomposition.sigma[0, :rank]
     across = decomposition.right[0, :rank]
     left = decomposition.left[0, :, rank - 1]
-    bend = np.tensordot(left, problem.hessian(point), axes=1) / problem.magnitude
+    bend = np.tensordot(left, hessian_at(problem, point), axes=1) / problem.magnitude
     gradient = bend @ across[-1]
     shifts = np.abs(across @ gradient) * RESIDUAL_ROUNDING / np.maximum(sigma, TINY)
     error = VALUE_ROUNDING + float(shifts.sum())
@@ -140,13 +140,13 @@ def _precise_near_miss(
     import mpmath
 
     with mpmath.workdps(DIGITS):
-        start = branch(s + ASIDE * problem.scale)
+        start = branch(s + ASIDE * problem.domain.scale)
         place = [mpmath.mpf(float(x)) for x in start]
         before = _station(problem, residual, place, rank)
         if before is None:
             return None
-        step = SHORT * before.value * problem.scale
-        if branch(s + ASIDE * problem.scale, 1) @ before.tangent > 0:
+        step = SHORT * before.value * problem.domain.scale
+        if branch(s + ASIDE * problem.domain.scale, 1) @ before.tangent > 0:
             step = -step
         for _ in range(ROUNDS):
             here = _station(problem, residual, _moved(before, step), rank)
@@ -157,7 +157,7 @@ def _precise_near_miss(
                 turned = (TURNED / here.value) ** 2
                 error = change + (ROUNDING + turned) * here.value
                 return NearMissValue(here.value, error)
-            longest = SHORT * here.value * problem.scale
+            longest = SHORT * here.value * problem.domain.scale
             step = float(np.clip(_secant(before, here), -longest, longest))
             before = here
     return None
@@ -178,7 +178,7 @@ def _station(
         missed = as_floats(residual(point), problem.magnitude)
         step = inverse @ missed
         point = [x - mpmath.mpf(float(d)) for x, d in zip(point, step, strict=True)]
-        size = float(np.linalg.norm(step)) / problem.scale
+        size = float(np.linalg.norm(step)) / problem.domain.scale
         if size < ON_CURVE or (size < STAGNANT and size > 0.5 * last):
             break
         last = size
@@ -187,7 +187,7 @@ def _station(
     at = decompose(problem, np.array([[float(x) for x in point]]))
     left, right = at.left[0, :, rank - 1], at.right[0, rank - 1]
     tangent = at.right[0, rank]
-    h = mpmath.mpf(STEP) * mpmath.mpf(problem.scale)
+    h = mpmath.mpf(STEP) * mpmath.mpf(problem.domain.scale)
 
     def seen(along_right: int, along_tangent: int) -> mpmath.mpf:
         """l . F a step or none beside the point."""
@@ -231,4 +231,4 @@ def _secant(before: _Station, here: _Station) -> float:
 def _is_near(problem: Problem, here: _Station, start: np.ndarray) -> bool:
     """Whether a station is next to where the near miss was found."""
     offset = np.array([float(x) for x in here.point]) - start
-    return bool(np.linalg.norm(offset) < FARTHEST * problem.scale)
+    return bool(np.linalg.norm(offset) < FARTHEST * problem.domain.scale)

@@ -40,7 +40,7 @@ from bifurc.numerics.corrector import correct_across
 from bifurc.numerics.null_spaces import decompose, newton_in_rank, null_spaces
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem
+from bifurc.problem import Problem, relative_gaps, relative_jacobians
 from bifurc.settings import TraceSettings
 
 LONGEST = 200.0  # scales along which a near motion is followed
@@ -100,16 +100,20 @@ class NearMotionTrace:
 
     def runs_through(self, problem: Problem, points: np.ndarray) -> np.ndarray:
         """Which of the points (k, n) lie on it, as far as it is known there."""
-        within = SPREAD * np.sqrt(self.misclosure * problem.scale)
-        distance, s = self.branch.nearest(points, within=max(within, problem.scale))
+        within = SPREAD * np.sqrt(self.misclosure * problem.domain.scale)
+        distance, s = self.branch.nearest(
+            points, within=max(within, problem.domain.scale)
+        )
         number = np.searchsorted(self.branch.breaks, s, side="right") - 1
         number = np.clip(number, 0, len(self.branch.pieces) - 1)
         misses = self.branch.residuals[number]
         is_bridge = bridges_of(self.branch, self.tolerance)[number]
         weakest = singular_values(problem, points)[:, max(problem.n - 2, 0)]
         known = KNOWN * self.tolerance / np.maximum(weakest, TINY)
-        reach = np.where(is_bridge, SPREAD * np.sqrt(misses * problem.scale), known)
-        reach = np.clip(reach, is_same_point.threshold * problem.scale, within)
+        reach = np.where(
+            is_bridge, SPREAD * np.sqrt(misses * problem.domain.scale), known
+        )
+        reach = np.clip(reach, is_same_point.threshold * problem.domain.scale, within)
         is_on: np.ndarray = distance < reach
         return is_on
 
@@ -138,14 +142,15 @@ def trace_near_motion(
     settings = replace(settings.to_tolerance(tolerance), max_length=max_length)
     place = _clearest(valley, places, missed)
     branch = trace_branch(valley, place, None, settings, deadline=deadline)
-    if not len(branch.pieces) or is_same_point(branch.length, problem.scale):
+    if not len(branch.pieces) or is_same_point(branch.length, problem.domain.scale):
         return None  # it leaves the region where it begins
     course = _course(valley, branch, settings.tolerance)
     points, heights = course.extremes()
     return NearMotionTrace(
         branch=branch,
         misclosure=largest_of(problem, points, heights),
-        is_short=not branch.closed and is_stretch_short(branch.length, problem.scale),
+        is_short=not branch.closed
+        and is_stretch_short(branch.length, problem.domain.scale),
         is_blurred=bool(len(course.bridges)),
         is_repeated=repeats_itself(problem, branch),
         assemblies=_assemblies(problem, course),
@@ -156,7 +161,7 @@ def trace_near_motion(
 def _beside(problem: Problem, start: np.ndarray) -> np.ndarray:
     """Points (2, n) of the valley a little away from ``start`` (n,), to both sides."""
     _, right = null_spaces(problem, start[None])
-    step = BESIDE * problem.scale * right[0, -1]
+    step = BESIDE * problem.domain.scale * right[0, -1]
     ahead = np.array([start - step, start + step])
     corrected: np.ndarray = correct_to_valley(problem, ahead, CORRECTIONS)[0]
     return corrected
@@ -169,7 +174,7 @@ def _clearest(valley: ValleyProblem, places: np.ndarray, missed: float) -> np.nd
     if weakest[0] ** 2 > CLEAR * missed:
         clear: np.ndarray = places[0]
         return clear
-    is_near = nearly_closes(valley.of.gaps(places))
+    is_near = nearly_closes(relative_gaps(valley.of, places))
     clearest: np.ndarray = places[np.argmax(weakest * is_near)]
     return clearest
 
@@ -223,7 +228,7 @@ class _Course:
         def slopes_at(s: np.ndarray) -> np.ndarray:
             return _slopes_at(self.valley.of, self.branch(s), self.branch(s, 1))
 
-        return bracketed_roots(slopes_at, low, high, LOCATED * self.valley.scale)
+        return bracketed_roots(slopes_at, low, high, LOCATED * self.valley.domain.scale)
 
     def _ends(self) -> np.ndarray:
         """The ends (k, n) of the curve, if it is open, and of all places where the
@@ -246,7 +251,9 @@ class _Course:
         low, high = np.array([begin, middle]), np.array([middle, end])
         if np.any(clearness(low) * clearness(high) >= 0):
             return []
-        roots = bracketed_roots(clearness, low, high, LOCATED * self.valley.scale)
+        roots = bracketed_roots(
+            clearness, low, high, LOCATED * self.valley.domain.scale
+        )
         return [self._corrected(float(root)) for root in roots]
 
     def _most_singular(self, begin: float, end: float) -> float:
@@ -292,7 +299,7 @@ def _slopes_at(
     at = decompose(problem, points)
     weak = at.left[:, :, problem.n - 1 :]
     missed = np.einsum("kmi,km->ki", weak, at.residuals)
-    moves = problem.relative_jacobians(points) @ tangents[:, :, None]
+    moves = relative_jacobians(problem, points) @ tangents[:, :, None]
     changes = np.einsum("kmi,km->ki", weak, moves[:, :, 0])
     slopes: np.ndarray = np.einsum("ki,ki->k", missed, changes)
     return slopes
@@ -340,13 +347,13 @@ def _zeros(problem: Problem, course: _Course) -> _Zeros:
     numbers = np.searchsorted(course.arclengths, lowest)
     numbers = np.minimum(numbers, len(course.arclengths) - 1)
     spacing = np.gradient(course.arclengths)[numbers]
-    reach = np.maximum(REACH * spacing, NEARBY * problem.scale)
+    reach = np.maximum(REACH * spacing, NEARBY * problem.domain.scale)
     points = course.branch(lowest)
     solutions = _solve(problem, points, reach)
     moves = np.linalg.norm(solutions - points, axis=1)
     stiffness = singular_values(problem, solutions)[:, -1]
     blur = BLUR / np.maximum(stiffness, TINY)
-    is_zero = closes_to_rounding(problem.gaps(solutions)) & (moves <= reach)
+    is_zero = closes_to_rounding(relative_gaps(problem, solutions)) & (moves <= reach)
     return _Zeros(numbers[is_zero], solutions[is_zero], blur[is_zero])
 
 
@@ -359,7 +366,7 @@ def _are_apart(
     if end < begin:
         end += len(heights) // 2
     wall = float(heights[begin : end + 1].max())
-    offset = problem.difference(zeros.solutions[one], zeros.solutions[other])
+    offset = problem.domain.difference(zeros.solutions[one], zeros.solutions[other])
     distance = float(np.linalg.norm(offset))
     is_one_place = distance <= zeros.blur[one] + zeros.blur[other]
     return not is_one_place and not closes_to_rounding(wall)
@@ -369,14 +376,14 @@ def _solve(problem: Problem, points: np.ndarray, longest: np.ndarray) -> np.ndar
     """Points (k, n) after Gauss-Newton steps of full rank, none longer than
     ``longest`` (k,)."""
     solutions = points.copy()
-    best = problem.gaps(points)
+    best = relative_gaps(problem, points)
     trial = solutions.copy()
     for _ in range(ROUNDS):
         steps = decompose(problem, trial).newton_steps(problem.n)
         lengths = np.linalg.norm(steps, axis=1)
         shares = np.minimum(1.0, longest / np.maximum(lengths, TINY))
         trial = trial + shares[:, None] * steps
-        gaps = problem.gaps(trial)
+        gaps = relative_gaps(problem, trial)
         is_better = gaps < best
         solutions[is_better] = trial[is_better]
         best = np.minimum(best, gaps)
@@ -413,7 +420,7 @@ def near_surfaces(
         places = newton_in_rank(problem, points[own], rank, STEPS)
         if not len(places) or not _is_surface(problem, places, dimension):
             continue
-        misclosure = float(problem.gaps(places).max())
+        misclosure = float(relative_gaps(problem, places).max())
         surfaces.append(NearSurface(dimension, misclosure, places[0]))
         is_left &= ~own
     return surfaces, is_left
@@ -438,12 +445,14 @@ def _is_surface(problem: Problem, places: np.ndarray, dimension: int) -> bool:
     directions, as far as `FAR`."""
     tried = places[:TRIED]
     right = decompose(problem, tried).right[:, problem.n - dimension :]  # (k, d, n)
-    steps = FAR * problem.scale * np.concatenate([right, -right], axis=1)
+    steps = FAR * problem.domain.scale * np.concatenate([right, -right], axis=1)
     probes = (tried[:, None] + steps).reshape(-1, problem.n)
     ends = newton_in_rank(problem, probes, problem.n - dimension, STEPS)
     starts = np.repeat(tried, 2 * dimension, axis=0)
     moves = np.linalg.norm(ends - starts, axis=1)
-    goes_on = (moves > STAYS * FAR * problem.scale) & nearly_closes(problem.gaps(ends))
+    goes_on = (moves > STAYS * FAR * problem.domain.scale) & nearly_closes(
+        relative_gaps(problem, ends)
+    )
     goes_on &= _weak_directions(problem, ends) >= dimension
     is_all_round = goes_on.reshape(len(tried), -1).all(axis=1)
     return bool(np.mean(is_all_round) > 0.5)

@@ -16,7 +16,7 @@ along whose curve a valley is traced.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -27,7 +27,7 @@ from bifurc.curves.track import Place, Track
 from bifurc.curves.valley_problem import ValleyProblem
 from bifurc.numerics.null_spaces import decompose, null_vector
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem
+from bifurc.problem import Problem, relative_gaps
 from bifurc.settings import TraceSettings
 
 # corrections of one point; convergence is linear with a rate of about the gap over
@@ -71,9 +71,9 @@ def correct_to_valley(
         steps = decompose(problem, points).newton_steps(rank, FLOOR)
         points += steps
         longest = np.abs(steps).max(initial=0.0)
-        if longest < 1e-14 * problem.scale:
+        if longest < 1e-14 * problem.domain.scale:
             break
-    return points, problem.gaps(points)
+    return points, relative_gaps(problem, points)
 
 
 def unfold_crossing(
@@ -112,7 +112,7 @@ def unfold_crossing(
         pairs=tuple(pairs),
         distance=min(between, default=np.inf),
         weakest=float(singular_values(problem, every)[:, problem.n - 2].min()),
-        gap=float(problem.gaps(every).max()),
+        gap=float(relative_gaps(problem, every).max()),
     )
 
 
@@ -129,9 +129,9 @@ def _valley_inwards(problem: Problem, center: np.ndarray, start: np.ndarray) -> 
     radius = float(np.linalg.norm([start - center, corrected - center], axis=1).max())
     valley = _ValleyInBall(problem, center, radius)
     place = Place(corrected, null_vector(valley, corrected, center - start))
-    if not np.linalg.norm(corrected - start) <= FAR * problem.scale:
+    if not np.linalg.norm(corrected - start) <= FAR * problem.domain.scale:
         track = Track(place, TRACING.order)
-        return track.empty_branch(Outcome.OPEN, problem.periods)
+        return track.empty_branch(Outcome.OPEN, problem.domain.periods)
     return follow_curve(valley, place, TRACING)
 
 
@@ -141,14 +141,15 @@ class _ValleyInBall(ValleyProblem):
 
     def __init__(self, of: Problem, center: np.ndarray, radius: float):
         super().__init__(of)
-        self.bounds = np.tile([-np.inf, np.inf], (of.n, 1))
+        endless = np.tile([-np.inf, np.inf], (of.n, 1))
+        self.domain = replace(self.domain, bounds=endless, rim=self._outside)
         self._center = center
         self._radius = radius
 
-    def excess(self, points: np.ndarray) -> np.ndarray:
+    def _outside(self, points: np.ndarray) -> np.ndarray:
         """How far points (k, n) lie outside the ball (k,)."""
-        excess: np.ndarray = np.linalg.norm(points - self._center, axis=1)
-        return excess - self._radius
+        distances: np.ndarray = np.linalg.norm(points - self._center, axis=1)
+        return distances - self._radius
 
     def missed(self, points: np.ndarray) -> np.ndarray:
         """What points (k, n) miss where the valley is not single: it is followed there

@@ -34,11 +34,24 @@ from numpy.polynomial import chebyshev
 from bifurc import _core
 from bifurc.branch import points_on_piece
 from bifurc.decisions import has_one_form, has_valley, is_beside_drop, nearly_closes
-from bifurc.function_problem import AT_ONCE, NumericalProblem
-from bifurc.numerics.collocation import march_by_collocation, reparametrised
+from bifurc.function_problem import NumericalProblem
+from bifurc.numerics.collocation import (
+    PieceRules,
+    march_by_collocation,
+    reparametrised,
+)
 from bifurc.numerics.corrector import correct_across
 from bifurc.numerics.null_spaces import Decomposition, decompose
-from bifurc.problem import March, MarchSettings, Piece, Problem
+from bifurc.problem import (
+    March,
+    MarchSettings,
+    Piece,
+    Problem,
+    hessian_at,
+    relative_gaps,
+    relative_jacobians,
+    relative_residuals,
+)
 
 TINY = 1e-30  # keeps a difference of squared singular values from being zero
 # Places on a piece, from -1 to 1, at which it is seen whether there is a valley.
@@ -57,28 +70,29 @@ class ValleyProblem(NumericalProblem):
     They are followed as far as it nearly closes.
     """
 
-    has_crossings = False  # they have opened, and the valley turns
-
     def __init__(self, of: Problem):
         self.of = of
         self.rank = of.n - 1
-        self.take_unknowns_of(of)
-        self.hessian_error = of.hessian_error
-        self.node_corrector = of.valley_corrector()
+        # crossings have opened, and the valley turns
+        self.domain = replace(of.domain, rim=self._beyond, has_crossings=False)
+        self.magnitude = of.magnitude
+        self.rules = PieceRules(
+            corrector=of.shortcuts.valley_corrector, is_allowed=self._is_single_on
+        )
 
     # --- G and G' ---------------------------------------------------------------------
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """G (k, m) at points (k, n)."""
-        residuals = self.of.relative_residuals(points)
-        jacobians = self.of.relative_jacobians(points)
+        residuals = relative_residuals(self.of, points)
+        jacobians = relative_jacobians(self.of, points)
         projected: np.ndarray = _core.valley_residuals(residuals, jacobians)
         return projected * self.magnitude
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """G' (k, m, n) at points (k, n): P F' + P' F."""
-        residuals = self.of.relative_residuals(points)
-        jacobians = self.of.relative_jacobians(points)
+        residuals = relative_residuals(self.of, points)
+        jacobians = relative_jacobians(self.of, points)
         hessians = self.of.hessians(points) / self.magnitude
         count, m, n = jacobians.shape
         rows = hessians.reshape(count, m * n, n)
@@ -87,12 +101,13 @@ class ValleyProblem(NumericalProblem):
 
     # --- the region -------------------------------------------------------------------
 
-    def excess(self, points: np.ndarray) -> np.ndarray:
-        """How far points (k, n) lie outside the region (k,): outside the bounds, or by
+    def _beyond(self, points: np.ndarray) -> np.ndarray:
+        """How far points (k, n) lie outside the region (k,): outside that of F = 0, or by
         how much more than a near motion may they miss F = 0, over that."""
-        missed = self.of.gaps(points) / nearly_closes.threshold - 1.0
-        excess: np.ndarray = np.maximum(self.of.excess(points), missed * self.scale)
-        return excess
+        outer = self.of.domain
+        missed = relative_gaps(self.of, points) / nearly_closes.threshold - 1.0
+        beyond: np.ndarray = np.maximum(outer.excess(points), missed * outer.scale)
+        return beyond
 
     def missed(self, points: np.ndarray) -> np.ndarray:
         """What points (k, n) miss where the valley is not single (k,), else 0.
@@ -123,7 +138,7 @@ class ValleyProblem(NumericalProblem):
         """The second singular value over the first of the quadratic forms that F'' has
         on the two weakest directions: where forms cross they are one form."""
         rank = self.rank
-        hessian = self.of.hessian(point) / self.magnitude
+        hessian = hessian_at(self.of, point) / self.magnitude
         weakest = at.right[i, rank - 1 :]
         others = at.left[i, :, rank - 1 :]
         on_weakest = weakest @ hessian @ weakest.T  # (m, 2, 2)
@@ -141,8 +156,7 @@ class ValleyProblem(NumericalProblem):
     ) -> March:
         """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,), by
         collocation, up to where the valley is not single."""
-        few = replace(settings, count=min(settings.count, AT_ONCE))
-        return march_by_collocation(self, start, tangent, few, self._is_single_on)
+        return march_by_collocation(self, start, tangent, settings, self.rules)
 
     def _is_single_on(self, piece: Piece) -> bool:
         """Whether the valley is single all along a piece."""
@@ -169,8 +183,8 @@ class ValleyProblem(NumericalProblem):
         basis = chebyshev.chebvander(x[is_single], degree)
         fit, *_ = np.linalg.lstsq(basis, points[is_single], rcond=None)
         off = basis @ fit - points[is_single]
-        missed = float(self.of.gaps(points[is_single]).max())
-        allowed = BRIDGE_ERROR * np.sqrt(missed * self.scale)
+        missed = float(relative_gaps(self.of, points[is_single]).max())
+        allowed = BRIDGE_ERROR * np.sqrt(missed * self.domain.scale)
         if np.abs(off).max() > allowed:
             return None
         powers = np.zeros((order + 1, self.n))

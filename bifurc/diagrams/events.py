@@ -224,7 +224,7 @@ def events_along(
     if not events or not atlas.forms:
         return points, remarks
     sizes = unknown_sizes(problem)
-    periods = wrapped_periods(problem.periods, problem.bounds)
+    periods = wrapped_periods(problem.domain.periods, problem.domain.bounds)
     cut = _cut_of(problem)
     samples = np.concatenate(
         [form.branch.sample(ROUND_CIRCLES) for form in atlas.forms]
@@ -246,12 +246,14 @@ def events_along(
 
 def _cut_of(problem: Problem) -> CircleCut:
     """Circles cut open opposite to the middle of their bounds, or to 0."""
-    is_wrapped = np.isfinite(wrapped_periods(problem.periods, problem.bounds))
-    is_bounded = np.isfinite(problem.bounds).all(axis=1)
+    is_wrapped = np.isfinite(
+        wrapped_periods(problem.domain.periods, problem.domain.bounds)
+    )
+    is_bounded = np.isfinite(problem.domain.bounds).all(axis=1)
     middle = np.zeros(problem.n)
     has_middle = is_bounded & ~is_wrapped
-    middle[has_middle] = problem.bounds[has_middle].mean(axis=1)
-    return CircleCut(problem.periods, middle)
+    middle[has_middle] = problem.domain.bounds[has_middle].mean(axis=1)
+    return CircleCut(problem.domain.periods, middle)
 
 
 def _event_point(

@@ -59,11 +59,11 @@ def diagram_of(
     check_type("problem", problem, Problem)
     check_type("atlas", atlas, Atlas)
     check_type("is_flow", is_flow, bool)
-    functions = events_of({} if events is None else events, problem.names)
+    functions = events_of({} if events is None else events, problem.domain.names)
     found, remarks = events_along(problem, atlas, functions)
     if parameter is None:
         return Diagram("", _named(problem, found), (), (), tuple(remarks))
-    index = parameter_index(problem.names, parameter)
+    index = parameter_index(problem.domain.names, parameter)
     turnings = turnings_of(problem, atlas, index)
     has_stability = is_flow and bool(atlas.forms) and has_square_rest(problem)
     along = _stability(problem, atlas, index, turnings.folds, has_stability)
@@ -152,7 +152,7 @@ def _named(
 ) -> tuple[DiagramPoint, ...]:
     """The points with wrapped unknowns, numbered kind by kind, in the order of forms
     and arclengths."""
-    periods = wrapped_periods(problem.periods, problem.bounds)
+    periods = wrapped_periods(problem.domain.periods, problem.domain.bounds)
     named = []
     for kind in Kind:
         of_kind = [point for point in points if point.kind is kind]

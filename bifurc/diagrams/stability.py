@@ -98,7 +98,7 @@ def _imaginary_places(spectrum: Spectrum) -> np.ndarray:
     """Arclengths (k,), in order, at which a pair of eigenvalues may be imaginary, of one
     turn and, of a closed form, of the next."""
     branch = spectrum.branch
-    if spectrum.problem.n <= 2 or spectrum.problem.is_large:
+    if spectrum.problem.n <= 2 or spectrum.problem.domain.is_large:
         return np.empty(0)
     zeros = zeros_along(branch, spectrum.pair_product, is_measured=False)
     places = np.array([s for zero in zeros.zeros for s in (zero.low, zero.high)])
@@ -130,7 +130,7 @@ def _ends(branch: Branch, cuts: Sequence[float]) -> list[float]:
 
 def _nodes(problem: Problem, branch: Branch) -> np.ndarray:
     """Arclengths (k,), in order, of one turn and, of a closed form, of the next."""
-    fractions = NODES[::STRIDE] if problem.is_large else NODES
+    fractions = NODES[::STRIDE] if problem.domain.is_large else NODES
     nodes = branch.places(fractions).ravel()
     return np.concatenate([nodes, nodes + branch.length]) if branch.closed else nodes
 
@@ -159,7 +159,7 @@ def _crossings(
     directions between two of the places leave it as it is.
     """
     is_asked = np.diff(numbers) != 0
-    if not spectrum.problem.is_large:
+    if not spectrum.problem.domain.is_large:
         is_asked[:] = True
     crossings: list[HopfPlace] = []
     known: dict[int, MovingSet] = {}

@@ -19,7 +19,7 @@ from bifurc.curves.deflation import WithNullVector
 from bifurc.curves.monitor import NODES
 from bifurc.decisions import is_drawn_to_point, is_fold_of_crossing, stands_still
 from bifurc.diagrams.diagram import DiagramPoint, Stretch
-from bifurc.problem import Problem
+from bifurc.problem import Problem, hessian_at
 from bifurc.singular.point import Kind
 
 SAME_CUT = 1e-12  # of a length: a stretch ends at the very arclength of a pass
@@ -51,7 +51,9 @@ class _Pass(NamedTuple):
 def unknown_sizes(problem: Problem) -> np.ndarray:
     """Sizes (n,) of the unknowns: one that is counted in a unit of its own is no larger
     than its bounds."""
-    return np.minimum(problem.scale, 0.5 * np.diff(problem.bounds, axis=1)[:, 0])
+    return np.minimum(
+        problem.domain.scale, 0.5 * np.diff(problem.domain.bounds, axis=1)[:, 0]
+    )
 
 
 def turnings_of(problem: Problem, atlas: Atlas, index: int) -> Turnings:
@@ -126,7 +128,7 @@ def _pass_at(problem: Problem, atlas: Atlas, form: int, place: Turning) -> _Pass
             if atlas.forms[form].branch.closed:
                 gap = min(gap, abs(length - gap))
             beside = gap - half - 2 * point.point.error
-            if passing == form and is_fold_of_crossing(beside, problem.scale):
+            if passing == form and is_fold_of_crossing(beside, problem.domain.scale):
                 return _Pass(number, s)
     return None
 
@@ -139,8 +141,8 @@ def _is_drawn(
     sizes: np.ndarray,
 ) -> bool:
     """Whether Newton's method for a fold goes to a singular point."""
-    before = problem.difference(start, point.point.u) / sizes
-    after = problem.difference(reached, point.point.u) / sizes
+    before = problem.domain.difference(start, point.point.u) / sizes
+    after = problem.domain.difference(reached, point.point.u) / sizes
     error = 3.0 * point.point.error / float(sizes.min())
     unit = max(float(np.linalg.norm(before)), error / is_drawn_to_point.threshold)
     return is_drawn_to_point(float(np.linalg.norm(after)), unit)
@@ -255,7 +257,7 @@ def refined_fold(
     ``parameter`` is the index of the unknown that turns back, ``sizes`` (n,) are those
     of the unknowns.
     """
-    if problem.is_large:
+    if problem.domain.is_large:
         return None
     n = problem.n
     across = tangent / sizes
@@ -298,6 +300,6 @@ def _bend(
     across the unit tangent t."""
     t = tangent / np.linalg.norm(tangent)
     system = np.vstack([problem.jacobians(u[None])[0], t])
-    right = np.einsum("mij,i,j->m", problem.hessian(u), t, t)
+    right = np.einsum("mij,i,j->m", hessian_at(problem, u), t, t)
     bend = np.linalg.lstsq(system, np.append(-right, 0.0), rcond=RANK)[0]
     return float(bend[parameter])

@@ -33,13 +33,14 @@ class Rims(NamedTuple):
     def __bool__(self) -> bool:
         return self.tape is not None
 
-    def depths(self, points: np.ndarray) -> np.ndarray:
-        """How far inside every rim (j, k) points (j, n) are, to first order; negative
-        outside."""
+    def depths(self, points: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+        """How far inside every rim (j, k) points (j, n) are, to first order, with
+        unknowns counted in ``sizes`` (n,); negative outside."""
         assert self.tape is not None
         points = np.ascontiguousarray(points, dtype=float)
         values = self.tape.compiled.residuals(points)
-        lengths = np.linalg.norm(self.tape.compiled.jacobians(points), axis=2)
+        slopes = self.tape.compiled.jacobians(points) * sizes
+        lengths = np.linalg.norm(slopes, axis=2)
         # where a rim is a point of zero slope the value is zero as well
         known = np.where(lengths > 0.0, lengths, 1.0)
         depths: np.ndarray = values / known

@@ -60,17 +60,13 @@ class SymbolicProblem(FunctionProblem):
         names = [symbol.name for symbol in self.unknowns]
         if len(bounds) != len(names):
             raise ProblemError("number of bounds", len(bounds), f"{len(names)}")
-        self._set_unknowns(bounds, names, units, periods)
-        tape = _tape_of(self.expressions, self.unknowns)
-        self.recording = Recording(tape)
-        self._rows = tape.m
-        self._function = _TapeFunction(tape)
-        self._jacobian = None
-        self.noise = np.zeros(tape.m)
-        probes = self._first_points().probes
-        self._measure(probes)
-        self._check_periods(probes)
-        self._settle_open_bounds()
+        self._tape = _tape_of(self.expressions, self.unknowns)
+        function = _TapeFunction(self._tape)
+        super().__init__(function, bounds, names=names, units=units, periods=periods)
+
+    def _recorded(self, points: np.ndarray) -> Recording:
+        """The tape of the expressions."""
+        return Recording(self._tape)
 
     def precise_residual(self) -> PreciseResidual:
         """F over mpmath numbers, to whatever precision is set; it raises `ValueError`

@@ -16,7 +16,7 @@ import numpy as np
 
 from bifurc import _core
 from bifurc.checks import rows_of
-from bifurc.decisions import is_in_bounds
+from bifurc.domain import Domain
 from bifurc.equations.tape import Tape, real_values
 from bifurc.problem import (
     CurveNodes,
@@ -65,10 +65,9 @@ class _Pattern(NamedTuple):
 
 
 class ScaledTape:
-    """The compiled methods of a ``tape`` whose F' is of size ``magnitude`` and whose
-    unknowns are of size ``scale``, within ``bounds`` (n, 2) and with ``periods``
-    (n,); solutions are looked for in the ``region`` (n, 2), that of the bounds unless
-    given. Immutable.
+    """The compiled methods of a ``tape`` whose F' is of size ``magnitude``, in its
+    ``domain``; solutions are looked for in the ``region`` (n, 2), that of the bounds
+    unless given. Immutable.
 
     It ``is_small`` where compiled methods with dense matrices are fast enough: up to
     the unknowns ``largest_dense``; with sparse ones up to ``largest_sparse``.
@@ -78,9 +77,7 @@ class ScaledTape:
         self,
         tape: Tape,
         magnitude: float,
-        scale: float,
-        bounds: np.ndarray,
-        periods: np.ndarray,
+        domain: Domain,
         region: np.ndarray | None = None,
         largest_dense: float = LARGEST_DENSE,
         largest_sparse: float = LARGEST_SPARSE,
@@ -88,14 +85,13 @@ class ScaledTape:
         self.tape = tape
         self.is_small = tape.n <= largest_dense
         self._largest_sparse = largest_sparse
-        self._scale = scale
+        self._domain = domain
+        self._scale = domain.scale
         self._magnitude = magnitude
-        self._unit = 2.0 ** round(math.log2(scale))
+        self._unit = 2.0 ** round(math.log2(domain.scale))
         self._units = np.full(tape.n, self._unit)
         self._weights = np.full(tape.m, 1.0 / (magnitude * self._unit))
-        self._bounds = bounds
-        self._region = bounds if region is None else region
-        self._periods = periods
+        self._region = domain.bounds if region is None else region
 
     # --- values and derivatives -------------------------------------------------------
 
@@ -107,11 +103,13 @@ class ScaledTape:
         """F' (k, m, n) at points (k, n)."""
         return self.tape.compiled.jacobians(_contiguous(points))
 
-    def jacobian(self, point: np.ndarray) -> np.ndarray | csc_array:
-        """F' (m, n) at one point (n,); by columns, as it is factored, where it is large
-        and has few entries."""
-        if self.tape.n <= LARGEST_DENSE or not self._has_few_entries:
-            return self.jacobians(point[None])[0]
+    @property
+    def has_sparse_jacobian(self) -> bool:
+        """Whether F' is so large and has so few entries that it is best sparse."""
+        return self.tape.n > LARGEST_DENSE and self._has_few_entries
+
+    def sparse_jacobian(self, point: np.ndarray) -> csc_array:
+        """F' (m, n) at one point (n,), by columns, as it is factored."""
         from scipy.sparse import csc_array
 
         pattern = self._pattern
@@ -143,9 +141,10 @@ class ScaledTape:
         starts = np.searchsorted(columns[order], np.arange(self.tape.n + 1))
         return _Pattern(order, rows[order].astype(np.int32), starts.astype(np.int32))
 
-    def hessian(self, point: np.ndarray) -> np.ndarray:
-        """F'' (m, n, n) at a point (n,)."""
-        return self.tape.compiled.hessian(_contiguous(point))
+    def hessians(self, points: np.ndarray) -> np.ndarray:
+        """F'' (k, m, n, n) at points (k, n)."""
+        hessian = self.tape.compiled.hessian
+        return np.array([hessian(point) for point in _contiguous(points)])
 
     def precise_residual(self, unknowns: Sequence[mpmath.mpf]) -> list[mpmath.mpf]:
         """F (m,) over mpmath numbers (n,), the constants being the doubles of the tape.
@@ -217,7 +216,7 @@ class ScaledTape:
             misclosure=settings.misclosure / (share * unit),
             anchor=anchor,
             within=within / unit,
-            periods=self._periods / unit,
+            periods=self._domain.periods / unit,
             bounds=self._outer_bounds / unit,
             length=settings.length / unit,
             is_sparse=self.is_factored_sparse,
@@ -241,8 +240,7 @@ class ScaledTape:
     def _outer_bounds(self) -> np.ndarray:
         """The bounds (n, 2), wider by what counts as inside: a march along one of them
         need not end after every piece."""
-        slack = is_in_bounds.threshold * self._scale
-        return self._bounds + slack * np.array([-1.0, 1.0])
+        return self._domain.bounds + self._domain.slack * np.array([-1.0, 1.0])
 
     def _share_of_magnitude(self, start: np.ndarray) -> float:
         """The magnitude of F' over which rounding is what a march takes it to be, over

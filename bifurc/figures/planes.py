@@ -3,6 +3,7 @@ most, and where lines break."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -11,6 +12,7 @@ import numpy as np
 from bifurc import torus
 from bifurc.atlas import Atlas
 from bifurc.branch import Branch
+from bifurc.errors import ProblemError
 from bifurc.figures.quantities import shown_unit
 
 SAMPLES = 72  # points on each form by which planes are compared
@@ -57,6 +59,19 @@ class Plane:
     def copies(self, point: np.ndarray) -> np.ndarray:
         """All places (k, 2) where a point (n,) is shown: more than one on an edge."""
         return copies_in_frame(self.spot(point), self.scales)
+
+
+def indices_of(
+    atlas: Atlas, name: str, numbers: Sequence[int], count: int
+) -> list[int]:
+    """The indices of ``count`` unknowns from their numbers, which the user gave as
+    ``name``; raises `ProblemError`."""
+    n = len(atlas.names)
+    different = len(set(numbers)) == len(numbers) == count
+    if not different or not all(1 <= number <= n for number in numbers):
+        allowed = f"{count} of the unknowns, numbered from 1 to {n}"
+        raise ProblemError(name, list(numbers), allowed)
+    return [number - 1 for number in numbers]
 
 
 def plane_of(atlas: Atlas, horizontal: int, vertical: int) -> Plane:

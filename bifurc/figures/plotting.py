@@ -19,7 +19,6 @@ from matplotlib.ticker import NullLocator
 
 from bifurc.atlas import Atlas
 from bifurc.checks import check_type
-from bifurc.errors import ProblemError
 from bifurc.figures.diagram_plot import plot_diagram
 from bifurc.figures.drawing import (
     Margins,
@@ -33,7 +32,7 @@ from bifurc.figures.drawing import (
 )
 from bifurc.figures.form_graph import plot_form_graph
 from bifurc.figures.labels import label_points
-from bifurc.figures.planes import choose_plane, plane_of, scale_of
+from bifurc.figures.planes import choose_plane, indices_of, plane_of, scale_of
 from bifurc.figures.rendering import render
 from bifurc.figures.singular_values import plot_singular_values
 from bifurc.figures.style import RC
@@ -67,7 +66,7 @@ def plot_transition_map(
     if joints is None:
         plane = plane_of(atlas, *choose_plane(atlas))
     else:
-        horizontal, vertical = _indices(atlas, joints, count=2)
+        horizontal, vertical = indices_of(atlas, "joints", joints, 2)
         plane = plane_of(atlas, horizontal, vertical)
     with rc_context(RC):
         legend = legend_size(atlas)
@@ -93,7 +92,7 @@ def plot_joint_angles(
     ``input_joint`` is counted from 1. Raises `ProblemError` where there is no such
     unknown.
     """
-    (first,) = _indices(atlas, [input_joint], count=1)
+    (first,) = indices_of(atlas, "joints", [input_joint], 1)
     others = [i for i in range(len(atlas.names)) if i != first] or [first]
     columns = min(len(others), 3 if len(others) <= 9 else 4)
     rows = -(-len(others) // columns)
@@ -128,16 +127,6 @@ def _room_for_ticks(atlas: Atlas) -> float:
     """Width of ticks, their labels and the name of an axis, in inches."""
     is_angle = [scale_of(atlas, i).half == 180.0 for i in range(len(atlas.names))]
     return TICKS if all(is_angle) else WIDE_TICKS
-
-
-def _indices(atlas: Atlas, joints: Sequence[int], count: int) -> list[int]:
-    """The indices of ``count`` unknowns from their numbers; raises `ProblemError`."""
-    n = len(atlas.names)
-    different = len(set(joints)) == len(joints) == count
-    if not different or not all(1 <= joint <= n for joint in joints):
-        allowed = f"{count} of the unknowns, numbered from 1 to {n}"
-        raise ProblemError("joints", list(joints), allowed)
-    return [joint - 1 for joint in joints]
 
 
 # --- files ----------------------------------------------------------------------------

@@ -13,9 +13,8 @@ from mpl_toolkits.mplot3d import Axes3D, proj3d
 
 from bifurc import torus
 from bifurc.atlas import Atlas
-from bifurc.errors import ProblemError
 from bifurc.figures.drawing import draw_legend_outside, legend_size
-from bifurc.figures.planes import Scale, curve_points, scale_of
+from bifurc.figures.planes import Scale, curve_points, indices_of, scale_of
 from bifurc.figures.style import RC, form_style, hollow
 
 
@@ -27,12 +26,7 @@ def plot_map_in_space(
 
     Raises `ProblemError` for numbers that are not three of the unknowns.
     """
-    n = len(atlas.names)
-    is_three = len(unknowns) == len(set(unknowns)) == 3
-    if not is_three or not all(1 <= number <= n for number in unknowns):
-        allowed = f"3 of the unknowns, numbered from 1 to {n}"
-        raise ProblemError("unknowns", list(unknowns), allowed)
-    indices = [number - 1 for number in unknowns]
+    indices = indices_of(atlas, "unknowns", unknowns, 3)
     scales = [scale_of(atlas, index) for index in indices]
     legend = legend_size(atlas)
     with rc_context(RC):

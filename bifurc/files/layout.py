@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Callable, Sequence
+from enum import Enum
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
@@ -22,7 +23,7 @@ from bifurc.diagrams.diagram import (
     Stretch,
 )
 from bifurc.files.json_values import mapping_from_text, to_text
-from bifurc.files.table import JOINT, Column, Frame, Row, Table
+from bifurc.files.table import JOINT, NOT_KNOWN, Column, Frame, Row, Table
 from bifurc.singular.point import Invariants, Kind, SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 
@@ -124,6 +125,35 @@ def _read_tables() -> dict[str, Table]:
 
 
 TABLES = _read_tables()
+
+# --- JSON -----------------------------------------------------------------------------
+
+
+def records_of(atlas: Atlas, owner: str) -> list[dict[str, Any]]:
+    """What an atlas has of a table, as values of JSON by their keys."""
+    columns = [column for column in TABLES[owner].columns if column.key]
+    return [
+        {column.key: _json_value(atlas, column, record) for column in columns}
+        for record in RECORDS[owner](atlas)
+    ]
+
+
+def _json_value(atlas: Atlas, column: Column, record: object) -> Any:
+    """Unknowns by their names, what an index is of by its name; None for what is not
+    known or infinite."""
+    value = column.taken(record)
+    if column.index_of:
+        return RECORDS[column.index_of](atlas)[value].name
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, np.ndarray):
+        numbers = value.tolist()
+        if column.kind is float and column.dimensions == (JOINT,):
+            return dict(zip(atlas.names, numbers, strict=True))
+        return numbers
+    nothing = NOT_KNOWN if column.kind is int else np.inf
+    return None if value == nothing else value
+
 
 # --- frames ---------------------------------------------------------------------------
 

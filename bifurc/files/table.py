@@ -68,7 +68,8 @@ class Frame:
 @dataclass(frozen=True)
 class Column:
     """One variable: the ``attribute`` of a record, such as "point.rank", or else what
-    the function ``value`` gives; a member of an enum by its name.
+    the function ``value`` gives; a member of an enum by its name. ``key`` is what the value
+    is called in JSON, if it stands there.
 
     ``dimensions`` are those of a single value. With ``entries`` a record has any number
     of values, counted by that dimension. ``index_of`` names the dimension of which the
@@ -77,6 +78,7 @@ class Column:
 
     name: str
     attribute: str
+    key: str
     kind: type[Any]
     units: str = ""
     dimensions: tuple[str, ...] = ()
@@ -95,13 +97,24 @@ class Column:
         """Whether the values of a record stand in a row of their own."""
         return self.entries in PADDED
 
+    def taken(self, record: Any) -> Any:
+        """What a record has, as it is; None where it lacks what that is an attribute
+        of."""
+        if self.value:
+            return self.value(record)
+        for name in self.attribute.split("."):
+            record = None if record is None else getattr(record, name)
+        return record
+
     def cell(self, record: object, frame: Frame) -> np.ndarray:
         """What a record has: of the shape of a value, or (count, shape of a value).
 
         A value that is smaller than its dimensions is filled up with 0.
         """
         shape = self._shape(frame)
-        taken = self.value(record) if self.value else self._attribute_of(record)
+        taken = self.taken(record)
+        if isinstance(taken, Enum):
+            taken = taken.name
         if taken is None:
             taken = () if self.entries else NOT_KNOWN
         value: np.ndarray = np.asarray(taken, dtype=self.dtype)
@@ -142,12 +155,6 @@ class Column:
     def no_values(self, frame: Frame) -> np.ndarray:
         """What a record without a single value has."""
         return np.empty((0, *self._shape(frame)), dtype=self.dtype)
-
-    def _attribute_of(self, record: Any) -> Any:
-        """The attribute of a record; None where the record lacks what it is one of."""
-        for name in self.attribute.split("."):
-            record = None if record is None else getattr(record, name)
-        return record.name if isinstance(record, Enum) else record
 
     def _plain(self, value: object) -> Any:
         """A single value as Python's; raises `KeyError` for no member of an enum."""

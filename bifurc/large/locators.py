@@ -11,6 +11,7 @@ import numpy as np
 
 from bifurc.large.scaled_problem import ScaledProblem
 from bifurc.large.singular_triples import SingularTriple
+from bifurc.problem import relative_gaps, relative_residuals
 
 T = TypeVar("T")
 
@@ -51,7 +52,7 @@ def locate_fold(
 
     def step_at(point: np.ndarray) -> tuple[np.ndarray, float]:
         system = problem.bordered(point, tangent[None])
-        residual = problem.relative_residuals(point[None])[0]
+        residual = relative_residuals(problem, point[None])[0]
         across = system.solve(np.append(-residual, 0.0))
         along = system.solve(_unit(problem.n, problem.n - 1))
 
@@ -67,7 +68,7 @@ def locate_fold(
     if end is None:
         return None
     point, bend = end
-    return LocatedFold(point, bend, float(problem.gaps(point[None])[0]))
+    return LocatedFold(point, bend, float(relative_gaps(problem, point[None])[0]))
 
 
 def _by_newton(
@@ -172,7 +173,7 @@ def _crossing_step(
     left = [system.solve_transposed(_unit(n + q, k)) for k in range(n, n + q)]
     null = _null_space(problem, point, solved, np.stack(left))
     # to F + B beta = 0 first, and then along the null space to G = 0
-    residual = problem.relative_residuals(point[None])[0] + columns @ beta
+    residual = relative_residuals(problem, point[None])[0] + columns @ beta
     across = system.solve(np.concatenate([-residual, np.zeros(q + 1)]))
     bends = problem.second_derivative(point, across[:n], null.basis)
     wanted = (null.g - null.left @ bends).ravel()

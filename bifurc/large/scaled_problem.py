@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bifurc.decisions import is_singular_start
+from bifurc.domain import Domain
 from bifurc.errors import ProblemError
 from bifurc.function_problem import NumericalProblem
 from bifurc.large.bordered_system import (
@@ -22,7 +23,8 @@ from bifurc.large.bordered_system import (
     bordered_system,
 )
 from bifurc.large.large_problem import LargeProblem
-from bifurc.problem import Solver
+from bifurc.numerics.collocation import PieceRules, march_by_collocation
+from bifurc.problem import Accuracy, March, MarchSettings, Shortcuts, Solver
 from bifurc.units import Units
 
 if TYPE_CHECKING:
@@ -33,6 +35,7 @@ DIFFERENCE = 1e-5  # length of the step of a difference of F'
 SECOND_DIFFERENCE = 3e-3  # the same of a second difference
 ROUNDS = 3  # of inverse iteration, by which the size of F' is seen
 ALONG_AXIS = 1e-3  # share of the random vector that the first tangent comes from
+RULES = PieceRules(norm=2)  # entries are small where they are many
 BESIDE = 0.1  # how far beside a singular start F' is of an ordinary size
 
 
@@ -43,9 +46,6 @@ class ScaledProblem(NumericalProblem):
     the user, so that what is left of F over it is an error of the unknowns.
     """
 
-    has_crossings = False  # bridges take dense matrices
-    piece_norm = 2  # entries are small where they are many
-
     def __init__(self, problem: LargeProblem, start: np.ndarray):
         n = problem.n
         self.problem = problem
@@ -53,15 +53,16 @@ class ScaledProblem(NumericalProblem):
         sizes[-1] = 0.25 * np.diff(problem.bounds)[0]
         weight = 1.0 / np.sqrt(n - 1)
         self.own_units = Units(np.zeros(n), sizes, np.full(n - 1, weight))
-        self.names = ("u",) * (n - 1) + (problem.parameter,)
-        self.units = ("",) * n
-        self.periods = np.full(n, np.inf)
-        self.bounds = np.tile([-np.inf, np.inf], (n, 1))
-        self.bounds[-1] = problem.bounds / sizes[-1]
-        self.equation_count = n - 1
-        self.scale = 1.0
-        self.derivatives = problem.derivatives
-        self.magnitude = 1.0
+        bounds = np.tile([-np.inf, np.inf], (n, 1))
+        bounds[-1] = problem.bounds / sizes[-1]
+        self.domain = Domain(
+            names=("u",) * (n - 1) + (problem.parameter,),
+            units=("",) * n,
+            periods=np.full(n, np.inf),
+            bounds=bounds,
+            has_crossings=False,  # bridges take dense matrices
+        )
+        self.accuracy = Accuracy(derivatives=problem.derivatives)
         self.magnitude = self._size_of_jacobian(self.own_units.inwards(start))
 
     # --- values -----------------------------------------------------------------------
@@ -110,6 +111,18 @@ class ScaledProblem(NumericalProblem):
         return derivative
 
     # --- linear systems ---------------------------------------------------------------
+
+    @property
+    def shortcuts(self) -> Shortcuts:
+        """F' as a sparse matrix, and the solver of systems with it."""
+        return Shortcuts(self.n - 1, self.jacobian, self.bordered_solver)
+
+    def march(
+        self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
+    ) -> March:
+        """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,), by
+        collocation."""
+        return march_by_collocation(self, start, tangent, settings, RULES)
 
     def bordered_solver(self, point: np.ndarray, tangent: np.ndarray) -> Solver:
         """What solves systems with F' at a point (n,), over the magnitude, and the row

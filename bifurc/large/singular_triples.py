@@ -15,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.branch import Branch
+from bifurc.domain import LARGE
 from bifurc.large.bordered_system import BorderedSystem
 from bifurc.large.scaled_problem import ScaledProblem
-from bifurc.problem import LARGE
 
 # of singular values, over the largest of their inverse squares: minima are located from
 # them, and singular points by Newton's method

@@ -123,7 +123,7 @@ def _crossing_at(
             continue
         place = _foot(branch, located.point, s)
         distance = float(np.linalg.norm(branch(place) - located.point))
-        if is_passed(distance, problem.scale):
+        if is_passed(distance, problem.domain.scale):
             return _large_point(problem, branch, place, located)
     return None
 

@@ -24,6 +24,7 @@ from bifurc.large.scaled_problem import ScaledProblem
 from bifurc.large.singular_triples import singular_profile, unit_tangent
 from bifurc.large.special_points import crossings_on, folds_on, near_misses_on
 from bifurc.numerics.null_spaces import null_vector
+from bifurc.problem import relative_gaps, relative_residuals
 from bifurc.settings import TraceSettings
 
 NEWTON_STEPS = 12
@@ -110,7 +111,7 @@ def _check_is_solved(scaled: ScaledProblem, start: np.ndarray, branch: Branch) -
     if len(branch.pieces):
         return
     point = scaled.own_units.inwards(start)
-    gap = float(scaled.gaps(point[None])[0])
+    gap = float(relative_gaps(scaled, point[None])[0])
     if is_solution(gap):
         return
     allowed = (
@@ -144,7 +145,7 @@ def _check_along_tangent(
 ) -> None:
     def difference(step: float) -> np.ndarray:
         both = np.stack([point + step * tangent, point - step * tangent])
-        upper, lower = scaled.relative_residuals(both)
+        upper, lower = relative_residuals(scaled, both)
         derivative: np.ndarray = (upper - lower) / (2.0 * step)
         return derivative
 
@@ -240,7 +241,7 @@ def _corrected_at_parameter(scaled: ScaledProblem, start: np.ndarray) -> np.ndar
     only_parameter[0, -1] = 1.0
     for _ in range(NEWTON_STEPS):
         system = scaled.bordered(point, only_parameter)
-        step = system.solve(np.append(-scaled.relative_residuals(point[None])[0], 0.0))
+        step = system.solve(np.append(-relative_residuals(scaled, point[None])[0], 0.0))
         length = float(np.linalg.norm(step))
         if not length < np.inf:
             return start

@@ -15,7 +15,7 @@ from bifurc.branch import Branch
 from bifurc.decisions import is_without_equation, may_be_scaled_down
 from bifurc.numerics.null_spaces import decompose
 from bifurc.numerics.singular_values import factors_of, singular_values
-from bifurc.problem import Problem
+from bifurc.problem import Problem, hessian_at, relative_jacobians, relative_residuals
 
 ROUNDING = 1e-15  # of F, over the magnitude, where F is evaluated with care
 # Step, over the scale, after which F differs by its slope and rounding, and how far from
@@ -61,7 +61,7 @@ def known_to(
 
 def _rounding_of_weakest(problem: Problem, points: np.ndarray) -> np.ndarray:
     """The rounding (k,) of the weakest regular equation at points (k, n)."""
-    left, _, _ = factors_of(problem.relative_jacobians(points))
+    left, _, _ = factors_of(relative_jacobians(problem, points))
     weakest = left[:, :, problem.n - 2]
     parts = np.einsum("pkm,km->pk", _rounding(problem, points), weakest)
     # beyond the rim of where F is defined there is none to measure
@@ -113,13 +113,13 @@ def _rounding(problem: Problem, points: np.ndarray) -> np.ndarray:
     """
     rng = np.random.default_rng(0)
     shape = (PROBES, *points.shape)
-    places = (points + BESIDE * problem.scale * rng.normal(size=shape)).reshape(
+    places = (points + BESIDE * problem.domain.scale * rng.normal(size=shape)).reshape(
         -1, problem.n
     )
-    steps = PROBE * problem.scale * rng.normal(size=places.shape)
-    change = problem.relative_residuals(places + steps)
-    change -= problem.relative_residuals(places)
-    slopes = problem.relative_jacobians(places)
+    steps = PROBE * problem.domain.scale * rng.normal(size=places.shape)
+    change = relative_residuals(problem, places + steps)
+    change -= relative_residuals(problem, places)
+    slopes = relative_jacobians(problem, places)
     rounding: np.ndarray = change - np.einsum("kmn,kn->km", slopes, steps)
     return rounding.reshape(PROBES, len(points), -1)
 
@@ -144,7 +144,7 @@ def distance_to_singular(
     sigma = float(decomposition.sigma[0, weakest])
     left = decomposition.left[0, :, weakest:]
     right = decomposition.right[0, weakest:]
-    hessian = problem.hessian(point) / problem.magnitude
+    hessian = hessian_at(problem, point) / problem.magnitude
     reduced = np.einsum("mw,mij,ai,bj->wab", left, hessian, right, right)
-    rate = float(np.linalg.norm(reduced)) * problem.scale
+    rate = float(np.linalg.norm(reduced)) * problem.domain.scale
     return sigma / (rate + TINY)

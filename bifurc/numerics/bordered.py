@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bifurc import _core
-from bifurc.problem import Problem, Solver
+from bifurc.problem import Problem, Solver, jacobian_at
 
 if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
@@ -84,10 +84,12 @@ class Bordered:
 def bordered_at(problem: Problem, point: np.ndarray, tangent: np.ndarray) -> Bordered:
     """Solutions of systems with F' of a problem at ``point`` (n,), over the magnitude,
     and the row ``tangent`` (n,) under it."""
-    solver = problem.bordered_solver(point, tangent)
-    if solver is not None:
-        return Bordered(problem.equation_count, solver)
-    return Bordered.factored(problem.jacobian(point) / problem.magnitude, tangent)
+    shortcuts = problem.shortcuts
+    if shortcuts.bordered_solver is not None:
+        solver = shortcuts.bordered_solver(point, tangent)
+        if solver is not None:
+            return Bordered(shortcuts.m, solver)
+    return Bordered.factored(jacobian_at(problem, point) / problem.magnitude, tangent)
 
 
 def _solver(

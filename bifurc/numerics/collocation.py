@@ -25,10 +25,14 @@ from bifurc.problem import (
     March,
     MarchSettings,
     MarchStatus,
+    NodeCorrector,
     Piece,
     Problem,
+    relative_gaps,
+    relative_residuals,
 )
 
+AT_ONCE = 14  # pieces in one march
 PREDICT_FROM = 10  # nodes through which the next one is predicted
 LOOSE = 30  # times the tolerance: the residual that a piece may have between its nodes
 TAIL = 4.0  # times the distance to which points are known: last coefficients
@@ -43,10 +47,24 @@ NEWTON_STEPS = 8  # from a share of the arclength to the parameter
 
 
 @dataclass(frozen=True)
+class PieceRules:
+    """How pieces are made and judged: by the order ``norm`` of the norm of vectors; by a
+    ``corrector`` of all points at the nodes of a piece in one call, or one by one; and
+    whether a piece ``is_allowed``."""
+
+    norm: float = np.inf
+    corrector: NodeCorrector | None = None
+    is_allowed: Callable[[Piece], bool] = lambda piece: True
+
+
+PLAIN_RULES = PieceRules()
+
+
+@dataclass(frozen=True)
 class _Aim:
     """Where a piece begins, (n,), the unit vector along which it lies, (n,), how good
-    it has to be, to which distance, over the scale, its points are known, and the
-    ``misclosure`` of the curve itself."""
+    it has to be, to which distance, over the scale, its points are known, the
+    ``misclosure`` of the curve itself, and the ``rules`` for it."""
 
     start: np.ndarray
     heading: np.ndarray
@@ -54,6 +72,7 @@ class _Aim:
     tolerance: float
     known_to: float
     misclosure: float = 0.0
+    rules: PieceRules = PLAIN_RULES
 
 
 @dataclass(frozen=True)
@@ -79,10 +98,11 @@ def march_by_collocation(
     start: np.ndarray,
     tangent: np.ndarray,
     settings: MarchSettings,
-    is_allowed: Callable[[Piece], bool] | None = None,
+    rules: PieceRules = PLAIN_RULES,
 ) -> March:
     """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,), up to the first
-    that is not allowed."""
+    that is not allowed by the ``rules``; no more than `AT_ONCE`, as they do not end where
+    the curve does."""
     order, tolerance = settings.order, settings.tolerance
     corrected = correct_across(problem, start, tangent, tolerance)
     closing = 100 * tolerance + settings.closing
@@ -95,22 +115,23 @@ def march_by_collocation(
     # before a cusp a residual is left that is no misclosure
     may_miss = settings.closing > closing / 2
     misclosure = max(settings.misclosure, corrected.gap) if may_miss else 0.0
-    while len(pieces) < settings.count:
-        is_inside = problem.are_inside(point[None])[0]
+    count = min(settings.count, AT_ONCE)
+    while len(pieces) < count:
+        is_inside = problem.domain.are_inside(point[None])[0]
         covered = sum(piece.length for piece in pieces)
         if pieces and (not is_inside or covered > settings.length):
             break
         known_to = _known_to(problem, point, misclosure)
-        aim = _Aim(point, heading, order, tolerance, known_to, misclosure)
+        aim = _Aim(point, heading, order, tolerance, known_to, misclosure, rules)
         accepted = _next_piece(problem, aim, width, settings.shortest)
         if accepted is None or misclosure > closing:
             return March.of_pieces(MarchStatus.STALLED, pieces, order, problem.n)
-        if is_allowed is not None and not is_allowed(accepted.piece):
+        if not rules.is_allowed(accepted.piece):
             return March.of_pieces(MarchStatus.STALLED, pieces, order, problem.n)
         pieces.append(accepted.piece)
         point, heading = _end(accepted.piece)
         if may_miss:
-            misclosure = max(misclosure, float(problem.gaps(point[None])[0]))
+            misclosure = max(misclosure, float(relative_gaps(problem, point[None])[0]))
         width = min(accepted.next_width, 2 * settings.longest)
     return March.of_pieces(MarchStatus.RAN, pieces, order, problem.n)
 
@@ -172,9 +193,9 @@ def _attempt(problem: Problem, aim: _Aim, width: float) -> _Accepted | _Rejected
     if nodes is None:
         return _Rejected(FAILED)
     coefficients = basis.from_values @ nodes
-    tail = float(np.linalg.norm(coefficients[-2:], problem.piece_norm, axis=1).max())
+    tail = float(np.linalg.norm(coefficients[-2:], aim.rules.norm, axis=1).max())
     # below the distance to which points are known, coefficients are rounding
-    enough = max(aim.tolerance, TAIL * aim.known_to) * problem.scale
+    enough = max(aim.tolerance, TAIL * aim.known_to) * problem.domain.scale
     root = 1.0 / aim.order  # the tail goes with this power of the width, upside down
     if tail <= enough:
         powers, length = _by_arclength(coefficients)
@@ -193,7 +214,7 @@ def _known_to(problem: Problem, point: np.ndarray, misclosure: float) -> float:
     """The distance, over the scale, to which a point (n,) of a curve with a
     ``misclosure`` is known; 0 for a large problem, of which singular values are not
     taken."""
-    if problem.is_large:
+    if problem.domain.is_large:
         return 0.0
     by_rounding = float(known_to(problem, point[None])[0])
     return by_rounding * max(1.0, misclosure / ROUNDING)
@@ -205,7 +226,7 @@ def _residual_between_nodes(problem: Problem, piece: np.ndarray) -> float:
     order = len(piece) - 1
     angles = np.pi * (np.arange(order) + 0.5) / order
     points = points_on_piece(piece, np.cos(angles))
-    residuals = problem.relative_residuals(points)
+    residuals = relative_residuals(problem, points)
     sizes = np.linalg.norm(residuals, axis=1)
     return float(sizes.max())
 
@@ -223,13 +244,13 @@ def _points_at_nodes(
     # Nearer than rounding lets a point be known no correction leads. Where curves cross
     # the corrections are to go on: what is left of them is what the certificate sees.
     enough = aim.tolerance
-    if not problem.has_crossings:
+    if not problem.domain.has_crossings:
         enough = max(enough, SETTLED * aim.known_to)
     most = 100 * aim.tolerance + MISSED * aim.misclosure
-    if problem.node_corrector is not None:
-        step = last_step(enough, problem.scale)
+    if aim.rules.corrector is not None:
+        step = last_step(enough, problem.domain.scale)
         nodes = CurveNodes(start, heading, offsets, basis.all_predictors, step, most)
-        return problem.node_corrector(nodes)
+        return aim.rules.corrector(nodes)
     points = np.empty((len(offsets), len(start)))
     points[0] = start
     factored: Bordered | None = bordered_at(problem, start, heading)

@@ -10,7 +10,14 @@ import numpy as np
 
 from bifurc.limits import is_time_over
 from bifurc.numerics.bordered import Bordered, bordered_at, bordered_matrix
-from bifurc.problem import Problem, SphereProjection
+from bifurc.problem import (
+    Problem,
+    SphereProjection,
+    jacobian_at,
+    relative_gaps,
+    relative_jacobians,
+    relative_residuals,
+)
 
 ACROSS_STEPS = 30  # of one point onto a curve
 NORMAL_STEPS = 10  # of points onto a surface
@@ -66,7 +73,7 @@ def correct_across(
     residual, by the bend of the other equations, before the next one lowers it: that is
     let pass once.
     """
-    enough = last_step(tolerance, problem.scale)
+    enough = last_step(tolerance, problem.domain.scale)
     best = _Iterate(point, np.empty(0), np.inf)
     gap_before = math.inf
     is_fresh = False
@@ -117,19 +124,19 @@ def correct_normal(
     damping = DAMPING * np.eye(problem.n)
     unsettled = np.arange(len(points))
     for _ in range(NORMAL_STEPS):
-        residuals = problem.relative_residuals(points[unsettled])[:, :, None]
-        jacobians = problem.relative_jacobians(points[unsettled])
+        residuals = relative_residuals(problem, points[unsettled])[:, :, None]
+        jacobians = relative_jacobians(problem, points[unsettled])
         transposed = np.swapaxes(jacobians, 1, 2)
         with np.errstate(over="ignore", invalid="ignore"):  # such points stay
             matrices = transposed @ jacobians + border[unsettled] + damping
             right = (transposed @ residuals)[:, :, 0]
         steps = -_solutions(matrices, right)
-        points[unsettled] += limited(steps, 0.5 * problem.scale)
+        points[unsettled] += limited(steps, 0.5 * problem.domain.scale)
         lengths = np.linalg.norm(steps, axis=1)
-        unsettled = unsettled[lengths >= 1e-9 * problem.scale]
+        unsettled = unsettled[lengths >= 1e-9 * problem.domain.scale]
         if not len(unsettled):
             break
-    return points, problem.gaps(points)
+    return points, relative_gaps(problem, points)
 
 
 def _solutions(matrices: np.ndarray, right: np.ndarray) -> np.ndarray:
@@ -199,7 +206,7 @@ def _least_squares(problem: Problem, start: np.ndarray) -> _Iterate:
 def _damped_step(problem: Problem, at: _Iterate, weight: float) -> np.ndarray | None:
     """What to subtract (n,) from a point, with a ``weight`` on its length; None where
     F' is not finite there."""
-    jacobian = problem.jacobian(at.point)
+    jacobian = jacobian_at(problem, at.point)
     if isinstance(jacobian, np.ndarray):
         jacobian = jacobian / problem.magnitude
         if not np.all(np.isfinite(jacobian)):
@@ -246,8 +253,8 @@ def _newton_on_sphere(
     length = np.inf
     for _ in range(SPHERE_STEPS):
         offset = (point - center) / radius
-        jacobian = problem.relative_jacobians(point[None])[0]
-        residual = problem.relative_residuals(point[None])[0]
+        jacobian = relative_jacobians(problem, point[None])[0]
+        residual = relative_residuals(problem, point[None])[0]
         matrix = bordered_matrix(jacobian, offset)
         if not (np.isfinite(matrix).all() and np.isfinite(residual).all()):
             break
@@ -257,6 +264,6 @@ def _newton_on_sphere(
         length = float(np.linalg.norm(step))
         share = min(1.0, radius / (3.0 * length + 1e-300))
         point = point + step * share
-        if length < 1e-14 * problem.scale:
+        if length < 1e-14 * problem.domain.scale:
             break
     return point, length

@@ -14,7 +14,7 @@ from bifurc._core import null_vector as null_vector_of
 from bifurc.decisions import is_null
 from bifurc.numerics.bordered import bordered_at
 from bifurc.numerics.singular_values import factors_of
-from bifurc.problem import Problem
+from bifurc.problem import Problem, jacobian_at, relative_jacobians, relative_residuals
 
 # stands in a denominator where a singular value is zero: the square of what comes out
 # is still a double
@@ -36,9 +36,9 @@ def null_vector(
     else with a fixed direction. Where the null space is larger, that is projected on it.
     A large problem is bordered instead of decomposed.
     """
-    if problem.is_large:
+    if problem.domain.is_large:
         return _null_vector_by_borders(problem, point, along)
-    jacobian = problem.jacobian(point)
+    jacobian = jacobian_at(problem, point)
     if not isinstance(jacobian, np.ndarray):
         return _null_vector_by_borders(problem, point, along)
     near = np.empty(0) if along is None else along
@@ -61,7 +61,7 @@ def _null_vector_by_borders(
 def null_spaces(problem: Problem, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Singular values (k, n) of F' at points (k, n), padded with zeros, and right
     singular vectors (k, n, n), one a row."""
-    _, sigma, right = factors_of(problem.relative_jacobians(points))
+    _, sigma, right = factors_of(relative_jacobians(problem, points))
     return _padded(sigma, problem.n), right
 
 
@@ -156,6 +156,6 @@ def newton_in_rank(
 
 def decompose(problem: Problem, points: np.ndarray) -> Decomposition:
     """F and the singular value decomposition of F' at points (k, n)."""
-    residuals = problem.relative_residuals(points)
-    left, sigma, right = factors_of(problem.relative_jacobians(points))
+    residuals = relative_residuals(problem, points)
+    left, sigma, right = factors_of(relative_jacobians(problem, points))
     return Decomposition(residuals, left, sigma, right)

@@ -29,7 +29,7 @@ def order_branches(problem: Problem, branches: Sequence[Branch]) -> np.ndarray:
     """
     if len(branches) < 2:
         return np.arange(len(branches))
-    features = [_branch_features(branch, problem.scale) for branch in branches]
+    features = [_branch_features(branch, problem.domain.scale) for branch in branches]
     return order_rows(-np.array(features), is_tied.threshold)
 
 
@@ -43,7 +43,9 @@ def order_surfaces(problem: Problem, surfaces: Sequence[Surface]) -> np.ndarray:
     """
     if len(surfaces) < 2:
         return np.arange(len(surfaces))
-    features = [_surface_features(surface, problem.scale) for surface in surfaces]
+    features = [
+        _surface_features(surface, problem.domain.scale) for surface in surfaces
+    ]
     return order_rows(np.array(features), OF_CHARTS)
 
 

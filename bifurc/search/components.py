@@ -54,7 +54,7 @@ class SingularCurve(NamedTuple):
             return False
         places, are_solved = RankDeflated(problem, self.rank).next_to(point.u[None])
         distance, _ = self.branch.nearest(places)
-        return bool(are_solved[0] and is_same_point(distance[0], problem.scale))
+        return bool(are_solved[0] and is_same_point(distance[0], problem.domain.scale))
 
 
 def singular_curve_through(
@@ -62,7 +62,7 @@ def singular_curve_through(
 ) -> SingularCurve | None:
     """The curve of singular points of one rank on which a singular point lies; None
     where it lies on none that is regular and can be followed to its end."""
-    if problem.is_large or deadline.passed:
+    if problem.domain.is_large or deadline.passed:
         return None
     deflated = RankDeflated(problem, point.rank)
     places, are_solved = deflated.next_to(point.u[None])
@@ -273,7 +273,7 @@ def components_of_seeds(
         numbers = doubtful[(local.dimension == dimension) & is_regular]
         if len(numbers):
             components.seeds[int(dimension)] = numbers.tolist()
-    if 2 not in components.seeds and not problem.is_large:
+    if 2 not in components.seeds and not problem.domain.is_large:
         deflated = RankDeflated(problem, problem.n - NULLITY)
         # about these fewer solutions may lie than fill the null space
         is_open = (local.nullity == NULLITY) & (local.dimension < NULLITY)
@@ -316,10 +316,12 @@ def _are_next_to_surfaces(
     rng = np.random.default_rng(0)
     for _ in range(PROBES):
         steps = rng.normal(size=points.shape)
-        steps *= PROBE * deflated.scale / np.linalg.norm(steps, axis=1)[:, None]
+        steps *= PROBE * deflated.domain.scale / np.linalg.norm(steps, axis=1)[:, None]
         ends, gaps = deflated.project(points + steps)
-        beside = np.linalg.norm(deflated.difference(ends, points), axis=1)
-        is_near = closes_to_rounding(gaps) & (beside < 2 * PROBE * deflated.scale)
+        beside = np.linalg.norm(deflated.domain.difference(ends, points), axis=1)
+        is_near = closes_to_rounding(gaps) & (
+            beside < 2 * PROBE * deflated.domain.scale
+        )
         waiting = np.flatnonzero(is_near & ~is_next)
         is_next[waiting] = _are_on_surfaces(deflated, ends[waiting], deadline)
     return is_next
@@ -346,14 +348,16 @@ def singular_points_of(
         if deadline.passed or len(points) >= MOST_POINTS:
             break
         looked_at += 1
-        reach = REACH * max(charts.radii[chart], SMALLEST_RADIUS * problem.scale)
+        reach = REACH * max(charts.radii[chart], SMALLEST_RADIUS * problem.domain.scale)
         point = locate_singular_point(problem, charts.centers[chart], NULLITY, reach)
         if point is None:
             continue
         is_blurred = point.error > BLURRED * reach
         is_on_curve = is_blurred or is_on_singular_curve(problem, point)
         if is_on_curve:
-            point = point._replace(error=min(point.error, ACROSS * problem.scale))
+            point = point._replace(
+                error=min(point.error, ACROSS * problem.domain.scale)
+            )
         is_one_more = is_on_curve and len(curve_charts) >= MOST_SAMPLES
         if is_one_more or _is_listed(problem, points, point):
             continue
@@ -381,8 +385,10 @@ def _is_listed(
     problem: Problem, points: list[LocatedPoint], point: LocatedPoint
 ) -> bool:
     """Whether a point is one of those in a list."""
-    unit = (APART * problem.scale + ERRORS * point.error) / is_same_point.threshold
-    gaps = [problem.difference(other.u, point.u) for other in points]
+    unit = (
+        APART * problem.domain.scale + ERRORS * point.error
+    ) / is_same_point.threshold
+    gaps = [problem.domain.difference(other.u, point.u) for other in points]
     return any(is_same_point(float(np.linalg.norm(gap)), unit) for gap in gaps)
 
 

@@ -69,8 +69,8 @@ def explore(
             "seed", repr(seed), f"a whole number from 0 to {LARGEST_SEED}"
         )
     if parameter is not None:
-        parameter_index(problem.names, parameter)
-    events_of({} if events is None else events, problem.names)
+        parameter_index(problem.domain.names, parameter)
+    events_of({} if events is None else events, problem.domain.names)
     request = _Request(settings, int(seed), seeds, progress)
     deadline = Deadline(settings.budget)
     with one_thread(problem.n), until(deadline):
@@ -126,7 +126,7 @@ def _explored_in_units(own: UnitProblem, request: _Request, began: float) -> Atl
 
 def _in_noise(problem: Problem, request: _Request) -> _Request:
     """The request with curves followed no closer than values of a problem are good."""
-    tolerance = min(PIECES_IN_NOISE * problem.noise_share, LOOSEST)
+    tolerance = min(PIECES_IN_NOISE * problem.accuracy.noise, LOOSEST)
     tracing = request.settings.tracing
     if tolerance <= tracing.tolerance:
         return request
@@ -150,8 +150,8 @@ def _explored(problem: Problem, request: _Request, began: float) -> Atlas:
         settings=request.settings,
         interrupted=interrupted,
         out_of_time=search.run.is_over and not interrupted,
-        derivatives=problem.derivatives,
-        equations=problem.equations,
+        derivatives=problem.accuracy.derivatives,
+        equations=problem.accuracy.equations,
         seconds=time.perf_counter() - began,
     )
     return assemble_atlas(problem, search.findings, provenance, search.run.deadline)

@@ -22,7 +22,7 @@ from bifurc.decisions import (
 )
 from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem
+from bifurc.problem import Problem, relative_gaps
 from bifurc.search.components import Components
 from bifurc.search.seed_book import Fate, SeedBook, SeedFate, reach_of_places
 from bifurc.seeds import Audit
@@ -208,8 +208,8 @@ class Findings:
         for number in doubtful:
             branch = self.traced[number].branch
             points = branch(branch.length * PLACES)
-            gaps = self.problem.gaps(points)
-            points = points[is_same_point(gaps, self.problem.scale)]
+            gaps = relative_gaps(self.problem, points)
+            points = points[is_same_point(gaps, self.problem.domain.scale)]
             if self._are_on(others, points):
                 self.forget_branch(number)
 
@@ -230,7 +230,7 @@ class Findings:
         """That of a seed on the first branch through a point (n,), as far as that is
         known, or at less than ``within`` scales from it."""
         known_to = float(reach_of_places(self.problem, point[None])[0])
-        reach = max(known_to, within * self.problem.scale)
+        reach = max(known_to, within * self.problem.domain.scale)
         for number, traced in self.traced.items():
             distance, _ = traced.branch.nearest(point, within=reach)
             unit = reach / may_be_known.threshold
@@ -361,7 +361,7 @@ class Findings:
         """The first known singular point at less than ``within`` scales from ``u``
         (n,)."""
         for number, distance in self._distances_to_points(u).items():
-            if distance < within * self.problem.scale:
+            if distance < within * self.problem.domain.scale:
                 return PointSighting(self.points[number], number, is_new=False)
         return None
 
@@ -374,7 +374,7 @@ class Findings:
         for number, distance in self._distances_to_points(u).items():
             point = self.points[number]
             within = 2 * max(error, point.error)
-            unit = self.problem.scale + within / decision.threshold
+            unit = self.problem.domain.scale + within / decision.threshold
             if decision(distance, unit):
                 return PointSighting(point, number, is_new=False)
         return None
@@ -392,12 +392,12 @@ class Findings:
         if not self.points:
             return {}
         places = np.array([point.u for point in self.points.values()])
-        gaps = self.problem.difference(places, u)
+        gaps = self.problem.domain.difference(places, u)
         distances = np.linalg.norm(gaps, axis=1).tolist()
         return dict(zip(self.points, distances, strict=True))
 
     def _distance(self, one: np.ndarray, other: np.ndarray) -> float:
-        return float(np.linalg.norm(self.problem.difference(one, other)))
+        return float(np.linalg.norm(self.problem.domain.difference(one, other)))
 
     # --- assemblies -------------------------------------------------------------------
 
@@ -410,7 +410,7 @@ class Findings:
         One that is weak has another beside it, as near as it is weak. All that rounding
         may have ``hidden`` on a stretch, as far from its middle, count as one.
         """
-        unit = self.problem.scale
+        unit = self.problem.domain.scale
         if is_weakly_isolated(stiffness):
             unit *= SHARPER
         for number, known in self.rigid.items():
@@ -439,7 +439,7 @@ class Findings:
             return True
         if self.branch_through(u, from_branch) is not None:
             return True
-        reach = within * self.problem.scale
+        reach = within * self.problem.domain.scale
         return any(self._distance(one.place, u) < reach for one in self.rigid.values())
 
 

@@ -13,7 +13,12 @@ from bifurc.decisions import closes_to_rounding, is_same_point, nearly_closes
 from bifurc.limits import Deadline
 from bifurc.numerics.corrector import limited
 from bifurc.numerics.singular_values import factors_of, singular_values
-from bifurc.problem import Problem
+from bifurc.problem import (
+    Problem,
+    relative_gaps,
+    relative_jacobians,
+    relative_residuals,
+)
 from bifurc.search.branches.canonical_course import canonical_course
 from bifurc.search.findings import Run
 from bifurc.search.seed_book import SeedFate
@@ -40,7 +45,9 @@ def closure_gap(
     residuals = seeds.gaps
     if len(seeds.missed):
         lowest = valley_points(problem, seeds.missed, deadline)
-        residuals = np.maximum(problem.gaps(lowest), seeds.gaps[: len(lowest)])
+        residuals = np.maximum(
+            relative_gaps(problem, lowest), seeds.gaps[: len(lowest)]
+        )
     everywhere = np.concatenate([residuals, gaps])
     return float(np.median(everywhere)) if len(everywhere) else 0.0
 
@@ -60,9 +67,11 @@ def valley_points(
     for begin in range(0, len(points), at_once):
         part = points[begin : begin + at_once]
         for _ in range(STEPS):
-            if problem.is_large and deadline.passed:
+            if problem.domain.is_large and deadline.passed:
                 break
-            part = part - limited(_steps_across(problem, part), LONGEST * problem.scale)
+            part = part - limited(
+                _steps_across(problem, part), LONGEST * problem.domain.scale
+            )
         lowest.append(part)
         if deadline.passed:
             break
@@ -72,8 +81,8 @@ def valley_points(
 def _steps_across(problem: Problem, points: np.ndarray) -> np.ndarray:
     """Gauss-Newton steps (k, n) of rank n - 1, to be subtracted."""
     across = problem.n - 1
-    residuals = problem.relative_residuals(points)
-    jacobians = problem.relative_jacobians(points)
+    residuals = relative_residuals(problem, points)
+    jacobians = relative_jacobians(problem, points)
     left, sigma, right = factors_of(jacobians, full_matrices=False)
     is_steep = sigma > FLAT * sigma[:, :1]
     is_steep[:, across:] = False
@@ -156,9 +165,9 @@ class NearMotionSearch:
             self.through(first)
             found = len(findings.near_motions) + len(findings.short_stretches)
             fruitless = fruitless + 1 if found == known else 0
-            offsets = self.problem.difference(waiting, first)
+            offsets = self.problem.domain.difference(waiting, first)
             apart = np.linalg.norm(offsets, axis=1)
-            waiting = waiting[~is_same_point(apart, self.problem.scale)]
+            waiting = waiting[~is_same_point(apart, self.problem.domain.scale)]
             waiting = self._not_on_known(waiting)
             self.run.interrupt.check()
 
@@ -175,6 +184,6 @@ class NearMotionSearch:
         """Points (k, n) within the bounds in the valleys below points (j, n), where the
         system is nearly solved, below as many as there is time for."""
         lowest = valley_points(self.problem, points, self.run.deadline)
-        is_near = nearly_closes(self.problem.gaps(lowest))
-        near: np.ndarray = lowest[is_near & self.problem.are_inside(lowest)]
+        is_near = nearly_closes(relative_gaps(self.problem, lowest))
+        near: np.ndarray = lowest[is_near & self.problem.domain.are_inside(lowest)]
         return near

@@ -13,6 +13,7 @@ from bifurc.decisions import (
     is_precise_enough,
 )
 from bifurc.numerics.singular_values import singular_values
+from bifurc.problem import relative_gaps, relative_jacobians
 from bifurc.search.findings import PointSighting, Run
 from bifurc.singular.classify import classify_from_nearby, classify_singular_point
 from bifurc.singular.locate import (
@@ -68,7 +69,7 @@ class PointSearch:
             if k > problem.n:
                 continue
             located = locate_singular_point(
-                problem, near, k, reach * problem.scale, misclosure
+                problem, near, k, reach * problem.domain.scale, misclosure
             )
             if located is None:
                 continue
@@ -90,7 +91,7 @@ class PointSearch:
         which rounding hides that F' is regular, if the exact equations have its germ:
         at a point of high order the iteration in doubles does not settle."""
         problem = self.problem
-        is_possible = problem.is_exact and 2 <= problem.n <= MOST_FOR_GERM
+        is_possible = problem.accuracy.is_exact and 2 <= problem.n <= MOST_FOR_GERM
         if not is_possible or self._germs_missed >= MOST_MISSED or self.run.is_over:
             return None
         values = singular_values(problem, near[None])[0]
@@ -99,14 +100,14 @@ class PointSearch:
         # mpmath takes longer to import than an ordinary search
         from bifurc.singular.germ import germ_at, placed_at
 
-        _, _, right = np.linalg.svd(problem.relative_jacobians(near[None])[0])
+        _, _, right = np.linalg.svd(relative_jacobians(problem, near[None])[0])
         null_space = right[problem.n - 2 :].T
-        place = LocatedPoint(near, null_space, reach * problem.scale)
+        place = LocatedPoint(near, null_space, reach * problem.domain.scale)
         germ = germ_at(problem, place)
         moved = np.inf
         if germ is not None:
-            moved = float(np.linalg.norm(problem.difference(germ.u, near)))
-        if germ is None or moved > reach * problem.scale:
+            moved = float(np.linalg.norm(problem.domain.difference(germ.u, near)))
+        if germ is None or moved > reach * problem.domain.scale:
             self._germs_missed += 1
             return None
         located = placed_at(LocatedPoint(near, null_space, moved), germ)
@@ -116,14 +117,14 @@ class PointSearch:
         """The isolated singular point at which two solutions next to
         ``point`` (n,) come together, as far as rounding tells; None where there is
         none."""
-        reach = SEED_REACH * self.problem.scale
+        reach = SEED_REACH * self.problem.domain.scale
         located = locate_singular_point(self.problem, point, 1, reach)
         if located is None:
             return None
-        gap = float(self.problem.gaps(located.u[None])[0])
+        gap = float(relative_gaps(self.problem, located.u[None])[0])
         if not closes_to_rounding(gap):
             return None  # beside two that rounding tells apart
-        if not is_double_assembly(located.error, self.problem.scale):
+        if not is_double_assembly(located.error, self.problem.domain.scale):
             return None  # more than two
         sighting = self._sight_exactly(located)
         if sighting is None or sighting.point.kind is not Kind.ISOLATED:
@@ -177,10 +178,12 @@ class PointSearch:
         """The known singular point that a located one is, or on whose branches it lies
         where doubles lose them."""
         known = self.findings.point_at(located.u, located.error)
-        if known is not None or is_precise_enough(located.error, self.problem.scale):
+        if known is not None or is_precise_enough(
+            located.error, self.problem.domain.scale
+        ):
             return known
         hidden = self.findings.point_hidden_at(located.u)
-        if hidden is None or not self.problem.is_exact or self.run.is_over:
+        if hidden is None or not self.problem.accuracy.is_exact or self.run.is_over:
             return hidden
         # more digits may show it to be none of those known
         exactly = self._settle(located, 0.0)
@@ -206,7 +209,7 @@ class PointSearch:
         for settled in self._settled:
             before = settled.located
             is_same_rank = before.null_space.shape == located.null_space.shape
-            apart = np.linalg.norm(self.problem.difference(before.u, located.u))
+            apart = np.linalg.norm(self.problem.domain.difference(before.u, located.u))
             if is_same_rank and apart < min(before.error, located.error):
                 return settled
         return None
@@ -217,12 +220,12 @@ class PointSearch:
         """The located point, in more digits where these tell more, None where they tell
         that there is none; and the germ of the curves there, where the exact equations
         give it."""
-        if not self.problem.is_exact:
+        if not self.problem.accuracy.is_exact:
             return located, None
         # mpmath takes longer to import than an ordinary search
         from bifurc.singular.precise_location import held_to_exact_equations
 
-        if is_precise_enough(located.error, self.problem.scale):
+        if is_precise_enough(located.error, self.problem.domain.scale):
             return held_to_exact_equations(self.problem, located, misclosure), None
         from bifurc.singular.germ import germ_at, placed_at
 

@@ -117,7 +117,7 @@ class Search:
         if seeds is None:
             rng = np.random.default_rng(self.random_seed)
             deadline = self.run.deadline
-            seeds = self.problem.seeds_until(rng, self.settings.starts, deadline)
+            seeds = self.problem.seeds(rng, self.settings.starts, deadline)
             if not self.run.is_over:
                 seeds = with_weak_solutions(self.problem, seeds)
         self._add_seeds(seeds)
@@ -223,12 +223,12 @@ class Search:
         """Look for singular points where starts end short of a solution, about nothing
         that is known: beside an isolated point of high order F is so flat that they do,
         and beside one in a narrow valley of |F| they come down too slowly."""
-        if not self.problem.is_exact or self.problem.n < 2:
+        if not self.problem.accuracy.is_exact or self.problem.n < 2:
             return
         seeds = self.findings.book.seeds
         order = np.argsort(seeds.gaps, kind="stable")
         ends, gaps = seeds.missed[order], seeds.gaps[order]
-        is_inside = self.problem.are_inside(ends)
+        is_inside = self.problem.domain.are_inside(ends)
         is_near = is_inside & is_on_the_way(gaps)
         looks = 0
         for k in np.flatnonzero(is_near):

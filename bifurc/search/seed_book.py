@@ -112,5 +112,5 @@ def reach_of_places(
     weak = np.flatnonzero(may_be_weak(values[:, max(problem.n - 2, 0)]))
     own = same_reach(problem, points[weak], values[weak])
     reach[weak] = np.maximum(reach[weak], own)
-    within: np.ndarray = reach * problem.scale
+    within: np.ndarray = reach * problem.domain.scale
     return within

@@ -58,7 +58,7 @@ class Seed:
 
     def may_be_shaky(self) -> bool:
         """Whether F' may have rank n - 3 all along a curve."""
-        return self.nullity == NULLITY_OF_SHAKY and not self.problem.is_large
+        return self.nullity == NULLITY_OF_SHAKY and not self.problem.domain.is_large
 
     def may_be_singular(self) -> bool:
         """Whether it may be a singular point: a singular value is small there, and not
@@ -80,7 +80,7 @@ class Seed:
         """How far, over the scale, it may lie from where it belongs: what its residual
         leaves open in the weakest direction, and no more where sheets lie near to each
         other."""
-        weakest = float(self.values[self.problem.n - 2]) * self.problem.scale
+        weakest = float(self.values[self.problem.n - 2]) * self.problem.domain.scale
         return min(BLURRED, is_start_solved.threshold / max(weakest, TINY))
 
 
@@ -200,7 +200,7 @@ class SeedJudge:
             if not np.any(shift):
                 break
             shifted = samples + shift
-            inmost = int(np.argmin(self.problem.excess(shifted)))
+            inmost = int(np.argmin(self.problem.domain.excess(shifted)))
             solutions, gaps = self.problem.project(shifted[[inmost]])
             if not is_start_solved(float(gaps[0])):
                 break

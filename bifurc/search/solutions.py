@@ -32,7 +32,7 @@ from bifurc.numerics.blur import ROUNDING
 from bifurc.numerics.corrector import limited
 from bifurc.numerics.null_spaces import decompose, null_spaces
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem
+from bifurc.problem import Problem, relative_gaps
 from bifurc.seeds import Seeds
 
 STEPS, FARTHEST = 4, 1e-2  # from a solution to its curve, and their length in scales
@@ -59,11 +59,11 @@ def sharpened(problem: Problem, points: np.ndarray, values: np.ndarray) -> Sharp
     if not len(weak):
         return Sharpened(sharp, weak)
     starts = sharp[weak]
-    longest = FARTHEST * problem.scale
+    longest = FARTHEST * problem.domain.scale
     ends = _after_newton_steps(problem, starts, STEPS, longest)
     is_near = np.linalg.norm(ends - starts, axis=1) < longest
-    enough = np.maximum(problem.gaps(starts), ROUNDING)
-    is_better = is_near & (problem.gaps(ends) <= enough)
+    enough = np.maximum(relative_gaps(problem, starts), ROUNDING)
+    is_better = is_near & (relative_gaps(problem, ends) <= enough)
     sharp[weak[is_better]] = ends[is_better]
     return Sharpened(sharp, weak[is_better])
 
@@ -78,10 +78,10 @@ def with_weak_solutions(problem: Problem, seeds: Seeds) -> Seeds:
     weak = near[_weak(problem, values)]
     if not len(weak):
         return seeds
-    longest = LONGEST * problem.scale
+    longest = LONGEST * problem.domain.scale
     points = _after_newton_steps(problem, seeds.missed[weak], LONG_STEPS, longest)
-    is_solved = is_start_solved(problem.gaps(points))
-    is_reached = is_solved & problem.are_inside(points)
+    is_solved = is_start_solved(relative_gaps(problem, points))
+    is_reached = is_solved & problem.domain.are_inside(points)
     reached = points[is_reached]
     is_left = np.ones(len(seeds.missed), dtype=bool)
     is_left[weak[is_reached]] = False
@@ -146,7 +146,7 @@ def polished(problem: Problem, start: np.ndarray) -> IsolatedSolution:
     if not (closes_to_rounding(gap) and is_weakly_isolated(stiffness)):
         return IsolatedSolution(best, stiffness, is_isolated, 0.0)
     stretch = _hidden_stretch(problem, best)
-    if is_known_assembly(stretch.half_length, problem.scale):
+    if is_known_assembly(stretch.half_length, problem.domain.scale):
         return IsolatedSolution(best, stiffness, is_isolated, stretch.half_length)
     return IsolatedSolution(stretch.middle, stiffness, is_isolated, stretch.half_length)
 
@@ -159,15 +159,15 @@ def _solved(problem: Problem, start: np.ndarray) -> tuple[np.ndarray, float]:
     equations, and is then corrected across that direction.
     """
     best = start
-    gap = float(problem.gaps(start[None])[0])
+    gap = float(relative_gaps(problem, start[None])[0])
     for _ in range(NEWTON_STEPS):
         point = best + decompose(problem, best[None]).newton_steps(problem.n, FLOOR)[0]
-        new_gap = float(problem.gaps(point[None])[0])
+        new_gap = float(relative_gaps(problem, point[None])[0])
         if not (new_gap < gap or closes_to_rounding(gap)):
             points, gaps = correct_to_valley(problem, point[None], CORRECTIONS)
             point, new_gap = points[0], float(gaps[0])
         distance = np.linalg.norm(point - start)
-        if not distance < NEARBY * problem.scale or not new_gap < gap:
+        if not distance < NEARBY * problem.domain.scale or not new_gap < gap:
             break
         best, gap = point, new_gap
     return best, gap
@@ -185,7 +185,7 @@ def _hidden_stretch(problem: Problem, solution: np.ndarray) -> _Stretch:
     rounding."""
     _, right = null_spaces(problem, solution[None])
     weakest = right[0, -1]
-    distances = DISTANCES * problem.scale
+    distances = DISTANCES * problem.domain.scale
     reaches = []
     for sense in (1.0, -1.0):
         ahead = solution + sense * distances[:, None] * weakest

@@ -26,7 +26,7 @@ from bifurc.curves.monitor import dead_points
 from bifurc.decisions import closes_to_rounding, is_same_point
 from bifurc.equations.tape import Operation
 from bifurc.function_problem import EquationProblem
-from bifurc.problem import Problem
+from bifurc.problem import Problem, relative_gaps
 from bifurc.search.answer.completeness import SearchClaim
 from bifurc.search.findings import TracedBranch
 from bifurc.seeds import Audit
@@ -97,7 +97,7 @@ def can_be_subdivided(problem: Problem) -> bool:
     and bounds on F."""
     if not 2 <= problem.n <= MOST_UNKNOWNS or not np.all(np.isfinite(_box(problem))):
         return False
-    if np.any(problem.has_assumed_bounds):
+    if np.any(problem.domain.has_assumed_bounds):
         return False
     tape = continuous_tape(problem)
     return tape is not None and tape.equations == problem.n - 1
@@ -127,10 +127,10 @@ def subdivide(
 
 def _box(problem: Problem) -> np.ndarray:
     """The bounds (n, 2); of a circle one period, and a little more."""
-    periods = problem.periods
+    periods = problem.domain.periods
     turn = np.column_stack([-WIDER * periods, (1.0 + WIDER) * periods])
-    is_circle = np.isfinite(periods) & np.isinf(problem.bounds[:, 0])
-    box: np.ndarray = np.where(is_circle[:, None], turn, problem.bounds)
+    is_circle = np.isfinite(periods) & np.isinf(problem.domain.bounds[:, 0])
+    box: np.ndarray = np.where(is_circle[:, None], turn, problem.domain.bounds)
     return box
 
 
@@ -204,8 +204,8 @@ class _Division:
             BESIDE_CROSSING if p.invariants in ordinary else BESIDE_OTHER
             for p in points
         ]
-        self.reaches = problem.scale * np.array(reaches)
-        self.within = is_same_point.threshold * problem.scale
+        self.reaches = problem.domain.scale * np.array(reaches)
+        self.within = is_same_point.threshold * problem.domain.scale
         self.count = 0
         self.found: list[np.ndarray] = []
         self.seeds = np.empty((0, problem.n))
@@ -230,9 +230,9 @@ class _Division:
                 branch.compiled,
                 self.centers,
                 self.reaches,
-                self.problem.periods,
+                self.problem.domain.periods,
                 residual=self.within * self.problem.magnitude,
-                shortest=SMALLEST * self.problem.scale,
+                shortest=SMALLEST * self.problem.domain.scale,
                 most=MOST_STRETCHES,
             )
             if verdict == _Verdict.MISSED:
@@ -241,7 +241,7 @@ class _Division:
                 self.left.append(branch(s)[None])
             else:
                 points = branch(np.concatenate(dead_points(branch)))
-                self.left.append(points[~self.problem.are_inside(points)][:1])
+                self.left.append(points[~self.problem.domain.are_inside(points)][:1])
 
     def _torn_at(self, branch: Branch) -> float | None:
         """The arclength at which a branch does not hand over from one piece to the next,
@@ -249,10 +249,10 @@ class _Division:
         beside singular points."""
         begins, ends = branch.ends_of_pieces()
         following = np.roll(begins, -1, axis=0)
-        gaps = np.linalg.norm(self.problem.difference(following, ends), axis=1)
+        gaps = np.linalg.norm(self.problem.domain.difference(following, ends), axis=1)
         if not branch.closed:
             gaps[-1] = 0.0
-        torn = np.flatnonzero(~is_same_point(gaps, self.problem.scale))
+        torn = np.flatnonzero(~is_same_point(gaps, self.problem.domain.scale))
         torn = torn[~self._are_beside_points(ends[torn], gaps[torn])]
         return float(branch.breaks[torn[0] + 1]) if len(torn) else None
 
@@ -261,7 +261,7 @@ class _Division:
     ) -> np.ndarray:
         """Which places (k, n), with ``gaps`` (k,) from there on, lie next to a singular
         point, where nothing is claimed."""
-        offsets = self.problem.difference(places[:, None], self.centers)
+        offsets = self.problem.domain.difference(places[:, None], self.centers)
         farthest = np.linalg.norm(offsets, axis=2) + np.reshape(gaps, (-1, 1))
         are_beside: np.ndarray = np.any(farthest < self.reaches, axis=1)
         return are_beside
@@ -274,7 +274,7 @@ class _Division:
             seeds=self.seeds,
             left=self._apart(np.concatenate([nowhere, *self.left[::-1]])),
             refuted=tuple(self.refuted.items()),
-            beside=float(self.reaches.max(initial=0.0)) / self.problem.scale,
+            beside=float(self.reaches.max(initial=0.0)) / self.problem.domain.scale,
         )
 
     def _apart(self, middles: np.ndarray) -> np.ndarray:
@@ -282,8 +282,8 @@ class _Division:
         kept: list[np.ndarray] = []
         while len(middles) and len(kept) < MOST_LEFT:
             kept.append(middles[0])
-            offsets = self.problem.difference(middles, middles[0])
-            reach = BESIDE_CROSSING * self.problem.scale
+            offsets = self.problem.domain.difference(middles, middles[0])
+            reach = BESIDE_CROSSING * self.problem.domain.scale
             middles = middles[np.linalg.norm(offsets, axis=1) > reach]
         return np.array(kept).reshape(-1, self.problem.n)
 
@@ -292,13 +292,13 @@ class _Division:
     def open_boxes(self, boxes: _Boxes, most: int) -> _Boxes:
         """What is not settled when ``most`` of the boxes and of their parts were looked
         at."""
-        smallest = SMALLEST * self.problem.scale
+        smallest = SMALLEST * self.problem.domain.scale
         count, waiting, small, with_arcs, rooms, points, is_steady = self.tape.divide(
             np.ascontiguousarray(boxes.low),
             np.ascontiguousarray(boxes.high),
             self.centers,
             self.reaches,
-            self.problem.periods,
+            self.problem.domain.periods,
             smallest,
             most,
         )
@@ -306,7 +306,7 @@ class _Division:
         self.left.append(_Boxes(*small).middles)
         boxes = _Boxes(*with_arcs)
         inner = _Boxes(*rooms)
-        low, high = self.problem.bounds.T
+        low, high = self.problem.domain.bounds.T
         is_within = (inner.low >= low) & (inner.high <= high)
         unknown = boxes.at(~self._are_known(_Arcs(points, is_steady, is_within)))
         widths = np.max(unknown.high - unknown.low, axis=1, initial=0.0)
@@ -320,7 +320,7 @@ class _Division:
         lie on no branch: boxes that stay open may hold curves smaller than they are."""
         points, gaps = self.problem.project(places)
         points = points[closes_to_rounding(gaps)]
-        points = points[self.problem.are_inside(points)]
+        points = points[self.problem.domain.are_inside(points)]
         points = points[~self._are_beside_points(points)]
         is_new = self._feet(points).branch < 0
         self.seeds = points[is_new][:ENOUGH]
@@ -336,7 +336,9 @@ class _Division:
         outside = np.any(sides != 0, axis=2)
         feet = self._feet(flat)
         numbers = feet.branch.reshape(outside.shape)
-        is_solved = self.problem.gaps(flat) < SOLVED * self.problem.scale
+        is_solved = (
+            relative_gaps(self.problem, flat) < SOLVED * self.problem.domain.scale
+        )
         is_solved = np.all(is_solved.reshape(outside.shape), axis=1)
         is_new = (numbers < 0) & ~outside & is_solved[:, None]
         new = np.any(is_new, axis=1)
@@ -371,8 +373,8 @@ class _Division:
 
     def _sides(self, points: np.ndarray) -> np.ndarray:
         """To which side (k, n) of the bounds points (k, n) lie outside, 0 inside."""
-        low, high = self.problem.bounds.T
-        slack = self.problem.slack
+        low, high = self.problem.domain.bounds.T
+        slack = self.problem.domain.slack
         is_above = (points > high + slack).astype(int)
         sides: np.ndarray = is_above - (points < low - slack)
         return sides
@@ -383,7 +385,7 @@ class _Division:
         for number, branch in enumerate(self.branches):
             rest = np.flatnonzero(feet.branch < 0)
             distances, arclengths = branch.nearest(points[rest], within=self.within)
-            is_on = is_same_point(distances, self.problem.scale)
+            is_on = is_same_point(distances, self.problem.domain.scale)
             feet.branch[rest[is_on]] = number
             feet.s[rest[is_on]] = arclengths[is_on]
         return feet

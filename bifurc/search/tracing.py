@@ -173,9 +173,9 @@ class Tracer:
         if not len(branch.pieces):
             return False
         if branch.closed:
-            blur = blur_along(self.problem, branch) * self.problem.scale
+            blur = blur_along(self.problem, branch) * self.problem.domain.scale
             return is_plainly_closed_curve(blur, branch.length)
-        unit = self.problem.scale
+        unit = self.problem.domain.scale
         if branch.outcome is Outcome.STALLED:
             return not is_stub(branch.length, unit)
         unit /= LEAVING_STUB
@@ -185,5 +185,5 @@ class Tracer:
         # unless it only touches them from outside
         if is_stub(branch.trusted_length, unit):
             return False
-        depths = -self.problem.excess(branch.sample(SAMPLES))
-        return float(depths.max()) > self.problem.slack
+        depths = -self.problem.domain.excess(branch.sample(SAMPLES))
+        return float(depths.max()) > self.problem.domain.slack

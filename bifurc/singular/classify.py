@@ -132,9 +132,9 @@ def _choose_sections(
     """The first sections, of radii up to ``within``, that agree and are clear; else the
     first that agree; else those of the first radius. Where the ``count`` of half-branches
     is known only those are clear that show it, and they are."""
-    farther = FARTHER_RADII if problem.is_exact else ()
+    farther = FARTHER_RADII if problem.accuracy.is_exact else ()
     radii = [FIRST_RADIUS, *OTHER_RADII, *farther]
-    largest = within / problem.scale
+    largest = within / problem.domain.scale
     radii = [radius for radius in radii if radius <= largest]
     if len(radii) < 2:
         radii = [largest, largest / 4]
@@ -142,7 +142,7 @@ def _choose_sections(
     for radius in radii[1:]:
         if best.agree and best.are_clear:
             break
-        if radius * problem.scale / 2 < located.error:
+        if radius * problem.domain.scale / 2 < located.error:
             continue  # the exact point may lie outside of the smaller sphere
         cut = _cut(problem, located, radius, count)
         if _is_better(cut, best):
@@ -171,7 +171,7 @@ def _cut(
 ) -> _Sections:
     """The sections at a ``radius`` over the problem's scale, and at half of it; the
     ``count`` of half-branches may be known."""
-    size = radius * problem.scale
+    size = radius * problem.domain.scale
     outer = section(problem, located.u, located.null_space, size)
     inner = section(problem, located.u, located.null_space, size / 2)
     same_dimension = outer.dimension == inner.dimension

@@ -29,7 +29,7 @@ from bifurc.limits import Deadline
 from bifurc.numerics.blur import rounding_unit
 from bifurc.numerics.corrector import correct_normal
 from bifurc.numerics.null_spaces import null_spaces
-from bifurc.problem import Problem
+from bifurc.problem import Problem, relative_gaps
 
 # Length of the probes, over the scale: at much less, degenerate singular points would
 # look like surfaces.
@@ -149,7 +149,7 @@ def misclosures_beside(
     for reach in REACHES:
         if not len(waiting):
             break
-        length = reach * problem.scale
+        length = reach * problem.domain.scale
         starts = points[waiting, None] + length * (directions @ basis[waiting])
         flat = starts.reshape(-1, n)
         bases = np.swapaxes(basis[waiting], 1, 2)
@@ -182,14 +182,14 @@ def _probe(
     spaces (b, k, n)."""
     count, k, n = basis.shape
     directions = _probe_directions(k)
-    length = radius * problem.scale
+    length = radius * problem.domain.scale
     starts = points[:, None] + length * (directions @ basis)
     flat_ends, flat_gaps = project_slowly(
         problem, starts.reshape(-1, n), is_solution_at_probe
     )
     ends = flat_ends.reshape(starts.shape)
     gaps = flat_gaps.reshape(count, len(directions))
-    offsets = problem.difference(ends, points[:, None])
+    offsets = problem.domain.difference(ends, points[:, None])
     coordinates = np.einsum("bpn,bkn->bpk", offsets, basis) / length
     loss = np.linalg.norm(coordinates - directions, axis=2)
     loss[~is_solution_at_probe(gaps)] = np.inf
@@ -239,7 +239,7 @@ def _dimension_from_ends(
         return 0, False
     ends, coordinates = ends[is_away], coordinates[is_away]
     sigma, right = null_spaces(problem, ends)
-    hidden = HIDDEN * np.sqrt(problem.gaps(ends))  # where F is a square
+    hidden = HIDDEN * np.sqrt(relative_gaps(problem, ends))  # where F is a square
     unit = np.maximum(1.0, hidden / is_null_at_probe.threshold)
     nullity = np.count_nonzero(is_null_at_probe(sigma, unit[:, None]), axis=1)
     of_higher_rank = np.flatnonzero(nullity < coordinates.shape[1])

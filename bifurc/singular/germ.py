@@ -18,7 +18,7 @@ import mpmath
 import numpy as np
 
 from bifurc.errors import NOT_DEFINED
-from bifurc.problem import PreciseResidual, Problem
+from bifurc.problem import PreciseResidual, Problem, relative_jacobians
 from bifurc.singular.confirm import Differences
 from bifurc.singular.local_branches import (
     LiftedEquation,
@@ -203,11 +203,11 @@ class _Reduction:
     ):
         self.null_space = located.null_space
         self.turn(ANGLE)
-        jacobian = problem.relative_jacobians(located.u[None])[0]
+        jacobian = relative_jacobians(problem, located.u[None])[0]
         left, _, right = np.linalg.svd(jacobian)
         rank = problem.n - 2
-        self._scale = mpmath.mpf(problem.scale)
-        self._magnitude = mpmath.mpf(problem.magnitude * problem.scale)
+        self._scale = mpmath.mpf(problem.domain.scale)
+        self._magnitude = mpmath.mpf(problem.magnitude * problem.domain.scale)
         self._residual = residual
         self._across = _matrix(right[:rank].T)  # (n, rank)
         self._solved = _matrix(left[:, :rank].T)  # (rank, m)
@@ -395,7 +395,7 @@ def _settled_terms(
 ) -> _Straightened | None:
     """The terms that do not vanish at the exact point, to which the ``reduction`` is
     moved; None where there is none."""
-    reach = max(FARTHEST * located.error, NEAREST * problem.scale)
+    reach = max(FARTHEST * located.error, NEAREST * problem.domain.scale)
     terms = reduction.taylor(ROUNDS[0])
     angle = _turn_off_tangents(terms)
     if angle:

@@ -11,7 +11,13 @@ import numpy as np
 from bifurc.decisions import is_located, is_simple, is_singular_point
 from bifurc.numerics.null_spaces import newton_in_rank
 from bifurc.numerics.singular_values import factors_of, values_of
-from bifurc.problem import Problem
+from bifurc.problem import (
+    Problem,
+    hessian_at,
+    relative_gaps,
+    relative_jacobians,
+    relative_residuals,
+)
 
 ITERATIONS = 60
 # Singular values of the augmented matrix, over its largest: what is smaller than the
@@ -73,18 +79,18 @@ def locate_singular_point(
     comes back.
     """
     run = _iterate(problem, start, nullity, reach)
-    if run is None or not is_located(run.moves[-1], problem.scale):
+    if run is None or not is_located(run.moves[-1], problem.domain.scale):
         return None
     u = newton_in_rank(problem, run.u[None], problem.n - nullity, SETTLING)[0]
-    gap = float(problem.gaps(u[None])[0])
+    gap = float(relative_gaps(problem, u[None])[0])
     missed = SHARP * gap / _unit(SHARP * misclosure)
     largest_null = float(_largest_null_values(problem, u[None], nullity)[0])
     located = None
     if missed < is_singular_point.threshold:  # or else it is none, wherever it lies
         located = _with_error(problem, run, u, reach)
-        if not np.isfinite(problem.gaps(located.u[None])[0]):
+        if not np.isfinite(relative_gaps(problem, located.u[None])[0]):
             return None
-        doubt = min(misclosure + located.error / problem.scale, MOST_DOUBT)
+        doubt = min(misclosure + located.error / problem.domain.scale, MOST_DOUBT)
         largest_null /= _unit(doubt)
     return located if is_singular_point(max(missed, largest_null)) else None
 
@@ -145,10 +151,10 @@ def _iterate(
         u = u + step.du
         basis = np.linalg.qr(basis + step.dv)[0]
         moves.append(float(np.linalg.norm(step.du)))
-        if np.linalg.norm(problem.difference(u, start)) > reach:
+        if np.linalg.norm(problem.domain.difference(u, start)) > reach:
             return None
-        is_rounding = moves[-1] < 1e-15 * min(condition, 1e6) * problem.scale
-        if is_rounding or _is_stagnant(moves, problem.scale):
+        is_rounding = moves[-1] < 1e-15 * min(condition, 1e6) * problem.domain.scale
+        if is_rounding or _is_stagnant(moves, problem.domain.scale):
             break
     return _Run(u, basis, moves, condition, weak)
 
@@ -184,10 +190,10 @@ def _augmented_system(
     problem: Problem, u: np.ndarray, basis: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Matrix and right-hand side of a step for the point and its null space."""
-    hessian = problem.hessian(u) / problem.magnitude
+    hessian = hessian_at(problem, u) / problem.magnitude
     return augmented_system(
-        problem.relative_residuals(u[None])[0],
-        problem.relative_jacobians(u[None])[0],
+        relative_residuals(problem, u[None])[0],
+        relative_jacobians(problem, u[None])[0],
         [hessian @ vector for vector in basis.T],
         basis,
     )
@@ -244,14 +250,14 @@ def _is_simple(problem: Problem, run: _Run, u: np.ndarray, reach: float) -> bool
     the null space: a simple point is one there, too, and known to rounding times the
     condition.
     """
-    away = ASIDE * min(reach, problem.scale)
+    away = ASIDE * min(reach, problem.domain.scale)
     k = run.basis.shape[1]
     aside = u + away * run.basis @ (np.ones(k) / np.sqrt(k))
     again = _iterate(problem, aside, k, 2 * reach)
     if again is None or len(again.moves) < 2:
         return False
-    apart = np.linalg.norm(problem.difference(again.u, u))
-    allowed = AT_ONCE * away + KNOWN_TO * run.condition * problem.scale
+    apart = np.linalg.norm(problem.domain.difference(again.u, u))
+    allowed = AT_ONCE * away + KNOWN_TO * run.condition * problem.domain.scale
     slowness = again.moves[1] / (AT_ONCE * max(again.moves[0], TINY))
     return is_simple(max(slowness, float(apart) / allowed))
 
@@ -262,9 +268,11 @@ def _with_error(
     """The point ``u`` (n,) of a run, or the middle of the stretch on which rounding
     hides it, with its error."""
     if len(run.weak) and _is_simple(problem, run, u, reach):
-        return LocatedPoint(u, run.basis, KNOWN_TO * run.condition * problem.scale)
+        return LocatedPoint(
+            u, run.basis, KNOWN_TO * run.condition * problem.domain.scale
+        )
     nullity = run.basis.shape[1]
-    error = _location_error(run.moves, run.condition) * problem.scale
+    error = _location_error(run.moves, run.condition) * problem.domain.scale
     for direction in run.weak:
         size = np.linalg.norm(direction)
         if size > MOVES_POINT:
@@ -282,7 +290,7 @@ def _largest_null_values(
 ) -> np.ndarray:
     """The largest (k,) of the ``nullity`` smallest singular values of F' at points
     (k, n), over the magnitude."""
-    jacobians = problem.relative_jacobians(points)
+    jacobians = relative_jacobians(problem, points)
     sigma = values_of(jacobians)
     rank = problem.n - nullity
     if sigma.shape[1] <= rank:
@@ -338,7 +346,7 @@ def _hidden_length(
     distances = reach * np.geomspace(1e-7, 1.0, 120)
     line = u + distances[:, None] * direction
     curve = newton_in_rank(problem, line, problem.n - nullity, SETTLING)
-    gaps = problem.gaps(curve)
+    gaps = relative_gaps(problem, curve)
     misfits = _largest_null_values(problem, curve, nullity) + gaps
     visible = np.flatnonzero(misfits > HIDDEN)
     if not len(visible):

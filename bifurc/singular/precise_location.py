@@ -8,6 +8,8 @@ rate the rest of the geometric series is taken at once.
 
 from __future__ import annotations
 
+import math
+
 import mpmath
 import numpy as np
 
@@ -46,17 +48,28 @@ def held_to_exact_equations(
     rank = problem.n - located.null_space.shape[1]
     left = misclosure_at(problem, located.u, rank)
     try:
-        rounding = problem.coefficient_rounding(located.u)
+        rounding = _coefficient_rounding(problem, located.u)
     except NOT_DEFINED:
         return located  # it is at a rim of where the function is defined
-    allowed = float(np.linalg.norm(rounding)) / problem.magnitude + misclosure
-    error = located.error / problem.scale
-    unit = allowed / problem.scale + error**2 + LEAST
-    if solves_exactly(left / problem.scale, unit):
+    allowed = rounding + misclosure
+    error = located.error / problem.domain.scale
+    unit = allowed / problem.domain.scale + error**2 + LEAST
+    if solves_exactly(left / problem.domain.scale, unit):
         return located
     if misses_by_rounding(left):
         return located._replace(is_confirmed=False)
     return None
+
+
+def _coefficient_rounding(problem: Problem, point: np.ndarray) -> float:
+    """How far off F is at a point (n,), over the magnitude, where the numbers in it are
+    rounded."""
+    accuracy = problem.accuracy
+    if accuracy.coefficient_rounding is not None:
+        rounding = accuracy.coefficient_rounding(point)
+        return float(np.linalg.norm(rounding)) / problem.magnitude
+    rows = len(problem.residuals(point[None])[0])
+    return math.sqrt(rows) * accuracy.data_rounding * problem.domain.scale
 
 
 def precisely_located(
@@ -72,7 +85,7 @@ def precisely_located(
     residual = problem.precise_residual()
     if residual is None:
         return located
-    reach = max(FARTHEST * located.error, NEAREST * problem.scale)
+    reach = max(FARTHEST * located.error, NEAREST * problem.domain.scale)
     with mpmath.workdps(3 * DIGITS + 10):
         derivatives = Differences(residual, mpmath.mpf(10) ** -DIGITS)
         try:
@@ -83,7 +96,7 @@ def precisely_located(
         return located._replace(is_confirmed=False)
     u, vectors = end
     null_space, _ = np.linalg.qr(vectors)
-    settled = LocatedPoint(u, null_space, SETTLED * problem.scale)
+    settled = LocatedPoint(u, null_space, SETTLED * problem.domain.scale)
     held = held_to_exact_equations(problem, settled, misclosure)
     if held is None:
         return None

@@ -13,7 +13,7 @@ import numpy as np
 from bifurc.decisions import has_no_form, is_zero_form
 from bifurc.numerics.directions import unit_vectors
 from bifurc.numerics.singular_values import factors_of
-from bifurc.problem import Problem
+from bifurc.problem import Problem, hessian_at, relative_jacobians
 
 # Singular value of the coefficients, over the largest, of a form that depends on
 # others.
@@ -72,10 +72,10 @@ def _reduced_forms(
 ) -> np.ndarray:
     """Coefficients (w, 3) of the quadratic forms W^T F''(V x, V x); not finite where
     F'' is not."""
-    jacobian = problem.relative_jacobians(point[None])[0]
+    jacobian = relative_jacobians(problem, point[None])[0]
     left = factors_of(jacobian).left
     left_null_space = left[:, problem.n - 2 :]
-    hessian = problem.hessian(point) / problem.magnitude
+    hessian = hessian_at(problem, point) / problem.magnitude
     forms = np.einsum(
         "mw,mij,ia,jb->wab", left_null_space, hessian, null_space, null_space
     )

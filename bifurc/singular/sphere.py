@@ -23,7 +23,7 @@ from bifurc.decisions import (
 )
 from bifurc.numerics.directions import unit_vectors
 from bifurc.numerics.singular_values import factors_of, singular_values
-from bifurc.problem import Problem
+from bifurc.problem import Problem, relative_jacobians, relative_residuals
 from bifurc.singular.dimension import local_dimensions
 
 UNSEEN = -1  # dimension of a section that could not be made
@@ -91,7 +91,7 @@ def is_on_surface(problem: Problem, point: np.ndarray) -> bool:
     jacobian = problem.jacobians(point[None])[0]
     _, _, right = factors_of(jacobian)
     null_space = right[problem.n - nullity :].T
-    cut = section(problem, point, null_space, SURFACE_RADIUS * problem.scale)
+    cut = section(problem, point, null_space, SURFACE_RADIUS * problem.domain.scale)
     return cut.dimension > 1
 
 
@@ -112,7 +112,7 @@ class _ReducedEquations:
     def __init__(
         self, problem: Problem, point: np.ndarray, null_space: np.ndarray, radius: float
     ):
-        jacobian = problem.relative_jacobians(point[None])[0]
+        jacobian = relative_jacobians(problem, point[None])[0]
         left, sigma, right = factors_of(jacobian)
         rank = problem.n - null_space.shape[1]
         self._problem = problem
@@ -130,11 +130,11 @@ class _ReducedEquations:
         """Points (k, n) that solve the independent equations above unit vectors x (k,
         nullity)."""
         base = self._point + self._radius * x @ self._null_space.T
-        smallest = LAST_STEP * self._problem.scale
+        smallest = LAST_STEP * self._problem.domain.scale
         w = np.zeros_like(base)
         with np.errstate(over="ignore", invalid="ignore"):  # where it diverges
             for _ in range(ROUNDS):
-                step = self._problem.relative_residuals(base + w) @ self._inverse.T
+                step = relative_residuals(self._problem, base + w) @ self._inverse.T
                 w -= step
                 if np.abs(step).max(initial=0.0) < smallest:
                     break
@@ -147,7 +147,7 @@ class _ReducedEquations:
 
     def reduced(self, points: np.ndarray) -> np.ndarray:
         """The reduced equations (k, codimension) at `points` (k, n)."""
-        residuals = self._problem.relative_residuals(points)
+        residuals = relative_residuals(self._problem, points)
         reduced: np.ndarray = residuals @ self._left_null_space / self._radius**2
         return reduced
 
@@ -303,7 +303,7 @@ def _sphere_section(
     ends, gaps, last_steps = problem.project_to_sphere(starts, point, radius)
     # next to the point F is of order radius^2 whatever the direction: the residual must
     # be far below that
-    limit = SOLVED * (radius / problem.scale) ** 2 + SOLVED_ROUNDING
+    limit = SOLVED * (radius / problem.domain.scale) ** 2 + SOLVED_ROUNDING
     missed = np.maximum(gaps / limit, last_steps / (SETTLED * radius))
     is_solution = is_on_sphere(missed)
     if not np.any(is_solution):

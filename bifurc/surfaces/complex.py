@@ -65,7 +65,7 @@ def assemble_charts(
         vertices=corners.points[first_corner],
         polygons=vertex[distinct],
         polygon_sizes=sizes,
-        periods=problem.periods,
+        periods=problem.domain.periods,
         outcome=outcome,
     )
 
@@ -131,12 +131,12 @@ def _merge_corners(
     if not len(points):
         return np.empty(0, dtype=int)
     tree = cKDTree(
-        torus.into_box(points, problem.periods),
-        boxsize=torus.tree_box(problem.periods),
+        torus.into_box(points, problem.domain.periods),
+        boxsize=torus.tree_box(problem.domain.periods),
     )
     reach = MERGED * radii.max()
     i, j = tree.query_pairs(reach, output_type="ndarray").T
-    gaps = problem.difference(points[i], points[j])
+    gaps = problem.domain.difference(points[i], points[j])
     distance = np.linalg.norm(gaps, axis=1)
     one, other = owner[i], owner[j]
     near = distance < MERGED * np.minimum(radii[one], radii[other])

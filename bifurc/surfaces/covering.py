@@ -88,7 +88,7 @@ def cover_surface(
         if not value > 0:
             raise ProblemError(name, value, "positive")
     deadline = Deadline(seconds)
-    cover = _Cover(problem, radius * problem.scale)
+    cover = _Cover(problem, radius * problem.domain.scale)
     if atlas is not None:
         cover.add_all(atlas)
     outcome = cover.grow(charts, deadline)
@@ -153,7 +153,7 @@ class _Cover:
 
     def covers(self, point: np.ndarray) -> bool:
         """Whether a solution (n,) lies in a chart."""
-        offset = self._problem.difference(point, self._centers)
+        offset = self._problem.domain.difference(point, self._centers)
         distance = np.linalg.norm(offset, axis=1)
         near = np.flatnonzero(distance < RIM * self._radii)
         bases = self._bases[near]
@@ -300,7 +300,7 @@ class _Cover:
         self, polygon: Polygon, center: np.ndarray, basis: np.ndarray
     ) -> Polygon:
         """The part of a polygon about ``center`` (n,) inside the bounds."""
-        low, high = self._problem.bounds.T
+        low, high = self._problem.domain.bounds.T
         for k in np.flatnonzero(np.isfinite(low)):
             room = max(center[k] - low[k], 0.0)
             polygon = polygon.clip(-basis[k], room, BORDER)
@@ -314,7 +314,7 @@ class _Cover:
     ) -> None:
         """Cut polygon i where its disk intersects the one about ``center`` (n,)."""
         basis = self._bases[i]
-        offset = self._problem.difference(center, self._centers[i])
+        offset = self._problem.domain.difference(center, self._centers[i])
         x = basis.T @ offset
         height = float(np.linalg.norm(offset - basis @ x))
         polygon = self._polygons[i]
@@ -325,7 +325,7 @@ class _Cover:
         self, center: np.ndarray, basis: np.ndarray, radius: float
     ) -> _Overlaps:
         """The charts on the same sheet that overlap a disk about ``center`` (n,)."""
-        offset = self._problem.difference(self._centers, center)
+        offset = self._problem.domain.difference(self._centers, center)
         distance = np.linalg.norm(offset, axis=1)
         near = np.flatnonzero(distance < radius + self._radii)
         x = offset[near] @ basis

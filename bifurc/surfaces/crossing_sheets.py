@@ -59,14 +59,14 @@ def is_on_singular_curve(problem: Problem, located: LocatedPoint) -> bool:
     They are looked for from starts to all sides in its null space.
     """
     u, null_space, error, _ = located
-    distance = NEXT * problem.scale + NEXT_TO_ERROR * error
+    distance = NEXT * problem.domain.scale + NEXT_TO_ERROR * error
     nullity = null_space.shape[1]
     for direction in np.concatenate([null_space.T, -null_space.T]):
         start = u + distance * direction
         other = locate_singular_point(problem, start, nullity, 2.0 * distance)
         if other is None:
             continue
-        gap = np.linalg.norm(problem.difference(other.u, u))
+        gap = np.linalg.norm(problem.domain.difference(other.u, u))
         if gap > OTHER * distance + OTHER_TO_ERROR * other.error:
             return True
     return False
@@ -105,7 +105,7 @@ def _sign_changes(problem: Problem, charts: ChartAtlas) -> list[_SignChange]:
         # where the singular value is zero, if it falls and rises in straight lines
         first, last = pair
         share = smallest[first] / (smallest[first] + smallest[last])
-        step = problem.difference(charts.centers[last], charts.centers[first])
+        step = problem.domain.difference(charts.centers[last], charts.centers[first])
         crossings.append(_SignChange(pair, charts.centers[first] + share * step))
     return crossings
 

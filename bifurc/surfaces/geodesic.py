@@ -295,7 +295,7 @@ class _PulledPath:
         feet, are_solutions = _correct(
             self._problem, self._charts, points, self._planes
         )
-        is_movable = are_solutions & self._problem.are_inside(feet)
+        is_movable = are_solutions & self._problem.domain.are_inside(feet)
         path = self.path.copy()
         path[1:-1][is_movable] = feet[is_movable]
         return path

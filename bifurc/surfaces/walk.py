@@ -116,7 +116,7 @@ class _Walk:
         new_planes = tangent_planes(self.problem, ends, planes)
         is_flat = cosines_between_planes(planes, new_planes)[:, -1] > SMOOTH
         is_near = _is_near(ends - at - step, step)
-        is_inside = self.problem.are_inside(ends)
+        is_inside = self.problem.domain.are_inside(ends)
         is_taken = (gaps < SOLVED) & is_inside & is_flat & is_near
         self.at[walkers[is_taken]] = ends[is_taken]
         self.planes[walkers[is_taken]] = new_planes[is_taken]

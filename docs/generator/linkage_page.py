@@ -7,8 +7,9 @@ from collections.abc import Iterable
 
 from docs.generator.linkage_record import ClosedFormText, LinkageRecord
 from docs.generator.markdown import bullets, plain, section, table
-from linkages.app.texts.numbers import in_degrees, link_name
+from linkages.app.texts.numbers import in_degrees
 from linkages.entry import Entry, Parameter, ParameterKind, RelationKind
+from linkages.geometry_table import link_name
 from linkages.relations import relations_of
 
 CONSTANTS = (

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
 from linkages.app.answer.verdict import judge
 from linkages.app.choice import choose_held, require_table
 from linkages.app.exit_codes import CommandError, ExitCode
-from linkages.app.options import HoldOptions, SearchOptions
+from linkages.app.options import AtlasOptions, SearchOptions
 from linkages.app.output import StatusLine
-from linkages.app.subject import as_subject, subject_at
 from linkages.labels import NoLinkageError
 from linkages.linkage import Linkage
 from linkages.mapping import map_linkage
+from linkages.subject import as_subject, subject_at
 
 if TYPE_CHECKING:
     from bifurc.routes.route import Route
@@ -58,7 +57,7 @@ def open_linkage_atlas(path: str) -> Atlas:
 
 
 ATLAS_FILE = ".nc"  # how the name of a saved atlas ends
-NOTHING_HELD = HoldOptions()
+AS_SAVED = AtlasOptions()
 
 
 def is_atlas_file(source: str) -> bool:
@@ -66,32 +65,28 @@ def is_atlas_file(source: str) -> bool:
     return source.endswith(ATLAS_FILE)
 
 
-def atlas_of(
-    source: str,
-    parameters: Sequence[str],
-    search: SearchOptions,
-    hold: HoldOptions = NOTHING_HELD,
-) -> Atlas:
+def atlas_of(source: str, options: AtlasOptions) -> Atlas:
     """The saved atlas, or that of the linkage, called ``source``, with joints held.
 
     Raises `CommandError` for parameters of a saved atlas, or options of its search, and
     where Ctrl-C ended the search.
     """
     if is_atlas_file(source):
-        if parameters:
+        if options.parameters:
             raise CommandError("--param: it has no effect on a saved atlas")
-        if hold != NOTHING_HELD:
+        if options.hold != AS_SAVED.hold:
             raise CommandError(
-                f"{hold.names}: it has no effect on a saved atlas; map the mechanism "
+                f"{options.hold.names}: it has no effect on a saved atlas; map the mechanism "
                 "with it"
             )
-        if search != SearchOptions():
+        if options.search != AS_SAVED.search:
             raise CommandError(
                 "--starts, --seed, --tolerance, --budget: they have no effect on a "
                 "saved atlas, which is not searched again"
             )
         return open_linkage_atlas(source)
-    return _explored(choose_held(source, parameters, hold), search)
+    linkage = choose_held(source, options.parameters, options.hold)
+    return _explored(linkage, options.search)
 
 
 def route_between(atlas: Atlas, start: str, goal: str) -> Route:
@@ -101,27 +96,22 @@ def route_between(atlas: Atlas, start: str, goal: str) -> Route:
     from bifurc.routes.route import find_route
 
     try:
-        return find_route(atlas, start, goal, problem=subject_at(atlas).equations())
+        return find_route(atlas, start, goal, problem=subject_at(atlas).closure)
     except RouteError as error:
         raise CommandError(str(error), ExitCode.NO_ROUTE) from None
 
 
-def loop_atlas_of(
-    source: str,
-    parameters: Sequence[str],
-    search: SearchOptions,
-    hold: HoldOptions = NOTHING_HELD,
-) -> Atlas:
+def loop_atlas_of(source: str, options: AtlasOptions) -> Atlas:
     """The saved atlas, or that of the linkage, called ``source``, where it is a single
     loop of revolute joints, in the joint angles of this loop; raises `CommandError` for
     a mechanism as well."""
     if is_atlas_file(source):
-        atlas = atlas_of(source, parameters, search, hold)
+        atlas = atlas_of(source, options)
         require_table(source, subject_at(atlas).table)
     else:
-        linkage = choose_held(source, parameters, hold)
+        linkage = choose_held(source, options.parameters, options.hold)
         require_table(source, as_subject(linkage).table)
-        atlas = _explored(linkage, search)
+        atlas = _explored(linkage, options.search)
     return subject_at(atlas).in_loop_angles(atlas)
 
 

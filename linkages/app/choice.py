@@ -63,18 +63,14 @@ def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage | Mecha
         )
     values = {}
     if parameters:
-        values = read_parameters(_family(text).parameters, parameters)
+        family: Entry | NetworkEntry = NETWORKS.get(text) or entry(text)
+        values = read_parameters(family.parameters, parameters)
     try:
         linkage = load(text, **values)
     except OverflowError:
         raise CommandError(f"{text}: it holds a number that is too large") from None
     _require_size(text, linkage)
     return linkage
-
-
-def _family(text: str) -> Entry | NetworkEntry:
-    """The entry or the network called ``text``; raises `UnknownLinkageError`."""
-    return NETWORKS[text] if text in NETWORKS else entry(text)
 
 
 def _require_size(text: str, linkage: Linkage | Mechanism) -> None:
@@ -197,7 +193,10 @@ def hold_joints(text: str, linkage: Linkage | Mechanism, hold: HoldOptions) -> I
         f"{hold.names}: it takes a mechanism with joints by name, and {text} is a "
         "single loop, a table or axes"
     )
-    locked = _with_locks(require_kind(linkage, Mechanism, refusal), hold.locks)
+    mechanism = require_kind(linkage, Mechanism, refusal)
+    values = _read_values(hold.locks, "--lock", mechanism.holds_angle)
+    check_limits(mechanism, values)
+    locked = mechanism.held(values)
     inputs = Inputs(locked) if hold.driver is None else _driven(locked, hold.driver)
     if not hold.is_without_centre:
         return inputs
@@ -218,16 +217,6 @@ def _driven(mechanism: Mechanism, driver: str) -> Inputs:
             f"reference configuration: {names}",
         )
     return Inputs(mechanism.with_locks(held), notes)
-
-
-def _with_locks(mechanism: Mechanism, texts: Sequence[str]) -> Mechanism:
-    """The mechanism with the locks: those of a network are D-H angles of its outer
-    joints."""
-    from linkages.networks.mechanism import NetworkMechanism
-
-    if isinstance(mechanism, NetworkMechanism):
-        return mechanism.with_kinks(read_kinks(texts))
-    return mechanism.with_locks(_read_locks(mechanism, texts))
 
 
 def read_kinks(texts: Sequence[str], option: str = "--lock") -> dict[str, float]:
@@ -255,14 +244,6 @@ def _without_centre(network: NetworkMechanism) -> Inputs:
         names = ", ".join(followers)
         notes += (f"--without-centre: replaced as well, for it does not move: {names}",)
     return Inputs(Linkage(loop), notes)
-
-
-def _read_locks(mechanism: Mechanism, texts: Sequence[str]) -> dict[str, float]:
-    """The values of "J=40", in rad where the variable is an angle."""
-    turns = {one.label for one in mechanism.variables if one.motion.is_turn}
-    values = _read_values(texts, "--lock", lambda label: label in turns)
-    check_limits(mechanism, values)
-    return values
 
 
 def check_limits(mechanism: Mechanism, values: Mapping[str, float]) -> None:

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 from bifurc.atlas import Atlas
 from bifurc.files.atomic import replace_files
 from linkages.app.exit_codes import CommandError
-from linkages.app.subject import as_subject
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -43,6 +42,8 @@ def figure_axes(
     twice."""
     if axes is None and against is None:
         return FigureAxes()
+    from linkages.subject import as_subject  # equations have no need of it
+
     names = as_subject(linkage).unknowns
     numbers = read_numbers("--against", against or (), names)
     return FigureAxes(

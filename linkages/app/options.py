@@ -295,6 +295,35 @@ verbose_option = click.option(
     callback=_say_more,
     help="Say more on standard error.",
 )
+
+
+@dataclass(frozen=True)
+class AtlasOptions:
+    """What atlas a command works on, besides its name: ``parameters`` of a linkage, how
+    joints are held, how it is searched."""
+
+    parameters: tuple[str, ...] = ()
+    search: SearchOptions = SearchOptions()
+    hold: HoldOptions = HoldOptions()
+
+
+def atlas_options(command: Command) -> Command:
+    """``command`` with the options of an atlas, which it takes as one `AtlasOptions`
+    called ``choice``, and with ``--verbose``."""
+
+    @wraps(command)
+    def taking_options(
+        parameters: tuple[str, ...],
+        search: SearchOptions,
+        hold: HoldOptions,
+        **values: object,
+    ) -> None:
+        command(choice=AtlasOptions(parameters, search, hold), **values)
+
+    searched = search_options(verbose_option(taking_options))
+    return hold_options(param_option(searched))
+
+
 no_certify_option = click.option(
     "--no-certify",
     is_flag=True,
@@ -320,11 +349,11 @@ UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}  # mm
 @dataclass(frozen=True)
 class PrintOptions:
     """How parts are printed: what stands on the command line, mm; None for what does
-    not stand there."""
+    not stand there and has no default."""
 
-    diameter: float | None = None
-    play: float | None = None
-    wall: float | None = None
+    diameter: float = 6.0
+    play: float = 0.3
+    wall: float = 1.2
     size: float | None = None
     unit: str | None = None
     offsets: str | None = None
@@ -335,20 +364,23 @@ class PrintOptions:
         return None if self.unit is None else UNITS[self.unit]
 
 
-def _size_option(flag: str, meaning: str) -> Option:
+def _size_option(flag: str, meaning: str, default: float | None = None) -> Option:
     """An option of printed parts for a length, mm."""
     text = f"For .stl and .step: {meaning}"
-    return click.option(flag, type=POSITIVE_LENGTH, metavar="MM", help=text)
+    return click.option(
+        flag, type=POSITIVE_LENGTH, default=default, metavar="MM", help=text
+    )
 
 
 PRINT_OPTIONS: dict[str, Option] = {
-    "diameter": _size_option("--diameter", "diameter of the rods.  [default: 6]"),
+    "diameter": _size_option("--diameter", "diameter of the rods.  [default: 6]", 6.0),
     "play": _size_option(
         "--play",
         "gap between surfaces that turn on each other, and the least one between parts "
         "on the way.  [default: 0.3]",
+        0.3,
     ),
-    "wall": _size_option("--wall", "least thickness of a wall.  [default: 1.2]"),
+    "wall": _size_option("--wall", "least thickness of a wall.  [default: 1.2]", 1.2),
     "size": _size_option(
         "--size", "the linkage's mean length of a link.  [default: 100]"
     ),

@@ -4,7 +4,7 @@ for proof.
 With t_i = tan(theta_i/2) = s_i/c_i the angle of every joint is a homogeneous pair
 (numerator, denominator) of polynomials in the pair (s_1, c_1) of the input joint and,
 on curves that are not rational, in the pair of a second joint that is tied to it by one
-quadratic relation. Pairs have no poles: angles are added by multiplying pairs.
+quadratic relation. Pairs have no poles.
 
 The expressions are sympy's. It is imported when the first symbol is made, so that the
 catalogue, which names the type, starts without it.
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     import sympy as sp
 
 Pair: TypeAlias = tuple[Number, Number]
-ZERO: Pair = (0, 1)
-HALF_TURN: Pair = (1, 0)
 ROUNDING = 1e-13  # a discriminant that is negative by less is zero
 
 
@@ -52,45 +50,28 @@ def constant(name: str) -> Number:
     return symbol
 
 
-def symbols(names: str) -> tuple[Number, ...]:
-    """Constants by their names, with spaces between."""
-    return tuple(constant(name) for name in names.split())
+@dataclass(frozen=True)
+class HalfTangent:
+    """The angle whose half has the tangent ``top`` over ``bottom``; angles are added by
+    multiplying pairs."""
 
+    top: Number
+    bottom: Number
 
-def plus(x: Pair, y: Pair) -> Pair:
-    """The pair of the sum of two angles."""
-    return x[0] * y[1] + x[1] * y[0], x[1] * y[1] - x[0] * y[0]
+    def __neg__(self) -> HalfTangent:
+        return HalfTangent(-self.top, self.bottom)
 
+    def __add__(self, other: HalfTangent) -> HalfTangent:
+        top = self.top * other.bottom + self.bottom * other.top
+        return HalfTangent(top, self.bottom * other.bottom - self.top * other.top)
 
-def negative(x: Pair) -> Pair:
-    """The pair of the opposite angle."""
-    return -x[0], x[1]
+    def __sub__(self, other: HalfTangent) -> HalfTangent:
+        return self + (-other)
 
-
-def signed(sign: int, x: Pair) -> Pair:
-    """The pair of the angle for ``sign`` +1, of the opposite angle for -1."""
-    return x if sign > 0 else negative(x)
-
-
-def minus(x: Pair, y: Pair) -> Pair:
-    """The pair of the difference of two angles."""
-    return plus(x, negative(y))
-
-
-def reciprocal(x: Pair, factor: Number = 1) -> Pair:
-    """The pair whose tangent is ``factor`` over that of ``x``."""
-    return factor * x[1], x[0]
-
-
-def only(*pairs: Pair) -> tuple[tuple[Pair, ...], ...]:
-    """The half tangents of joints that have one pair each."""
-    return tuple((pair,) for pair in pairs)
-
-
-def ratio(x: str, y: str) -> Number:
-    """sin((x + y)/2) / sin((x - y)/2) of two twists, by the tangents of their
-    halves."""
-    return (tangent(x) + tangent(y)) / (tangent(x) - tangent(y))
+    @property
+    def pair(self) -> Pair:
+        """Top and bottom."""
+        return self.top, self.bottom
 
 
 def cosine_of(u: Number) -> Number:

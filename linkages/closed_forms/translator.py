@@ -100,25 +100,25 @@ def slide(theta: np.ndarray, a: float = 1.0) -> np.ndarray:
     return np.asarray(2 * a / np.sqrt(3) * (1 - np.cos(theta / 2)))
 
 
+def _frames(theta: np.ndarray, phi: np.ndarray, alpha: float, a: float) -> np.ndarray:
+    """Frames (k, 6, 4, 4) of the joints O1 to O6 in the frame of the paper."""
+    frames = wohlhart_symmetric(a, alpha).frames(np.stack([theta, phi] * 3, axis=-1))
+    return np.asarray(frames[..., 1:, :, :])
+
+
 def joint_centres(
     theta: np.ndarray, phi: np.ndarray, alpha: float, a: float = 1.0
 ) -> np.ndarray:
     """Joint centres O1 to O6 (k, 6, 3) in the frame of the paper: O6 in the origin, O5
     at (-a, 0, 0)."""
-    angles = np.stack([theta, phi] * 3, axis=-1)
-    loop = wohlhart_symmetric(a, alpha)
-    frames: np.ndarray = loop.frames(angles)
-    return frames[..., 1:, :3, 3]
+    return _frames(theta, phi, alpha, a)[..., :3, 3]
 
 
 def joint_axes(
     theta: np.ndarray, phi: np.ndarray, alpha: float, a: float = 1.0
 ) -> np.ndarray:
     """Unit directions (k, 6, 3) of the axes through O1 to O6, in the same frame."""
-    angles = np.stack([theta, phi] * 3, axis=-1)
-    loop = wohlhart_symmetric(a, alpha)
-    frames: np.ndarray = loop.frames(angles)
-    return frames[..., 1:, :3, 2]
+    return _frames(theta, phi, alpha, a)[..., :3, 2]
 
 
 def meeting_points(

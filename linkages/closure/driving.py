@@ -78,7 +78,9 @@ def _next_to(problem: MechanismClosure, point: np.ndarray) -> np.ndarray:
     rng = np.random.default_rng(0)
     starts = point + NEARBY * rng.normal(size=(STARTS, problem.n))
     ends, gaps = problem.project(starts)
-    closed: np.ndarray = ends[is_start_solved(gaps) & (problem.excess(ends) <= 0.0)]
+    closed: np.ndarray = ends[
+        is_start_solved(gaps) & (problem.domain.excess(ends) <= 0.0)
+    ]
     return closed
 
 
@@ -89,7 +91,7 @@ def _moves(mechanism: Mechanism, held: dict[str, float], driver: str) -> bool:
     column = [unknown.label for unknown in problem.structure.unknowns].index(driver)
     points, _ = problem.project(problem.reference[None])
     ends = _next_to(problem, points[0])
-    way = np.abs(problem.difference(ends, points[0]))[:, column]
+    way = np.abs(problem.domain.difference(ends, points[0]))[:, column]
     return not is_stopped(float(way.max(initial=0.0)))
 
 

@@ -11,14 +11,18 @@ import numpy as np
 
 from bifurc.checks import check_number, check_type, point_of, rows_of
 from bifurc.decisions import is_start_solved
+from bifurc.domain import Domain
 from bifurc.errors import ProblemError
-from bifurc.function_problem import NumericalProblem
+from bifurc.function_problem import EXACT_HESSIAN, NumericalProblem
+from bifurc.limits import Deadline
 from bifurc.problem import (
+    Accuracy,
+    Curvature,
     CurveNodes,
     March,
     MarchSettings,
     MarchStatus,
-    NodeCorrector,
+    Shortcuts,
     SphereProjection,
 )
 from bifurc.seeding import random_seeds
@@ -32,6 +36,7 @@ ROUNDING = 4e-16  # below this residual norm a projection has nothing left to ga
 PROJECTION_STEPS = 60
 SPHERE_STEPS = 25
 LARGEST_EXPONENT = 300.0  # beyond it a bound is of no use
+NEARLY_CLOSED = 0.2  # the largest residual at which bounds on F'' hold
 
 
 class LoopClosure(NumericalProblem):
@@ -42,18 +47,20 @@ class LoopClosure(NumericalProblem):
     brackets.
     """
 
-    curvature_residual = 0.2
-    hessian_error = 1e-14
-
     def __init__(self, loop: Loop):
         check_type("loop", loop, Loop)
         n = loop.n
         self.loop = loop
-        self.names = tuple(f"theta{i + 1}" for i in range(n))
-        self.units = ("rad",) * n
-        self.periods = np.full(n, 2 * np.pi)
-        self.bounds = np.full((n, 2), [-np.inf, np.inf])
-        self.data_rounding = loop.rounding / loop.characteristic_length
+        self.domain = Domain(
+            names=tuple(f"theta{i + 1}" for i in range(n)),
+            units=("rad",) * n,
+            periods=np.full(n, 2 * np.pi),
+            bounds=np.full((n, 2), [-np.inf, np.inf]),
+        )
+        self.accuracy = Accuracy(
+            data_rounding=loop.rounding / loop.characteristic_length,
+            hessian_error=EXACT_HESSIAN,
+        )
         self._geometry = loop.link_geometry
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
@@ -65,11 +72,6 @@ class LoopClosure(NumericalProblem):
         """Derivatives (k, 6, n) of `residuals`."""
         return _core.jacobians(rows_of("points", points, self.n), self._geometry)
 
-    def hessian(self, point: np.ndarray) -> np.ndarray:
-        """Second derivative (6, n, n) of the residual."""
-        hessian: np.ndarray = self.hessians(point_of("point", point, self.n)[None])[0]
-        return hessian
-
     def hessians(self, points: np.ndarray) -> np.ndarray:
         """Second derivatives (k, 6, n, n) of the residual."""
         return _core.hessians(rows_of("points", points, self.n), self._geometry)
@@ -80,22 +82,16 @@ class LoopClosure(NumericalProblem):
 
         return precise_residual(self.loop)
 
-    def curvature_bound(self) -> float:
-        """K with |J(x) - J(y)| <= K |x - y| near closed configurations, from the
-        geometry.
+    @cached_property
+    def curvature(self) -> Curvature:
+        """Bounds on F'' from the geometry: from how far the base point and the end point
+        can be from the axis of every joint (n,), by the links before it and after it.
 
         The second derivative by joints i <= j is at most 1/2 for the rotation and the
         distance of the end point from axis j for the translation. Where the loop is
         nearly closed the end point is the base point, which the links before j and
         those after it reach; the shorter way bounds the distance, with
-        ``curvature_residual`` to spare. K is the largest eigenvalue of the matrix of
-        these bounds.
-        """
-        return self._curvatures[0]
-
-    def complex_curvature(self, reach: np.ndarray) -> np.ndarray:
-        """Bounds (k,) on |F''| at all complex points no farther than ``reach`` (k,),
-        rad, from a real one.
+        `NEARLY_CLOSED` to spare.
 
         Derivatives of every order are iterated products of screws: those by joints i <=
         ... <= j are at most 1/2 for the rotation and the distance of the end point from
@@ -103,14 +99,6 @@ class LoopClosure(NumericalProblem):
         imaginary parts y then sums up to exp(|y_1| + ... + |y_n|) times the bound for
         real points.
         """
-        exponents = np.minimum(np.sqrt(self.n) * reach, LARGEST_EXPONENT)
-        growth: np.ndarray = np.exp(exponents)
-        return self._curvatures[1] * growth
-
-    @cached_property
-    def _curvatures(self) -> tuple[float, float]:
-        """Both bounds, from how far the base point and the end point can be from the
-        axis of every joint (n,), by the links before it and after it."""
         table = self.loop.arrays
         size = self.loop.characteristic_length
         lengths = np.abs(table.lengths) / size
@@ -121,10 +109,16 @@ class LoopClosure(NumericalProblem):
         before = links_before - offsets + offsets[0]
         # from axis j on to the end of the loop
         after = np.cumsum((lengths + offsets)[::-1])[::-1] - offsets
-        near = np.maximum(before, 0.0) + self.curvature_residual
-        return _bound_from_distances(np.minimum(near, after)), _bound_from_distances(
-            after
-        )
+        near = np.maximum(before, 0.0) + NEARLY_CLOSED
+        of_all_orders = _bound_from_distances(after)
+
+        def at_complex_points(reach: np.ndarray) -> np.ndarray:
+            exponents = np.minimum(np.sqrt(self.n) * reach, LARGEST_EXPONENT)
+            growth: np.ndarray = np.exp(exponents)
+            return of_all_orders * growth
+
+        bound = _bound_from_distances(np.minimum(near, after))
+        return Curvature(bound, at_complex_points, NEARLY_CLOSED)
 
     def march(
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
@@ -146,25 +140,27 @@ class LoopClosure(NumericalProblem):
             misclosure=settings.misclosure,
             anchor=anchor,
             within=within,
-            periods=self.periods,
-            bounds=self.bounds,
+            periods=self.domain.periods,
+            bounds=self.domain.bounds,
             length=settings.length,
         )
         return March(MarchStatus(status), pieces, steps, radii, residuals)
 
-    def valley_corrector(self) -> NodeCorrector | None:
-        """What corrects points at the nodes of a piece of the valley along which the
+    @property
+    def shortcuts(self) -> Shortcuts:
+        """How points at the nodes of a piece of the valley are corrected along which the
         loop nearly closes."""
+        return Shortcuts(valley_corrector=self._valley_points_at_nodes)
 
-        def correct(nodes: CurveNodes) -> np.ndarray | None:
-            return _core.valley_points_at_nodes(self._geometry, *nodes)
+    def _valley_points_at_nodes(self, nodes: CurveNodes) -> np.ndarray | None:
+        return _core.valley_points_at_nodes(self._geometry, *nodes)
 
-        return correct
-
-    def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
+    def seeds(
+        self, rng: np.random.Generator, count: int, deadline: Deadline | None = None
+    ) -> Seeds:
         """Closed configurations to start from: complete slices of every joint of a 4R,
         5R or 6R loop, and what is reached from ``count`` random starts."""
-        drawn = random_seeds(self, rng, count)
+        drawn = random_seeds(self, rng, count, deadline=deadline)
         slices = slice_all_joints(self.loop, rng)
         if slices is None:
             return drawn

@@ -6,16 +6,16 @@ import math
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bifurc.checks import check_type, point_of, rows_of
+from bifurc.checks import check_type, rows_of
 from bifurc.decisions import is_start_solved
+from bifurc.domain import Domain
 from bifurc.equations.system import ScaledTape
-from bifurc.function_problem import NumericalProblem
+from bifurc.function_problem import EXACT_HESSIAN, NumericalProblem
 from bifurc.limits import Deadline
-from bifurc.problem import Solver
+from bifurc.problem import Accuracy, Curvature, Shortcuts
 from bifurc.seeding import random_seeds, start_region
 from bifurc.seeds import Seeds
 from linkages.closure import cut_at_limits
@@ -31,12 +31,10 @@ from linkages.turns import whole_turns
 from linkages.turns.turn_lattice import TurnLattice, turn_lattice
 from linkages.turns.whole_turns import TurnedEnds
 
-if TYPE_CHECKING:
-    from scipy.sparse import sparray
-
 # unknowns up to which compiled methods with dense matrices take no longer than those in
 # Python: for sections with spheres, and for curves of equations that are not sparse
 LARGEST_COMPILED = 250
+NEARLY_CLOSED = 0.2  # the largest residual at which bounds on F'' hold
 MOST_BEYOND = 60  # solutions beyond the limits that are brought back to them
 STRIDE_OF = 12  # joints, the most of a loop: up to there a stride is the scale
 # what gives starts and judges what is traced: the first that applies to a mechanism
@@ -57,9 +55,6 @@ class MechanismClosure(NumericalProblem):
     """
 
     scaled_tape: ScaledTape
-    curvature_residual = 0.2
-    hessian_error = 1e-14
-    derivatives = "recorded"
 
     def __init__(
         self,
@@ -71,23 +66,27 @@ class MechanismClosure(NumericalProblem):
         self.mechanism = mechanism
         self.structure = structure or Structure(mechanism)
         unknowns = self.structure.unknowns
-        self.names = tuple(unknown.label for unknown in unknowns)
-        self.units = tuple(unknown.unit for unknown in unknowns)
-        self.periods = np.array([unknown.period for unknown in unknowns])
-        self.bounds = np.array([[one.low, one.high] for one in unknowns])
         # in a step of the same angles more joints make it longer, by the root of their number
-        self.stride = math.sqrt(max(1.0, self.n / STRIDE_OF))
-        self.data_rounding = mechanism.coordinate_rounding / self.structure.unit
+        stride = math.sqrt(max(1.0, len(unknowns) / STRIDE_OF))
+        self.domain = Domain(
+            names=tuple(unknown.label for unknown in unknowns),
+            units=tuple(unknown.unit for unknown in unknowns),
+            periods=np.array([unknown.period for unknown in unknowns]),
+            bounds=np.array([[one.low, one.high] for one in unknowns]),
+            stride=stride,
+        )
         self._equations: Equations = write_equations(self.structure, errors)
         tape = self._equations.tape
-        self.equation_count = tape.m
-        self.equations = f"recorded ({tape.size} operations)"
+        self.accuracy = Accuracy(
+            derivatives="recorded",
+            equations=f"recorded ({tape.size} operations)",
+            data_rounding=mechanism.coordinate_rounding / self.structure.unit,
+            hessian_error=EXACT_HESSIAN,
+        )
         self.scaled_tape = ScaledTape(
             tape,
             self.magnitude,
-            self.scale,
-            self.bounds,
-            self.periods,
+            self.domain,
             largest_dense=LARGEST_COMPILED,
             largest_sparse=math.inf,
         )
@@ -102,13 +101,19 @@ class MechanismClosure(NumericalProblem):
         """F' (k, m, n) at points (k, n)."""
         return self.scaled_tape.jacobians(rows_of("points", points, self.n))
 
-    def jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
-        """F' (m, n) at one point (n,), sparse for many unknowns."""
-        return super().jacobian(point_of("point", point, self.n))
+    def hessians(self, points: np.ndarray) -> np.ndarray:
+        """F'' (k, m, n, n) at points (k, n)."""
+        return self.scaled_tape.hessians(rows_of("points", points, self.n))
 
-    def hessian(self, point: np.ndarray) -> np.ndarray:
-        """F'' (m, n, n) at a point (n,)."""
-        return super().hessian(point_of("point", point, self.n))
+    @property
+    def shortcuts(self) -> Shortcuts:
+        """What the tape does in one call, and the solver of systems with F' where that is
+        factored as a sparse matrix."""
+        if not self.scaled_tape.is_factored_sparse:
+            return super().shortcuts
+        return super().shortcuts._replace(
+            m=self.scaled_tape.tape.m, bordered_solver=self.scaled_tape.bordered_solver
+        )
 
     @cached_property
     def rows_of_closures(self) -> list[slice]:
@@ -128,25 +133,11 @@ class MechanismClosure(NumericalProblem):
             columns += structure.embedded.get(number, ())
         return sorted(set(columns))
 
-    def curvature_bound(self) -> float:
-        """A constant K with |F'(x) - F'(y)| <= K |x - y| near closed configurations."""
-        return self._curvature.near_solutions
-
-    def complex_curvature(self, reach: np.ndarray) -> np.ndarray:
-        """Bounds (k,) on |F''| at complex points no farther than ``reach`` (k,) from a
-        real one within the limits near closed configurations."""
-        return self._curvature.at_complex_points(reach)
-
     @cached_property
-    def _curvature(self) -> CurvatureBounds:
-        return CurvatureBounds(self.structure, self.curvature_residual)
-
-    # --- curves and solutions ---------------------------------------------------------
-
-    def bordered_solver(self, point: np.ndarray, tangent: np.ndarray) -> Solver | None:
-        """What solves systems with F' (m, n) at a point (n,), over the magnitude, and
-        under it the row ``tangent`` (n,); None where that matrix is to be factored."""
-        return self.scaled_tape.bordered_solver(point, tangent)
+    def curvature(self) -> Curvature:
+        """Bounds on F'' from the geometry."""
+        bounds = CurvatureBounds(self.structure, NEARLY_CLOSED)
+        return Curvature(bounds.near_solutions, bounds.at_complex_points, NEARLY_CLOSED)
 
     # --- starts -----------------------------------------------------------------------
 
@@ -156,11 +147,13 @@ class MechanismClosure(NumericalProblem):
         elsewhere it need not be closed."""
         return self.structure.reference
 
-    def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
+    def seeds(
+        self, rng: np.random.Generator, count: int, deadline: Deadline | None = None
+    ) -> Seeds:
         """The closed configuration nearest to the reference, what the starts of a
         source lead to and what ``count`` random starts do or, where these lead beyond
         given limits, others within, and those that the mechanism knows itself."""
-        drawn = self._drawn(rng, count)
+        drawn = self._drawn(rng, count, deadline)
         lattice = self.lattice
         judge = self._judge(rng, count)
         starts = self.reference[None]
@@ -173,7 +166,7 @@ class MechanismClosure(NumericalProblem):
         if lattice:
             # what is outside the limits may have a translate inside
             solutions = lattice.homes(solutions)
-        seeds = drawn.with_constructed(solutions[self.are_inside(solutions)])
+        seeds = drawn.with_constructed(solutions[self.domain.are_inside(solutions)])
         if judge is None:
             seeds = replace(seeds, more=self._drawn)
         seeds = replace(seeds, audit=judge)
@@ -208,7 +201,7 @@ class MechanismClosure(NumericalProblem):
         if all(one.limits is None for one in self.structure.mechanism.variables):
             return np.empty((0, self.n))
         missed = drawn.missed[is_start_solved(drawn.gaps)]
-        beyond = np.concatenate([solutions[~self.are_inside(solutions)], missed])
+        beyond = np.concatenate([solutions[~self.domain.are_inside(solutions)], missed])
         hold = self.scaled_tape.project
         return brought_within_limits(self, hold, beyond[:MOST_BEYOND], rng)
 

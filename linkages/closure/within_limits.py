@@ -38,7 +38,7 @@ def brought_within_limits(
         if not len(beyond):
             break
         points, held = _held_within(problem, hold, beyond, kept, rng)
-        is_inside = problem.are_inside(points)
+        is_inside = problem.domain.are_inside(points)
         inside.append(points[is_inside])
         beyond, kept = points[~is_inside], held[~is_inside]
     return np.concatenate(inside)
@@ -58,7 +58,7 @@ def _led_within(problem: Problem, beyond: np.ndarray) -> np.ndarray:
             break
         points = _nearer(problem, beyond)
         is_nearer = _distances(problem, points) < _distances(problem, beyond)
-        is_inside = problem.are_inside(points) & is_nearer
+        is_inside = problem.domain.are_inside(points) & is_nearer
         inside.append(points[is_inside])
         beyond = points[is_nearer & ~is_inside]
     return np.concatenate(inside)
@@ -69,7 +69,7 @@ def _nearer(problem: Problem, points: np.ndarray) -> np.ndarray:
     beside, gaps = problem.project(_middles(problem, points))
     steps = beside - points
     lengths = np.linalg.norm(steps, axis=1, keepdims=True)
-    longest = np.maximum(LONGEST * problem.scale, lengths)
+    longest = np.maximum(LONGEST * problem.domain.scale, lengths)
     steps *= np.minimum(FARTHER, longest / np.maximum(lengths, TINY))
     far, far_gaps = problem.project(points + steps)
     ends = np.array([beside, far])
@@ -85,8 +85,8 @@ def _nearer(problem: Problem, points: np.ndarray) -> np.ndarray:
 def _middles(problem: Problem, points: np.ndarray) -> np.ndarray:
     """The points (k, n) of the middle half of the limits that are next to points
     (k, n)."""
-    low, high = problem.bounds.T
-    has_both = np.isfinite(problem.bounds).all(axis=1)
+    low, high = problem.domain.bounds.T
+    has_both = np.isfinite(problem.domain.bounds).all(axis=1)
     margin = np.zeros(problem.n)
     margin[has_both] = 0.25 * (high - low)[has_both]
     middles: np.ndarray = np.clip(points, low + margin, high - margin)
@@ -109,7 +109,7 @@ def _held_within(
     """Solutions (k, n) and what is held at each (k, n), of those ``beyond`` (j, n) that
     had others ``kept`` (j, n) from which one was reached: all that is beyond is held
     within its limits as well, or what is farthest, or that alone."""
-    low, high = problem.bounds.T
+    low, high = problem.domain.bounds.T
     excess = np.maximum(low - beyond, beyond - high)
     is_beyond = excess > 0.0
     farthest = np.arange(problem.n) == np.argmax(excess, axis=1)[:, None]
@@ -134,8 +134,8 @@ def _drawn_within(
 ) -> np.ndarray:
     """Points (k, n) with what is beyond its limits (k, n) drawn from within them; at
     the limit, where there is but one."""
-    low, high = problem.bounds.T
-    has_both = np.isfinite(problem.bounds).all(axis=1)
+    low, high = problem.domain.bounds.T
+    has_both = np.isfinite(problem.domain.bounds).all(axis=1)
     width = np.where(has_both, high, 0.0) - np.where(has_both, low, 0.0)
     within: np.ndarray = np.clip(points, low, high)
     drawn = np.where(has_both, low, 0.0) + width * rng.uniform(size=points.shape)

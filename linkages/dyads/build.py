@@ -61,8 +61,11 @@ class Builder:
         """Whether no dyad can close in a curve of configurations, wherever the parts
         are that it stands on, and whatever the driver's value is; other known
         ``values`` are locks."""
-        if self._parts_driven() - {self.plan.start}:
-            return False  # lengths within a part that is placed change with the driver
+        for known in self.plan.known:
+            numbers = self.mechanism.pairs[known].variables
+            is_driven = any(self.mechanism.variables[k].locked is None for k in numbers)
+            if is_driven and self.plan.part[self.ends[known][0]] != self.plan.start:
+                return False  # lengths within a placed part change with the driver
         inner = self._inner_poses(values)
         standing = dict.fromkeys(self.plan.part, self.geometry.rest)
         for step in self.plan.steps:
@@ -85,31 +88,16 @@ class Builder:
             number = next(k for k in left if not poses.keys().isdisjoint(self.ends[k]))
             left.remove(number)
             base, moved = self.ends[number]
-            motion = self._pair_motion(number, values)
+            motion: Any = self.geometry.rest
+            for k in self.mechanism.pairs[number].variables:
+                of_variable = self.mechanism.variables[k].motion
+                step = self.geometry.motion(of_variable, values[k])
+                motion = motion.after(step)
             if moved not in poses:
                 poses[moved] = poses[base].after(motion)
             elif base not in poses:
                 poses[base] = poses[moved].after(motion.inverse())
         return poses
-
-    def _parts_driven(self) -> set[int]:
-        """The parts in which a pair moves with the driver."""
-        variables = self.mechanism.variables
-        pairs = self.mechanism.pairs
-        return {
-            self.plan.part[self.ends[known][0]]
-            for known in self.plan.known
-            if any(
-                variables[number].locked is None for number in pairs[known].variables
-            )
-        }
-
-    def _pair_motion(self, pair: int, values: Sequence[float]) -> Any:
-        pose: Any = self.geometry.rest
-        for number in self.mechanism.pairs[pair].variables:
-            motion = self.mechanism.variables[number].motion
-            pose = pose.after(self.geometry.motion(motion, values[number]))
-        return pose
 
     # --- steps ------------------------------------------------------------------------
 
@@ -127,8 +115,9 @@ class Builder:
     ) -> tuple[Any, Any, Any]:
         """The three joints of a dyad."""
         one, contact, other = step.contacts
-        middle = self.geometry.middle(
-            inner[contact.first], inner[contact.second], self._motion(contact)
+        motion = self._motion(contact)
+        middle = self.geometry.joint(
+            inner[contact.first], inner[contact.second], motion
         )
         return self._end(one, state, inner), middle, self._end(other, state, inner)
 
@@ -138,7 +127,7 @@ class Builder:
         """A joint that leads from what stands to a part."""
         pose = state[self.plan.part[contact.first]].after(inner[contact.first])
         own = inner[contact.second]
-        return self.geometry.end(pose, own, self._motion(contact))
+        return self.geometry.joint(pose, own, self._motion(contact))
 
     def _motion(self, contact: Contact) -> Motion:
         return self.mechanism.variables[contact.variable].motion

@@ -16,6 +16,7 @@ import numpy as np
 
 from linkages.decisions import is_degenerate_dyad
 from linkages.mechanisms.joint import Motion
+from linkages.structure.placement import axes_along
 
 # of the square of a length, over that of the mechanism: a circle that is touched. It
 # costs starts only: what does not close is left out later.
@@ -65,68 +66,52 @@ class Line(NamedTuple):
 
 
 class Pivot(NamedTuple):
-    """A turning joint on what stands: its ``place`` there, and its point ``local`` in
-    the body."""
-
-    place: complex
-    local: complex
-
-    def path(self, point: complex) -> Circle | Line:
-        """Where a point of the body may be."""
-        return Circle(self.place, abs(point - self.local))
-
-    def pose(self, point: complex, place: complex) -> PlanePose:
-        """The pose of the body with a point of it in a place on its path."""
-        ratio = (place - self.place) / (point - self.local)
-        return self.turned(ratio / abs(ratio))
-
-    def turned(self, turn: complex) -> PlanePose:
-        """The pose of the body with this ``turn``."""
-        return PlanePose(turn, self.place - turn * self.local)
-
-
-class Rail(NamedTuple):
-    """A sliding joint on what stands: the pose of the body at its ``start``, from which
-    it slides ``along`` a unit direction."""
-
-    start: PlanePose
-    along: complex
-
-    def path(self, point: complex) -> Circle | Line:
-        """Where a point of the body may be."""
-        return Line(self.start(point), self.along)
-
-    def pose(self, point: complex, place: complex) -> PlanePose:
-        """The pose of the body with a point of it in a place on its path."""
-        return PlanePose(self.start.turn, place - self.start.turn * point)
-
-
-class Pin(NamedTuple):
-    """A turning joint between both bodies: its points in them."""
+    """A turning joint: its point in the ``first`` body, or its place on what stands,
+    and its point in the ``second`` body."""
 
     first: complex
     second: complex
 
-    def reversed(self) -> Pin:
+    def path(self, point: complex) -> Circle:
+        """Where a point of the second body may be."""
+        return Circle(self.first, abs(point - self.second))
+
+    def pose(self, point: complex, place: complex) -> PlanePose:
+        """The pose of the second body with a point of it in a place on its path."""
+        ratio = (place - self.first) / (point - self.second)
+        return self.turned(ratio / abs(ratio))
+
+    def turned(self, turn: complex) -> PlanePose:
+        """The pose of the second body with this ``turn``."""
+        return PlanePose(turn, self.first - turn * self.second)
+
+    def reversed(self) -> Pivot:
         """The joint as the other body sees it."""
-        return Pin(self.second, self.first)
+        return Pivot(self.second, self.first)
 
 
-class Slider(NamedTuple):
-    """A sliding joint between both bodies: the pose of the second one in the first at
-    its ``start``, from which it slides ``along`` a unit direction of the first."""
+class Rail(NamedTuple):
+    """A sliding joint: the pose of the second body in the first one, or on what stands,
+    at its ``start``, from which it slides ``along`` a unit direction of that."""
 
     start: PlanePose
     along: complex
 
-    def reversed(self) -> Slider:
+    def path(self, point: complex) -> Line:
+        """Where a point of the second body may be."""
+        return Line(self.start(point), self.along)
+
+    def pose(self, point: complex, place: complex) -> PlanePose:
+        """The pose of the second body with a point of it in a place on its path."""
+        return PlanePose(self.start.turn, place - self.start.turn * point)
+
+    def reversed(self) -> Rail:
         """The joint as the other body sees it."""
         inverse = self.start.inverse()
-        return Slider(inverse, -inverse.turn * self.along)
+        return Rail(inverse, -inverse.turn * self.along)
 
 
-End: TypeAlias = Pivot | Rail
-Middle: TypeAlias = Pin | Slider
+PlaneJoint: TypeAlias = Pivot | Rail
 Poses: TypeAlias = list[tuple[PlanePose, PlanePose]]
 
 
@@ -138,10 +123,7 @@ class PlaneGeometry:
         self.normal = normal
         self.size = size
         self.rest = AT_REST
-        other = np.eye(3)[np.argmin(np.abs(normal))]
-        first = np.cross(other, normal)
-        first /= np.linalg.norm(first)
-        self._axes = np.array([first, np.cross(normal, first)])
+        self._axes = axes_along(normal)[:2]
 
     def motion(self, motion: Motion, value: float) -> PlanePose:
         """The displacement that a joint variable makes."""
@@ -157,22 +139,14 @@ class PlaneGeometry:
             return cmath.phase(relative.turn) * self._sense(motion)
         return (relative.shift / self._flat(motion.direction)).real
 
-    def end(self, pose: PlanePose, own: PlanePose, motion: Motion) -> End:
-        """A joint on a standing body with this ``pose``, of a body that has the pose
-        ``own`` in the part that is placed."""
+    def joint(self, first: PlanePose, second: PlanePose, motion: Motion) -> PlaneJoint:
+        """A joint between a body with the pose ``first``, which stands or is in one
+        part, and one that has the pose ``second`` in the part that is placed."""
         if motion.is_turn:
             center = self._flat(motion.point)
-            return Pivot(pose(center), own(center))
-        along = pose.turn * self._flat(motion.direction)
-        return Rail(pose.after(own.inverse()), along)
-
-    def middle(self, first: PlanePose, second: PlanePose, motion: Motion) -> Middle:
-        """A joint between bodies that have these poses in two parts."""
-        if motion.is_turn:
-            center = self._flat(motion.point)
-            return Pin(first(center), second(center))
+            return Pivot(first(center), second(center))
         along = first.turn * self._flat(motion.direction)
-        return Slider(first.after(second.inverse()), along)
+        return Rail(first.after(second.inverse()), along)
 
     def _sense(self, motion: Motion) -> float:
         """1 where a turn is about the normal, -1 where it is the other way round."""
@@ -185,15 +159,15 @@ class PlaneGeometry:
 
     # --- one body and two bodies ------------------------------------------------------
 
-    def close_monad(self, one: End, other: End) -> list[PlanePose]:
+    def close_monad(self, one: PlaneJoint, other: PlaneJoint) -> list[PlanePose]:
         """The poses of a body that two joints hold on what stands; none where they do
         not fit. Raises `DegenerateDyadError`."""
         if isinstance(one, Pivot) and isinstance(other, Pivot):
-            gap, own = other.place - one.place, other.local - one.local
+            gap, own = other.first - one.first, other.second - one.second
             self._require_length(abs(own))
             if abs(abs(gap) - abs(own)) > MISFIT * self.size:
                 return []
-            return [one.pose(other.local, other.place)]
+            return [one.pose(other.second, other.first)]
         if isinstance(one, Rail) and isinstance(other, Rail):
             if abs(one.start.turn - other.start.turn) > MISFIT:
                 return []
@@ -206,10 +180,12 @@ class PlaneGeometry:
         beside = ((pose.shift - one.start.shift) / one.along).imag
         return [pose] if abs(beside) <= MISFIT * self.size else []
 
-    def close_dyad(self, one: End, middle: Middle, other: End) -> Poses:
+    def close_dyad(
+        self, one: PlaneJoint, middle: PlaneJoint, other: PlaneJoint
+    ) -> Poses:
         """The poses of both bodies of a dyad, in every configuration that closes.
         Raises `DegenerateDyadError`."""
-        if isinstance(middle, Pin):
+        if isinstance(middle, Pivot):
             paths = one.path(middle.first), other.path(middle.second)
             return [
                 (one.pose(middle.first, place), other.pose(middle.second, place))
@@ -225,34 +201,36 @@ class PlaneGeometry:
             return [(first, other.pose(0j, place))]
         return self._sliding(one, middle, other)
 
-    def _sliding(self, one: Pivot, slider: Slider, other: Pivot) -> Poses:
+    def _sliding(self, one: Pivot, slider: Rail, other: Pivot) -> Poses:
         """The same of two bodies that slide along each other, on two pivots."""
-        gap = other.place - one.place
+        gap = other.first - one.first
         # the far pivot, as the first body sees it
-        circle = Circle(one.local, abs(gap))
-        line = Line(slider.start(other.local), slider.along)
+        circle = Circle(one.second, abs(gap))
+        line = slider.path(other.second)
         results = []
         for place in self._meetings(circle, line):
-            first = one.pose(place, other.place)
+            first = one.pose(place, other.first)
             shift = slider.start.shift + place - line.start
             results.append((first, first.after(PlanePose(slider.start.turn, shift))))
         return results
 
-    def may_be_degenerate(self, one: End, middle: Middle, other: End) -> bool:
+    def may_be_degenerate(
+        self, one: PlaneJoint, middle: PlaneJoint, other: PlaneJoint
+    ) -> bool:
         """Whether a dyad may close in a whole curve of configurations somewhere; what
         the joints stand on may be anywhere."""
         if isinstance(one, Rail) and isinstance(other, Pivot):
             return self.may_be_degenerate(other, middle.reversed(), one)
         if isinstance(other, Rail):
-            if isinstance(one, Rail) or isinstance(middle, Slider):
+            if isinstance(one, Rail) or isinstance(middle, Rail):
                 return True  # two lines may be one
             # a circle and a line never are, if there is a circle
-            return self._is_nothing(abs(middle.first - one.local))
+            return self._is_nothing(abs(middle.first - one.second))
         assert isinstance(one, Pivot)
-        if isinstance(middle, Pin):
-            arms = abs(middle.first - one.local), abs(middle.second - other.local)
+        if isinstance(middle, Pivot):
+            arms = abs(middle.first - one.second), abs(middle.second - other.second)
             return self._is_nothing(min(*arms, abs(arms[0] - arms[1])))
-        beside = ((middle.start(other.local) - one.local) / middle.along).imag
+        beside = ((middle.start(other.second) - one.second) / middle.along).imag
         return self._is_nothing(abs(beside))
 
     # --- circles and lines ------------------------------------------------------------

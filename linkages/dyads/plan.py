@@ -58,13 +58,9 @@ class Plan:
 def make_plan(mechanism: Mechanism, driver: int | None) -> Plan | None:
     """How a ``mechanism`` is built where the variable of this number has a given
     value, or, without, where only locked ones have; None where dyads do not do."""
-    known = []
-    for number, pair in enumerate(mechanism.pairs):
-        is_known = [_is_known(mechanism, k, driver) for k in pair.variables]
-        if all(is_known):
-            known.append(number)
-        elif len(is_known) > 1 or _is_coupled(mechanism, pair.variables[0]):
-            return None
+    known = _known_pairs(mechanism, driver)
+    if known is None:
+        return None
     numbers = {body: k for k, body in enumerate(mechanism.bodies)}
     parts = UnionFind(range(len(numbers)))
     for number in known:
@@ -84,14 +80,24 @@ def make_plan(mechanism: Mechanism, driver: int | None) -> Plan | None:
     return None
 
 
-def _is_known(mechanism: Mechanism, variable: int, driver: int | None) -> bool:
-    one = mechanism.variables[variable]
-    return one.locked is not None or one.leader.number == driver
-
-
-def _is_coupled(mechanism: Mechanism, variable: int) -> bool:
+def _known_pairs(mechanism: Mechanism, driver: int | None) -> list[int] | None:
+    """The pairs, by number, that have known values only; None where one has a variable
+    that is not known beside another, or that is coupled."""
+    known = []
     leaders = [one.leader.number for one in mechanism.variables]
-    return leaders[variable] != variable or leaders.count(variable) > 1
+    for number, pair in enumerate(mechanism.pairs):
+        is_known = [
+            mechanism.variables[k].locked is not None or leaders[k] == driver
+            for k in pair.variables
+        ]
+        if all(is_known):
+            known.append(number)
+            continue
+        first = pair.variables[0]
+        is_coupled = leaders[first] != first or leaders.count(first) > 1
+        if len(is_known) > 1 or is_coupled:
+            return None
+    return known
 
 
 def _contacts(
@@ -156,14 +162,9 @@ def _next_step(
             continue
         for one in holding[first]:
             for other in holding[second]:
-                step = Step((first, second), (one, contact, other))
-                if _is_dyad(step):
-                    return step
+                # three different joints, not all of them slides
+                three = (one, contact, other)
+                joints = {each.joint for each in three}
+                if len(joints) == 3 and any(each.is_turn for each in three):
+                    return Step((first, second), three)
     return None
-
-
-def _is_dyad(step: Step) -> bool:
-    """Whether three different joints, not all of them slides, place two parts."""
-    joints = {contact.joint for contact in step.contacts}
-    turns = any(contact.is_turn for contact in step.contacts)
-    return len(joints) == len(step.contacts) and turns

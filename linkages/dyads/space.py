@@ -51,14 +51,8 @@ class _Line(NamedTuple):
 
 
 class Axis(NamedTuple):
-    """A joint on what stands: its axis there, and in the body."""
-
-    standing: _Line
-    own: _Line
-
-
-class SpacePin(NamedTuple):
-    """A joint between both bodies: its axis in each of them."""
+    """A joint: its axis in the ``first`` body, or on what stands, and in the ``second``
+    one."""
 
     first: _Line
     second: _Line
@@ -88,27 +82,27 @@ class SpaceGeometry:
         double_cosine = float(turn[0, 0] + turn[1, 1] + turn[2, 2]) - 1.0
         return math.atan2(double_sine, double_cosine)
 
-    def end(self, pose: SpacePose, own: SpacePose, motion: Motion) -> Axis:
-        """A joint on a standing body with this ``pose``, of a body that has the pose
-        ``own`` in the part that is placed."""
-        return Axis(_moved(pose, motion), _moved(own, motion))
-
-    def middle(self, first: SpacePose, second: SpacePose, motion: Motion) -> SpacePin:
-        """A joint between bodies that have these poses in two parts."""
-        return SpacePin(_moved(first, motion), _moved(second, motion))
+    def joint(self, first: SpacePose, second: SpacePose, motion: Motion) -> Axis:
+        """A joint between a body with the pose ``first``, which stands or is in one
+        part, and one that has the pose ``second`` in the part that is placed."""
+        lines = [
+            _Line(pose(motion.point), pose.rotation @ motion.direction)
+            for pose in (first, second)
+        ]
+        return Axis(*lines)
 
     def close_monad(self, one: Axis, other: Axis) -> list[SpacePose]:
         """The poses of a part that two joints hold; none where they do not fit. Raises
         `DegenerateDyadError`."""
-        far, own = _between(one.standing, other.standing), _between(one.own, other.own)
+        far, own = _between(one.first, other.first), _between(one.second, other.second)
         pose = _placed(one, own, far)
-        aside = np.abs(pose(other.own.point) - other.standing.point).max()
-        turned = pose.rotation @ other.own.direction - other.standing.direction
+        aside = np.abs(pose(other.second.point) - other.first.point).max()
+        turned = pose.rotation @ other.second.direction - other.first.direction
         fits = max(float(aside) / self.size, float(np.abs(turned).max())) <= MISFIT
         return [pose] if fits else []
 
     def close_dyad(
-        self, one: Axis, pin: SpacePin, other: Axis
+        self, one: Axis, pin: Axis, other: Axis
     ) -> list[tuple[SpacePose, SpacePose]]:
         """The poses of both parts of a dyad, in every way in which it closes. Raises
         `DegenerateDyadError`, also where its axes are parallel."""
@@ -121,9 +115,9 @@ class SpaceGeometry:
                 results.append((first, second))
         return results
 
-    def _directions(self, one: Axis, pin: SpacePin, other: Axis) -> list[np.ndarray]:
+    def _directions(self, one: Axis, pin: Axis, other: Axis) -> list[np.ndarray]:
         """Unit vectors (3,) along the axis between both parts."""
-        start, end = one.standing.direction, other.standing.direction
+        start, end = one.first.direction, other.first.direction
         cosines = _cosines(one, pin, other)
         across = _cross(start, end)
         square = float(across @ across)
@@ -142,7 +136,7 @@ class SpaceGeometry:
         roots = (root, -root) if root > 0.0 else (0.0,)
         return [along + sign * across for sign in roots]
 
-    def may_be_degenerate(self, one: Axis, pin: SpacePin, other: Axis) -> bool:
+    def may_be_degenerate(self, one: Axis, pin: Axis, other: Axis) -> bool:
         """Whether a dyad may close in a whole curve of configurations somewhere."""
         first, second = _cosines(one, pin, other)
         first, second = abs(first), abs(second)
@@ -151,10 +145,10 @@ class SpaceGeometry:
         return is_degenerate_dyad(min(abs(first - second), sine))
 
 
-def _cosines(one: Axis, pin: SpacePin, other: Axis) -> tuple[float, float]:
+def _cosines(one: Axis, pin: Axis, other: Axis) -> tuple[float, float]:
     """Those of the angles between the axes of each body."""
-    first = float(one.own.direction @ pin.first.direction)
-    second = float(other.own.direction @ pin.second.direction)
+    first = float(one.second.direction @ pin.first.direction)
+    second = float(other.second.direction @ pin.second.direction)
     return first, second
 
 
@@ -169,16 +163,12 @@ def _length(vector: np.ndarray) -> float:
     return math.sqrt(float(vector @ vector))
 
 
-def _moved(pose: SpacePose, motion: Motion) -> _Line:
-    return _Line(pose(motion.point), pose.rotation @ motion.direction)
-
-
 def _placed(axis: Axis, own: np.ndarray, standing: np.ndarray) -> SpacePose:
     """The pose of a body on an axis, with a vector (3,) of its ``own`` as near as can be
     to a ``standing`` one. Raises `DegenerateDyadError` where one is along the axis."""
-    frame = _frame(axis.standing.direction, standing)
-    rotation: np.ndarray = frame @ _frame(axis.own.direction, own).T
-    return SpacePose(rotation, axis.standing.point - rotation @ axis.own.point)
+    frame = _frame(axis.first.direction, standing)
+    rotation: np.ndarray = frame @ _frame(axis.second.direction, own).T
+    return SpacePose(rotation, axis.first.point - rotation @ axis.second.point)
 
 
 def _between(one: _Line, other: _Line) -> np.ndarray:

@@ -1,19 +1,25 @@
-"""Equations between numbers and matrices as printed, against the corrected ones."""
+"""Equations between numbers, vectors and matrices as printed, against the corrected ones:
+formulas of what they leave, which is 0 where they hold."""
 
 from __future__ import annotations
 
-from math import cos, pi, radians, sin
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from math import nan, tan
+from types import SimpleNamespace
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from linkages.catalogue import entry
+from linkages.construction.equations import evaluate, numbers_of
 from linkages.construction.link import Link
-from linkages.construction.spatial_triangle import composite_link
-from linkages.errata.erratum import Amounts, largest_gap, median_and_largest
+from linkages.construction.spatial_triangle import CompositeLink, composite_link
+from linkages.errata.erratum import Amounts, median_and_largest
+from linkages.families.bricard import LETTERS, closure_equation
+from linkages.identification.equivalence import table
 from linkages.loop import Loop
 
-ANGLES = np.array([0.5, 1.1, -0.7, 1.9, 0.3, -1.2])  # rad, of a loop that is not closed
+NEAR = 1e-13  # rad, from the input where a root changes
 
 
 class Path(NamedTuple):
@@ -33,58 +39,191 @@ def path_along(linkage: str, **values: float) -> Path:
     return Path(owner.build(**parameters), theta[np.isfinite(theta).all(axis=1)])
 
 
-def _steps(loop: Loop, theta: np.ndarray) -> list[np.ndarray]:
-    """The transforms T_12, T_23, ... at one configuration."""
+def compare_equations(
+    linkage: str,
+    where: Mapping[str, str | float | list[float]],
+    printed: list[str],
+    corrected: list[str],
+    along: Mapping[str, str] | None = None,
+    at: list[float] | None = None,
+) -> Amounts:
+    """What the formulas leave, those of the print and the corrected ones, of the numbers
+    and the parameters of a linkage, and of names defined ``where``.
+
+    With ``along``, the parameters of a member, they are taken along its closed form,
+    with ``at`` at angles, rad. The largest is taken at each place; places where a formula
+    is not a number do not count.
+    """
+    values = {name: evaluate(text) for name, text in (along or {}).items()}
+    parameters = entry(linkage).defaults | values
+    loop = entry(linkage).build(**parameters)
+    names = {**FUNCTIONS, **parameters, **numbers_of(table(loop))}
+    theta = np.empty((1, 0)) if at is None else np.array([at])
+    if along is not None:
+        theta = path_along(linkage, **values).theta
+    if theta.size:
+        names |= _names_along(loop, theta)
+
+    def left(formulas: list[str]) -> np.ndarray:
+        gaps = [np.reshape(evaluate(one, names), (len(theta), -1)) for one in formulas]
+        largest = np.abs(np.concatenate(gaps, axis=1)).max(axis=1)
+        return np.asarray(largest[~np.isnan(largest)])
+
+    with np.errstate(all="ignore"):
+        define(names, where)
+        return median_and_largest(left(printed), left(corrected))
+
+
+def define(
+    names: dict[str, Any], where: Mapping[str, str | float | list[float]]
+) -> None:
+    """Add to ``names`` what formulas or numbers define ``where``, one after the other."""
+    for name, value in where.items():
+        is_text = isinstance(value, str)
+        names[name] = evaluate(str(value), names) if is_text else np.array(value)
+
+
+def _names_along(loop: Loop, theta: np.ndarray) -> dict[str, np.ndarray]:
+    """At configurations (k, n): the angles theta1 (k,), the transforms T12 (k, 4, 4), and
+    the points O1 and directions Z1 (k, 3) of the axes."""
     frames = loop.frames(theta)
-    return [np.linalg.solve(frames[i], frames[i + 1]) for i in range(loop.n)]
+    steps = np.linalg.solve(frames[:, :-1], frames[:, 1:])
+    names: dict[str, np.ndarray] = {}
+    for i in range(loop.n):
+        number = i + 1
+        names[f"theta{number}"] = theta[:, i]
+        names[f"T{number}{number % loop.n + 1}"] = steps[:, i]
+        names[f"O{number}"] = frames[:, number, :3, 3]
+        names[f"Z{number}"] = frames[:, number, :3, 2]
+    return names
 
 
-def order_of_inverses() -> Amounts:
-    """Equation (2.2.8), along the Bennett linkage."""
-    loop, path = path_along("bennett")
-    printed = []
-    corrected = []
-    for theta in path:
-        t12, t23, t34, t41 = _steps(loop, theta)
-        left = t34 @ t41
-        printed.append(largest_gap(left, np.linalg.inv(t12) @ np.linalg.inv(t23)))
-        corrected.append(largest_gap(left, np.linalg.inv(t23) @ np.linalg.inv(t12)))
-    return median_and_largest(printed, corrected)
+# --- what formulas may use besides those names
 
 
-def bennett_entries() -> Amounts:
-    """Equation (2.2.11): the entries (3, 4) of both sides of (2.2.8), for any
-    angles."""
-    loop = entry("bennett").build()
-    theta = ANGLES[:4]
-    a12, a23 = loop.arrays[0][:2]
-    s12, s23 = np.sin(loop.arrays[1][:2])
-    s2, s4 = np.sin(theta[[1, 3]])
-    t12, t23, t34, t41 = _steps(loop, theta)
-    left = (t34 @ t41)[2, 3]
-    right = np.linalg.inv(t12 @ t23)[2, 3]
+def _turn(axis: int) -> Callable[[Any], np.ndarray]:
+    """The transform (..., 4, 4) that turns by an angle about an axis, 0, 1 or 2."""
+    i = (axis + 1) % 3
+    j = (axis + 2) % 3
 
-    def largest(in_left: float, in_right: float) -> float:
-        left_gap = abs(left - a23 * s12 * in_left)
-        right_gap = abs(right + a12 * s23 * in_right)
-        return float(max(left_gap, right_gap))
+    def turn(angle: Any) -> np.ndarray:
+        out = np.zeros((*np.shape(angle), 4, 4)) + np.eye(4)
+        out[..., i, i] = out[..., j, j] = np.cos(angle)
+        out[..., j, i] = np.sin(angle)
+        out[..., i, j] = -out[..., j, i]
+        return out
 
-    return Amounts(largest(s2, s4), largest(s4, s2))
+    return turn
 
 
-def factors() -> Amounts:
-    """Equation (A2): the product of the link and joint matrices (A3), (A4) beside
-    (A1)."""
-    loop = entry("bricard-line-symmetric").build()
-    transform = _steps(loop, ANGLES)[0]
-    link = _steps(loop, 0 * ANGLES)[0]
-    c = np.cos(ANGLES[0])
-    s = np.sin(ANGLES[0])
-    joint = np.eye(4)
-    joint[:2, :2] = [[c, -s], [s, c]]
-    return Amounts(
-        largest_gap(link @ joint, transform), largest_gap(joint @ link, transform)
-    )
+def _shift(x: float, y: float, z: float) -> np.ndarray:
+    """The transform (4, 4) that moves by these lengths."""
+    out = np.eye(4)
+    out[:3, 3] = x, y, z
+    return out
+
+
+def _vector(*parts: Any) -> np.ndarray:
+    return np.stack(np.broadcast_arrays(*parts), axis=-1)
+
+
+def _moved(transform: np.ndarray, point: np.ndarray) -> np.ndarray:
+    """A point (3,) after transforms (..., 4, 4)."""
+    moved: np.ndarray = transform[..., :3, :3] @ point + transform[..., :3, 3]
+    return moved
+
+
+def _dot(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    return np.asarray(np.sum(one * other, axis=-1))
+
+
+def _unit(vector: np.ndarray) -> np.ndarray:
+    return np.asarray(vector / np.linalg.norm(vector, axis=-1, keepdims=True))
+
+
+def _meeting(
+    point: np.ndarray, direction: np.ndarray, other: np.ndarray, along: np.ndarray
+) -> np.ndarray:
+    """Where lines meet (k, 3), each with its point and its direction."""
+    normal = np.cross(direction, along)
+    way = _dot(np.cross(other - point, along), normal) / _dot(normal, normal)
+    return np.asarray(point + way[:, None] * direction)
+
+
+def _triangle(
+    a: float, alpha: float, b: float, beta: float, kink: float, offset: float
+) -> CompositeLink:
+    return composite_link(Link(a, alpha), Link(b, beta), kink, offset)
+
+
+def _closure(linkage: str, number: int) -> SimpleNamespace:
+    """The coefficients of the equation for joint 2 or 3 of a line-symmetric Bricard
+    linkage, by their letters."""
+    row = closure_equation(number, numbers_of(table(entry(linkage).build())))
+    return SimpleNamespace(**dict(zip(LETTERS, row, strict=True)))
+
+
+def _ratio(x: Any, y: Any) -> Any:
+    """m of two twists, rad."""
+    return np.sin((x + y) / 2) / np.sin((x - y) / 2)
+
+
+def _jump(degrees: list[float], t: float, below: int, above: int) -> float:
+    """The gap between the angles theta4 of a double-Goldberg linkage, as |sin| of half
+    their difference, at tan(theta1/2) = ``t`` between the root ``below`` and the root
+    ``above``: at a switch of the root the curve must go on."""
+    at = 2 * np.arctan(t)
+    before = _fourth(degrees, at - NEAR, below)
+    after = _fourth(degrees, at + NEAR, above)
+    return float(abs(np.sin((before - after) / 2)))
+
+
+def _fourth(degrees: list[float], theta_1: float, root: int) -> float:
+    """theta4 by (5.2.2), (5.2.4) with 1 - m1 m6 throughout; nan where there is none."""
+    alpha, beta, gamma, delta = np.radians(degrees)
+    m6 = _ratio(beta, gamma)
+    k = _ratio(delta, alpha) * _ratio(delta, gamma)
+    product = _ratio(beta, alpha) * m6
+    t = tan(theta_1 / 2)
+    q = (k - 1) * t / (k + t * t)
+    square = (1 - product) ** 2 - 4 * product * q * q
+    if square < 0:
+        return nan
+    p = ((1 - product) + root * np.sqrt(square)) / (2 * m6 * q)
+    return float(2 * np.arctan(m6 * p))
+
+
+FUNCTIONS: dict[str, Any] = {
+    "sin": np.sin,
+    "cos": np.cos,
+    "tan": np.tan,
+    "atan": np.arctan,
+    "atan2": np.arctan2,
+    "sqrt": np.emath.sqrt,
+    "abs": np.abs,
+    "round": np.round,
+    "least": lambda *values: np.min(np.abs(values)),
+    "unless": lambda is_left_out, value: np.where(is_left_out, np.nan, value),
+    "m": _ratio,
+    "inv": np.linalg.inv,
+    "I": np.eye(4),
+    "Rx": _turn(0),
+    "Ry": _turn(1),
+    "Rz": _turn(2),
+    "shift": _shift,
+    "vector": _vector,
+    "moved": _moved,
+    "dot": _dot,
+    "cross": np.cross,
+    "unit": _unit,
+    "meeting": _meeting,
+    "triangle": _triangle,
+    "closure": _closure,
+    "jump": _jump,
+}
+
+
+# --- what is no formula
 
 
 def corrector() -> Amounts:
@@ -105,114 +244,4 @@ def _defect_after(sign: int, corrections: int) -> float:
         screws = loop.joint_screws(theta)
         solution = np.linalg.lstsq(screws, sign * six, rcond=1e-6)
         theta = theta + solution[0]
-    return largest_gap(loop.frames(theta)[-1], identity)
-
-
-def opposite_angles() -> Amounts:
-    """The angles that are said to be equal before (4.2.1)."""
-    _, path = path_along("bricard-line-symmetric")
-
-    def gaps(others: list[int]) -> np.ndarray:
-        half = (path[:, [0, 1, 2]] - path[:, others]) / 2
-        return np.asarray(np.abs(np.sin(half)).max(axis=1))
-
-    return median_and_largest(gaps([2, 3, 5]), gaps([3, 4, 5]))
-
-
-def sixth_angle() -> Amounts:
-    """Equation (3.4.6): theta1S, theta1G from theta2S = ... by the corrected (3.4.4),
-    (3.4.5)."""
-    linkage = "mixed-double-goldberg-type-i"
-    _, path = path_along(linkage)
-    values = entry(linkage).defaults
-    u_a = np.tan(values["alpha"] / 2)
-    u_b = np.tan(values["beta"] / 2)
-    u_d = np.tan(values["delta"] / 2)
-    m1 = (u_b + u_a) / (u_b - u_a)
-    m3 = (u_d + u_a) / (u_d - u_a)
-    # theta1 = theta2S and theta5 = -theta2G
-    first_half = path[:, 0] / 2
-    other_half = path[:, 4] / 2
-    first = 2 * np.arctan2(-m1 * np.cos(first_half), np.sin(first_half))
-    other = 2 * np.arctan2(m3 * np.cos(other_half), np.sin(other_half))
-    value = np.pi + first - other
-
-    def gaps(i: int) -> np.ndarray:
-        return np.asarray(np.abs(np.sin((path[:, i] - value) / 2)))
-
-    return median_and_largest(gaps(2), gaps(5))
-
-
-def second_twist() -> Amounts:
-    """Equation (3.4.11): alpha34 = delta already; the second "alpha34" is alpha45."""
-    linkage = entry("mixed-double-goldberg-type-ii")
-    _, _, alpha34, alpha45, *_ = linkage.build().twists
-    expected = linkage.defaults["alpha"] + linkage.defaults["gamma"]
-    return Amounts(abs(alpha34 - expected), abs(alpha45 - expected))
-
-
-# --- between numbers
-
-
-def special_length() -> Amounts:
-    """Equation (5.2.34): b = sin(beta)/sin(alpha), to the four decimals that are
-    printed."""
-    rounded = round(sin(radians(60)) / sin(radians(125)), 4)
-    return Amounts(abs(1.5072 - rounded), abs(1.0572 - rounded))
-
-
-def cosine_multipliers() -> Amounts:
-    """Equation (5.2.21): the first fraction must stay sin((d+g)/2)/sin((d-g)/2), times
-    one; (5.2.22) follows."""
-    d = radians(83)
-    g = radians(28)
-    half_sum = (d + g) / 2
-    half_difference = (d - g) / 2
-    value = sin(half_sum) / sin(half_difference)
-    printed = sin(d + g) / (sin(d) - cos(g))
-    corrected = (sin(d) + sin(g)) / sin(d - g)
-    second = sin(d + g) / (sin(d) - sin(g)) * cos(half_sum) / cos(half_sum)
-    double = 2 * cos(half_sum)
-    expected = sin(half_sum) * double / (sin(half_difference) * double)
-    left = max(abs(corrected - value), abs(second - expected))
-    return Amounts(abs(printed - expected), left)
-
-
-def triangle_offset() -> Amounts:
-    """Equation (5.3.2): R3 over sin(alpha31) sin(theta3), or over sin(alpha23)
-    sin(theta2)."""
-    a = 0.9
-    alpha = radians(35)
-    b = 2.0
-    beta = radians(60)
-    theta_2 = radians(-70)
-    triangle = composite_link(Link(a, alpha), Link(b, beta), theta_2, 0.7)
-    d = float(triangle.link.length)
-    r3 = -float(triangle.after.offset)
-    theta_3 = pi - float(triangle.after.angle)
-    mixed = cos(beta) * sin(theta_2) * sin(theta_3) - cos(theta_2) * cos(theta_3)
-    top = d * mixed - a - b * cos(theta_2)
-    printed = top / (sin(float(triangle.link.twist)) * sin(theta_3))
-    corrected = top / (sin(beta) * sin(theta_2))
-    return Amounts(abs(abs(printed) - abs(r3)), abs(abs(corrected) - abs(r3)))
-
-
-def line_symmetric_bennett() -> Amounts:
-    """Equation (5.3.6): cosines or sines with the twist gamma, the second twist being
-    gamma - pi."""
-    alpha = radians(66)
-    gamma = radians(50)
-    loop = entry("bennett-lb-2").build(a=1.0, alpha=alpha, beta=gamma)
-
-    def defect(product: float) -> float:
-        t = 0.8
-        one = 2 * np.arctan(t)
-        other = 2 * np.arctan(product / t)
-        product_of_all = loop.frames(np.array([one, other, one, other]))[-1]
-        return float(np.abs(product_of_all - np.eye(4)).max())
-
-    total = (gamma + alpha) / 2
-    difference = (gamma - alpha) / 2
-    printed = defect(cos(total) / cos(difference))
-    corrected = defect(sin(total) / sin(difference))
-    return Amounts(printed, corrected)
+    return float(np.abs(loop.frames(theta)[-1] - identity).max())

@@ -43,14 +43,7 @@ class WordErratum:
     see: Callable[[], str]
 
 
-def median_and_largest(
-    printed: list[float] | np.ndarray, corrected: list[float] | np.ndarray
-) -> Amounts:
+def median_and_largest(printed: np.ndarray, corrected: np.ndarray) -> Amounts:
     """The median of what the print leaves along a path, and the largest of what the
     correction leaves."""
     return Amounts(float(np.median(printed)), float(np.max(corrected)))
-
-
-def largest_gap(x: np.ndarray, y: np.ndarray) -> float:
-    """The largest difference of two arrays."""
-    return float(np.abs(x - y).max())

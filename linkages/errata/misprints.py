@@ -14,20 +14,22 @@ words), and conditions that are only stricter than needed, are not listed.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache, partial
 from importlib import resources
 from pkgutil import resolve_name
+from types import MappingProxyType
 from typing import Any
 
-from linkages.errata import conditions, forms
+from linkages.errata import conditions, equations, forms
 from linkages.errata.erratum import Amounts, Erratum, WordErratum
 
 TABLE = "errata.toml"
+NOTHING: Mapping[str, Any] = MappingProxyType({})
 
 
 @cache
-def _tables() -> dict[str, list[dict[str, Any]]]:
+def _tables() -> dict[str, Any]:
     file = resources.files("linkages.errata") / TABLE
     return tomllib.loads(file.read_text(encoding="utf-8"))
 
@@ -45,25 +47,27 @@ def _erratum(
     return Erratum(source, equation, linkage, printed, corrected, measure)
 
 
-def _measure(linkage: str, form: int = 0, **by: Any) -> Callable[[], Amounts]:
+def _measure(
+    linkage: str,
+    form: int = 0,
+    given: str = "",
+    where: Mapping[str, Any] = NOTHING,
+    **by: Any,
+) -> Callable[[], Amounts]:
     """How a misprint of this linkage is measured, see the head of the table; raises
     `ValueError` for another way, and for several."""
     ((way, what),) = by.items()
-    compare_forms = partial(forms.compare_closed_forms, linkage, form)
-    compare_mobility = partial(conditions.compare_mobility, linkage)
     match way:
         case "measure":
             function: Callable[[], Amounts] = resolve_name(f"linkages.errata.{what}")
             return function
-        case "change":
-            return partial(compare_forms, getattr(forms, what))
-        case "constants":
-            return partial(compare_forms, partial(forms.with_constants, what))
-        case "loop":
-            return partial(compare_mobility, getattr(conditions, what))
+        case "closed_form":
+            return partial(forms.compare_closed_forms, linkage, form, what)
         case "table":
-            build = partial(conditions.changed_member, linkage, what)
-            return partial(compare_mobility, build)
+            return partial(conditions.compare_mobility, linkage, what, where)
+        case "gaps":
+            names = {**_tables()["definitions"].get(given, {}), **where}
+            return partial(equations.compare_equations, linkage, names, **what)
     raise ValueError(f"misprint of {linkage}: nothing is measured by {way!r}")
 
 

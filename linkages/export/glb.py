@@ -10,9 +10,9 @@ import numpy as np
 
 from bifurc.figures.style import COLORS
 from linkages.export.gltf import BinaryGltf
-from linkages.export.model import LinkageModel, Motion, Poses, Symbol
+from linkages.export.model import Body, LinkageModel, Motion, Poses
 from linkages.mechanisms.joint import Shape
-from linkages.values import GeometryError
+from linkages.values import require
 
 ROD_RADIUS = 0.03  # in characteristic lengths, as the next two and `SCALES`
 JOINT_RADIUS = 0.07
@@ -125,18 +125,15 @@ def make_glb(model: LinkageModel, generator: str) -> bytes:
     the axes of the joints behind them. Lengths are those of the linkage, times in
     seconds. Raises `GeometryError` for lengths beyond floats of 32 bits.
     """
-    if not SMALLEST < model.size < LARGEST:
-        allowed = f"between {SMALLEST:g} and {LARGEST:g}, for a model of 32-bit floats"
-        raise GeometryError("characteristic length", model.size, allowed)
+    is_float = SMALLEST < model.size < LARGEST
+    allowed = f"between {SMALLEST:g} and {LARGEST:g}, for a model of 32-bit floats"
+    require(is_float, "characteristic length", model.size, allowed)
     file = BinaryGltf(generator)
     rods, joints = _add_meshes(file, model)
     first = model.motions[0][1]
     bodies = []
     for number, body in enumerate(model.bodies):
-        rod = rods[number % len(rods)]
-        children = [_add_rod(file, rod, *ends, model.size) for ends in body.rods]
-        for symbol in body.symbols:
-            children.append(_add_symbol(file, joints, symbol, model.size))
+        children = _add_parts(file, body, rods[number % len(rods)], joints, model.size)
         # the format has no empty list of children
         parts = {"children": children} if children else {}
         node = file.add(
@@ -197,31 +194,44 @@ def _add_material(file: BinaryGltf, name: str, color: str) -> int:
     return file.add("materials", name=name, pbrMetallicRoughness=surface)
 
 
-def _add_rod(
-    file: BinaryGltf, mesh: int, start: np.ndarray, end: np.ndarray, size: float
+def _add_parts(
+    file: BinaryGltf, body: Body, rod: int, joints: dict[Shape, int], size: float
+) -> list[int]:
+    """The rods and the joints of a body."""
+    parts = []
+    for start, end in body.rods:
+        way = end - start
+        length = float(np.linalg.norm(way))
+        scale = np.array([ROD_RADIUS * size, ROD_RADIUS * size, length])
+        middle = (start + end) / 2
+        parts.append(_add_part(file, "rod", rod, middle, way / length, scale))
+    for one in body.symbols:
+        mesh, scale = joints[one.shape], size * np.array(SCALES[one.shape])
+        part = _add_part(file, one.name, mesh, one.place, one.direction, scale)
+        parts.append(part)
+    return parts
+
+
+def _add_part(
+    file: BinaryGltf,
+    name: str,
+    mesh: int,
+    place: np.ndarray,
+    direction: np.ndarray,
+    scale: np.ndarray,
 ) -> int:
-    way = end - start
-    length = float(np.linalg.norm(way))
+    """A mesh of a ``scale`` (3,) about a ``place`` (3,), its z axis along a
+    ``direction`` (3,)."""
+    from scipy.spatial.transform import Rotation
+
+    turn, _ = Rotation.align_vectors([direction], [[0.0, 0.0, 1.0]])
     return file.add(
         "nodes",
-        name="rod",
+        name=name,
         mesh=mesh,
-        translation=((start + end) / 2).tolist(),
-        rotation=_rotation_from_z(way / length),
-        scale=[ROD_RADIUS * size, ROD_RADIUS * size, length],
-    )
-
-
-def _add_symbol(
-    file: BinaryGltf, meshes: dict[Shape, int], symbol: Symbol, size: float
-) -> int:
-    return file.add(
-        "nodes",
-        name=symbol.name,
-        mesh=meshes[symbol.shape],
-        translation=symbol.place.tolist(),
-        rotation=_rotation_from_z(symbol.direction),
-        scale=[size * share for share in SCALES[symbol.shape]],
+        translation=place.tolist(),
+        rotation=turn.as_quat().tolist(),
+        scale=scale.tolist(),
     )
 
 
@@ -248,15 +258,6 @@ def _add_animation(
             output = {"output": file.add_floats(values), "interpolation": "LINEAR"}
             samplers.append({"input": times, **output})
     file.add("animations", name=motion.name, samplers=samplers, channels=channels)
-
-
-def _rotation_from_z(direction: np.ndarray) -> list[float]:
-    """The quaternion (4,) of a rotation from z to a unit vector (3,)."""
-    from scipy.spatial.transform import Rotation
-
-    turn, _ = Rotation.align_vectors([direction], [[0.0, 0.0, 1.0]])
-    quaternion: list[float] = turn.as_quat().tolist()
-    return quaternion
 
 
 def _linear(color: str) -> list[float]:

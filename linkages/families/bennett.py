@@ -11,18 +11,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from linkages.closed_forms.closed_form import (
-    ClosedForm,
-    constant,
-    joint,
-    only,
-    reciprocal,
-    signed,
-    tangent,
-)
 from linkages.construction.conditions import (
     bennett_length,
     require_positive,
@@ -35,135 +27,70 @@ from linkages.loop import Loop
 
 POSITION = 30
 ALIKE, OPPOSITE = +1, -1  # how opposite joints turn
+SecondTwist: TypeAlias = Callable[[Any], Any]  # that of links 23, 41, from beta
 
 
-def _loop(
-    a: Number, alpha: Number, beta: Number, b: Number | None, second_twist: Number
+def bennett(
+    a: Number,
+    alpha: Number,
+    beta: Number,
+    b: Number | None = None,
+    *,
+    second_twist: SecondTwist = lambda beta: beta,
 ) -> Loop:
-    require_positive("length of link 12", a)
-    require_twists(alpha=alpha, beta=beta)
-    b = bennett_length("23", beta, b, a, alpha)
-    twists = (alpha, second_twist, alpha, second_twist)
-    return Loop((a, b, a, b), twists, (0, 0, 0, 0), "bennett")
-
-
-def bennett(a: Number, alpha: Number, beta: Number, b: Number | None = None) -> Loop:
-    """The asymmetric Bennett linkage AB-1: links a/alpha and b/beta in turn, b = a
-    sin(beta)/sin(alpha).
+    """The Bennett linkage with links a/alpha and b/beta in turn, b = a
+    sin(beta)/sin(alpha): AB-1, or that with another second twist.
 
     Twists in rad, between 0 and pi. A given ``b`` is checked. Raises `GeometryError`
     when it does not have the Bennett ratio of the first link. Closed form: theta3 =
     -theta1, theta4 = -theta2 and tan(theta1/2) tan(theta2/2) = sin((beta + alpha)/2) /
-    sin((beta - alpha)/2) (Song 2013, eqs 2.2.2-2.2.4).
+    sin((beta - alpha)/2) (Song 2013, eqs 2.2.2-2.2.4); in the line-symmetric set-ups
+    theta3 = theta1, theta4 = theta2 and cos((alpha23 + alpha)/2) / cos((alpha23 -
+    alpha)/2) (eq. 2.2.14).
     """
-    return _loop(a, alpha, beta, b, beta)
-
-
-def bennett_ab_2(
-    a: Number, alpha: Number, beta: Number, b: Number | None = None
-) -> Loop:
-    """The asymmetric Bennett linkage AB-2, as `bennett` with the second twist pi - beta
-    (Song 2013, eq. 2.2.18)."""
-    return _loop(a, alpha, beta, b, pi_like(alpha, beta) - beta)
-
-
-def bennett_line_symmetric(
-    a: Number, alpha: Number, beta: Number, b: Number | None = None
-) -> Loop:
-    """The line-symmetric Bennett linkage LB-1, as `bennett` with the second twist -beta
-    (Song 2013, eqs 2.2.13, 2.2.17).
-
-    Closed form: theta3 = theta1, theta4 = theta2 and tan(theta1/2) tan(theta2/2) =
-    cos((alpha23 + alpha)/2) / cos((alpha23 - alpha)/2) (eq. 2.2.14).
-    """
-    return _loop(a, alpha, beta, b, -beta)
-
-
-def bennett_lb_2(
-    a: Number, alpha: Number, beta: Number, b: Number | None = None
-) -> Loop:
-    """The line-symmetric Bennett linkage LB-2, as `bennett_line_symmetric` with the
-    second twist beta - pi (Song 2013, eq. 2.2.17)."""
-    return _loop(a, alpha, beta, b, beta - pi_like(alpha, beta))
-
-
-# --- form and closed form
+    require_positive("length of link 12", a)
+    require_twists(alpha=alpha, beta=beta)
+    b = bennett_length("23", beta, b, a, alpha)
+    twists = (alpha, second_twist(beta)) * 2
+    return Loop((a, b, a, b), twists, (0, 0, 0, 0), "bennett")
 
 
 def _patterns(
-    sign: int, second_twist: Callable[[float], float]
-) -> Callable[..., tuple[FormPattern, ...]]:
-    """Patterns of a set-up: opposite joints turn alike (``sign`` +1) or oppositely
-    (-1)."""
+    sign: int, second_twist: SecondTwist, a: float, alpha: float, beta: float
+) -> tuple[FormPattern, ...]:
+    """The form where opposite joints turn alike (``sign`` +1) or oppositely (-1)."""
+    total = (alpha + second_twist(beta)) / 2
+    difference = (second_twist(beta) - alpha) / 2
+    f = math.cos if sign > 0 else math.sin
+    top = f(total)
+    bottom = f(difference)
 
-    def patterns(a: float, alpha: float, beta: float) -> tuple[FormPattern, ...]:
-        total = (alpha + second_twist(beta)) / 2
-        difference = (second_twist(beta) - alpha) / 2
-        f = math.cos if sign > 0 else math.sin
-        top = f(total)
-        bottom = f(difference)
+    def residual(theta: np.ndarray) -> np.ndarray:
+        h = np.moveaxis(np.asarray(theta) / 2, -1, 0)
+        s = np.sin(h)
+        c = np.cos(h)
+        rows = [
+            np.sin(h[2] - sign * h[0]),
+            np.sin(h[3] - sign * h[1]),
+            bottom * s[0] * s[1] - top * c[0] * c[1],
+        ]
+        return np.stack(rows, axis=-1)
 
-        def residual(theta: np.ndarray) -> np.ndarray:
-            h = np.moveaxis(np.asarray(theta) / 2, -1, 0)
-            s = np.sin(h)
-            c = np.cos(h)
-            rows = [
-                np.sin(h[2] - sign * h[0]),
-                np.sin(h[3] - sign * h[1]),
-                bottom * s[0] * s[1] - top * c[0] * c[1],
-            ]
-            return np.stack(rows, axis=-1)
-
-        return (FormPattern("Bennett form", residual),)
-
-    return patterns
+    return (FormPattern("Bennett form", residual),)
 
 
-def _formulas(
-    sign: int, is_quotient_of_sums: bool, equations: str, linkage: str
-) -> tuple[ClosedForm, ...]:
-    """The closed form with t1 t2 = (v + u)/(v - u) or (1 + u v)/(1 - u v), u and v being
-    the half tangents of alpha and beta; ``sign`` as in `_patterns`."""
-    u = tangent("alpha")
-    v = tangent("beta")
-    product = (1 + u * v) / (1 - u * v)
-    if is_quotient_of_sums:
-        product = (v + u) / (v - u)
-    first = joint(1)
-    second = reciprocal(first, constant("m"))
-    form = ClosedForm(
-        linkage,
-        "Bennett form",
-        "Song 2013, eq. " + equations,
-        ("alpha", "beta"),
-        only(first, second, signed(sign, first), signed(sign, second)),
-        {"m": product},
-    )
-    return (form,)
+def _model(sign: int, second_twist: SecondTwist) -> Model:
+    construct = partial(bennett, second_twist=second_twist)
+    return Model(construct, partial(_patterns, sign, second_twist))
 
 
+# Song (2013), equations (2.2.18), (2.2.13) and (2.2.17) for the second twists
 ENTRIES = read_entries(
     "bennett",
     {
-        "bennett": Model(
-            bennett,
-            _patterns(OPPOSITE, lambda beta: beta),
-            partial(_formulas, OPPOSITE, True, "(2.2.3), (2.2.4)"),
-        ),
-        "bennett-ab-2": Model(
-            bennett_ab_2,
-            _patterns(OPPOSITE, lambda beta: math.pi - beta),
-            partial(_formulas, OPPOSITE, False, "(2.2.4) with (2.2.18)"),
-        ),
-        "bennett-line-symmetric": Model(
-            bennett_line_symmetric,
-            _patterns(ALIKE, lambda beta: -beta),
-            partial(_formulas, ALIKE, False, "(2.2.14)"),
-        ),
-        "bennett-lb-2": Model(
-            bennett_lb_2,
-            _patterns(ALIKE, lambda beta: beta - math.pi),
-            partial(_formulas, ALIKE, True, "(2.2.14) with (2.2.17)"),
-        ),
+        "bennett": _model(OPPOSITE, lambda beta: beta),
+        "bennett-ab-2": _model(OPPOSITE, lambda beta: pi_like(beta) - beta),
+        "bennett-line-symmetric": _model(ALIKE, lambda beta: -beta),
+        "bennett-lb-2": _model(ALIKE, lambda beta: beta - pi_like(beta)),
     },
 )

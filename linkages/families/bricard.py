@@ -15,23 +15,14 @@ root for theta3, Form II the opposite: the discriminants of both are the same.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 
-from linkages.closed_forms.closed_form import (
-    ClosedForm,
-    Pair,
-    constant,
-    cosine_of,
-    joint,
-    signed,
-    sine_of,
-    tangent,
-)
+from linkages.closed_forms.form_table import form_tables
 from linkages.construction.conditions import decided
+from linkages.construction.equations import evaluate
 from linkages.construction.link import Link, closed_chain
 from linkages.construction.numbers import Number
 from linkages.entry import FormPattern
@@ -92,60 +83,33 @@ def revised_line_symmetric(
     return closed_chain(*half, *half, offsets=(R1, R2, R3, -R1, -R2, -R3))
 
 
-# --- the equations of closure
+# --- forms
 
-Three = tuple[Number, Number, Number]
-Coefficients = tuple[Number, ...]
 # of sin1, cos1, sin, cos, sin1 sin, sin1 cos, cos1 sin, cos1 cos, 1
 LETTERS = "ABCDEFGHL"
+LINKS = ("12", "23", "34")
 
 
-class Equations(NamedTuple):
-    """Coefficients (A, ..., H, L) of the equations for theta2 and for theta3."""
+def closure_equation(
+    number: int, values: Mapping[str, float], sign: int = 1
+) -> np.ndarray:
+    """The coefficients (9,) A, ..., H, L of the equation for the angle of joint 2 or 3
+    where opposite joints turn alike, or for ``sign`` -1 oppositely.
 
-    second: Coefficients
-    third: Coefficients
-
-
-def closure_equations(
-    a: Three, c: Three, s: Three, R: Three, sign: int = 1
-) -> Equations:
-    """The equations where opposite joints turn alike (eqs 4.2.15, 4.2.22), or for
-    ``sign`` -1 oppositely, with opposite offsets (eqs 4.3.6, 4.3.8; the latter is not in
-    the text): those with the twist alpha34 turned round.
-
-    ``a``, ``R`` are the three lengths and offsets, ``c``, ``s`` cosines and sines of
-    the twists, of any number type.
+    ``values`` are lengths, twists (rad) and offsets by their names; offsets that are not
+    among them are 0.
     """
-    (a12, a23, a34), (r1, r2, r3) = a, R
-    c12, c23, c34 = c[0], c[1], sign * c[2]
-    s12, s23, s34 = s[0], s[1], sign * s[2]
-    second = (
-        a34 * s12 * c23 + a12 * s34,
-        -(r3 * s12 * c23 * s34 + r2 * s12 * s34),
-        a23 * s12 * c34 + a12 * s23,
-        -(r3 * s12 * s23 * c34 + r1 * s12 * s23),
-        r3 * s23 * s34,
-        a34 * c12 * s23 + a23 * s34,
-        a23 * c12 * s34 + a34 * s23,
-        -r3 * c12 * s23 * s34,
-        r1 * (c12 * c23 + c34) + r2 * (c23 + c12 * c34) + r3 * (1 + c12 * c23 * c34),
-    )
-    third = (
-        a12 * c23 * s34 + a34 * s12,
-        -(r2 * s12 * c23 * s34 + r3 * s12 * s34),
-        a23 * c12 * s34 + a34 * s23,
-        -(r2 * c12 * s23 * s34 + r1 * s23 * s34),
-        r2 * s12 * s23,
-        a12 * s23 * c34 + a23 * s12,
-        a23 * s12 * c34 + a12 * s23,
-        -r2 * s12 * s23 * c34,
-        r1 * (c12 + c23 * c34) + r2 * (1 + c12 * c23 * c34) + r3 * (c23 + c12 * c34),
-    )
-    return Equations(second, third)
-
-
-# --- forms
+    names = {"R1": 0.0, "R2": 0.0, "R3": 0.0, **values}
+    for link in LINKS:
+        turn = sign if link == "34" else 1
+        twist = values[f"alpha{link}"]
+        names |= {
+            f"c{link}": turn * math.cos(twist),
+            f"s{link}": turn * math.sin(twist),
+        }
+    constants = form_tables("bricard")["bricard-line-symmetric"][0]["constants"]
+    formulas = [constants[f"{letter}_{number}"] for letter in LETTERS]
+    return np.array([evaluate(formula, names) for formula in formulas])
 
 
 def _value_and_slope(
@@ -165,13 +129,8 @@ def _value_and_slope(
     return value, slope
 
 
-def _scaled(coefficients: Coefficients) -> np.ndarray:
-    k = np.array([float(value) for value in coefficients])
-    return np.asarray(k / max(np.abs(k).max(), 1e-300))
-
-
 def _residual(
-    sign: int, root: int, equations: Equations
+    sign: int, root: int, values: Mapping[str, float]
 ) -> Callable[[np.ndarray], np.ndarray]:
     """Residual of theta_{i+3} = sign theta_i, both equations, and their roots if
     ``root`` is +1 or -1.
@@ -180,8 +139,9 @@ def _residual(
     that its sign names the root, without poles and without regard to where the form is
     entered.
     """
-    second = _scaled(equations.second)
-    third = _scaled(equations.third)
+    second, third = (closure_equation(number, values, sign) for number in (2, 3))
+    second = second / max(np.abs(second).max(), 1e-300)
+    third = third / max(np.abs(third).max(), 1e-300)
 
     def residual(theta: np.ndarray) -> np.ndarray:
         theta = np.asarray(theta)
@@ -198,41 +158,24 @@ def _residual(
     return residual
 
 
-def patterns(
-    a12: float,
-    a23: float,
-    a34: float,
-    alpha12: float,
-    alpha23: float,
-    alpha34: float,
-    R1: float = 0.0,
-    R2: float = 0.0,
-    R3: float = 0.0,
-    revised: bool = False,
-) -> tuple[FormPattern, ...]:
+def patterns(revised: bool = False, /, **values: float) -> tuple[FormPattern, ...]:
     """Forms I and II, and, where one closed curve holds both, "Forms I and II"; for
     the ``revised`` linkage I' and II', for zero offsets all of them.
 
-    Lengths and offsets in one unit, twists in rad.
+    ``values`` are the parameters of `bricard_line_symmetric`.
     """
-    a = (a12, a23, a34)
-    c = (math.cos(alpha12), math.cos(alpha23), math.cos(alpha34))
-    s = (math.sin(alpha12), math.sin(alpha23), math.sin(alpha34))
-    R = (R1, R2, R3)
-    has_lengths = max(a) > 0
-    has_offsets = max(abs(R1), abs(R2), abs(R3)) > 0
+    has_lengths = max(values[f"a{link}"] for link in LINKS) > 0
+    has_offsets = any(values.get(f"R{joint}", 0.0) for joint in (1, 2, 3))
     out = []
     if not revised:
-        equations = closure_equations(a, c, s, R)
-        out += _three_patterns("original", "", +1, equations)
+        out += _three_patterns("original", "", +1, values)
     if revised or (has_lengths and not has_offsets):
-        equations = closure_equations(a, c, s, R, -1)
-        out += _three_patterns("revised", "'", -1, equations)
+        out += _three_patterns("revised", "'", -1, values)
     return tuple(out)
 
 
 def _three_patterns(
-    suffix: str, mark: str, sign: int, equations: Equations
+    suffix: str, mark: str, sign: int, values: Mapping[str, float]
 ) -> list[FormPattern]:
     roots = {
         f"Form I{mark}": +1,
@@ -240,132 +183,23 @@ def _three_patterns(
         f"Forms I{mark} and II{mark}": 0,
     }
     return [
-        FormPattern(f"{name} ({suffix})", _residual(sign, root, equations))
+        FormPattern(f"{name} ({suffix})", _residual(sign, root, values))
         for name, root in roots.items()
     ]
 
 
-# --- closed forms
-
-LENGTH_NAMES = ("a12", "a23", "a34")
-TWIST_NAMES = ("alpha12", "alpha23", "alpha34")
-OFFSET_NAMES = ("R1", "R2", "R3")
-
-
-class _Quadratic(NamedTuple):
-    """Aterm, Bterm, Cterm of equations (4.2.18), (4.2.21): the quadratic in
-    tan(theta/2) of joint 2 or 3."""
-
-    a: Number
-    b: Number
-    c: Number
-
-
-def _quadratic(number: int) -> _Quadratic:
-    """The quadratic of joint ``number``."""
-    a, b, c, d, e, f, g, h, free = (constant(f"{x}_{number}") for x in LETTERS)
-    s1, c1 = joint(1)
-    sine = 2 * s1 * c1
-    cosine = c1**2 - s1**2
-    one = s1**2 + c1**2
-    rest = a * sine + b * cosine + free * one
-    by_sin = c * one + e * sine + g * cosine
-    by_cos = d * one + f * sine + h * cosine
-    return _Quadratic(rest - by_cos, 2 * by_sin, rest + by_cos)
-
-
-def _third_pairs() -> tuple[Pair, ...]:
-    """The pairs of joint 3: its root has the sign opposite to that of joint 2."""
-    second = _quadratic(2)
-    third = _quadratic(3)
-    s, c = joint(2)
-    # the square root, as two quotients
-    roots = (
-        (2 * second.a * s + second.b * c, c),
-        (-2 * second.c * c - second.b * s, s),
-    )
-    out: list[Pair] = []
-    for top, bottom in roots:
-        out.append((-third.b * bottom - top, 2 * third.a * bottom))
-        out.append((2 * third.c * bottom, top - third.b * bottom))
-    return tuple(out)
-
-
-def _symbols(names: tuple[str, ...], parameters: tuple[str, ...]) -> Three:
-    """The symbols of ``names``, or 0 for those that are none of the ``parameters``."""
-    x, y, z = (constant(name) if name in parameters else 0 for name in names)
-    return x, y, z
-
-
-def _closed_form(
-    linkage: str,
-    sign: int,
-    lengths: tuple[str, ...],
-    offsets: tuple[str, ...],
-) -> ClosedForm:
-    """``sign`` +1 where opposite joints turn alike, -1 where oppositely."""
-    u12, u23, u34 = (tangent(name) for name in TWIST_NAMES)
-    rows = closure_equations(
-        _symbols(LENGTH_NAMES, lengths),
-        (cosine_of(u12), cosine_of(u23), cosine_of(u34)),
-        (sine_of(u12), sine_of(u23), sine_of(u34)),
-        _symbols(OFFSET_NAMES, offsets),
-        sign,
-    )
-    constants = {}
-    for number, row in ((2, rows.second), (3, rows.third)):
-        for letter, value in zip(LETTERS, row, strict=True):
-            constants[f"{letter}_{number}"] = value
-    s, c = joint(2)
-    quadratic = _quadratic(2)
-    half: tuple[tuple[Pair, ...], ...] = ((joint(1),), (joint(2),), _third_pairs())
-    other = tuple(tuple(signed(sign, pair) for pair in pairs) for pairs in half)
-    return ClosedForm(
-        linkage,
-        "Forms I and II" if sign > 0 else "Forms I' and II'",
-        ORIGINAL if sign > 0 else REVISED,
-        TWIST_NAMES,
-        (*half, *other),
-        constants,
-        (*lengths, *offsets),
-        relation=quadratic.a * s**2 + quadratic.b * s * c + quadratic.c * c**2,
-        second=2,
-    )
-
-
-ORIGINAL = "Song 2013, eqs (4.2.14)-(4.2.24), H2 and L2 of (4.2.15) completed"
-REVISED = "Song 2013, eqs (4.3.3)-(4.3.8), (4.3.8) being missing in the text"
-
-
-def _formulas(
-    signs: tuple[int, ...],
-    linkage: str,
-    lengths: tuple[str, ...] = LENGTH_NAMES,
-    offsets: tuple[str, ...] = OFFSET_NAMES,
-) -> tuple[ClosedForm, ...]:
-    return tuple(_closed_form(linkage, sign, lengths, offsets) for sign in signs)
-
+NO_LENGTHS = {"a12": 0.0, "a23": 0.0, "a34": 0.0}
 
 ENTRIES = read_entries(
     "bricard",
     {
-        "bricard-line-symmetric": Model(
-            bricard_line_symmetric, patterns, partial(_formulas, (+1,))
-        ),
-        "bricard-line-symmetric-zero-offset": Model(
-            bricard_line_symmetric,
-            patterns,
-            partial(_formulas, (+1, -1), offsets=()),
-        ),
+        "bricard-line-symmetric": Model(bricard_line_symmetric, patterns),
+        "bricard-line-symmetric-zero-offset": Model(bricard_line_symmetric, patterns),
         "bricard-octahedral-line-symmetric": Model(
-            bricard_octahedral_line_symmetric,
-            partial(patterns, 0.0, 0.0, 0.0),
-            partial(_formulas, (+1,), lengths=()),
+            bricard_octahedral_line_symmetric, partial(patterns, False, **NO_LENGTHS)
         ),
         "bricard-line-symmetric-revised": Model(
-            revised_line_symmetric,
-            partial(patterns, revised=True),
-            partial(_formulas, (-1,)),
+            revised_line_symmetric, partial(patterns, True)
         ),
     },
 )

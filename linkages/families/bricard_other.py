@@ -38,14 +38,8 @@ def trihedral(
         require_equal("a61^2", a61**2, square, name)
     odd = pi_like(a12, a23, a34, a45, a56) / 2
     even = -odd if alternating else odd
-    return closed_chain(
-        Link(a12, odd),
-        Link(a23, even),
-        Link(a34, odd),
-        Link(a45, even),
-        Link(a56, odd),
-        Link(a61, even),
-    )
+    lengths = (a12, a23, a34, a45, a56, a61)
+    return Loop(lengths, (odd, even) * 3, (0,) * 6)
 
 
 def altmann(a12: Number, a34: Number) -> Loop:
@@ -55,14 +49,8 @@ def altmann(a12: Number, a34: Number) -> Loop:
     Source: Altmann (1954), Baker (1993b); equation (2.4.21) in Song (2013).
     """
     right = pi_like(a12, a34) / 2
-    return closed_chain(
-        Link(a12, right),
-        Link(0, right),
-        Link(a34, right),
-        Link(a12, -right),
-        Link(0, right),
-        Link(a34, -right),
-    )
+    twists = (right, right, right, -right, right, -right)
+    return Loop((a12, 0, a34) * 2, twists, (0,) * 6)
 
 
 def wohlhart_hybrid(

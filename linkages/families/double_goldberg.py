@@ -22,21 +22,6 @@ where t1 and t4 are 0 or infinite, and that tells the two forms of a pair apart:
   roots describes one smooth circuit, it is this one.
 - Form III is the circuit through t1 = t4 = 0, where it meets Form I of the special
   linkages.
-
-Closed forms. Forms I and II: Song (2013), equations (5.2.2)-(5.2.8); Song and Chen
-(2012), equations (5.2)-(5.5). Both roots of the quadratic are configurations for every
-input, whatever the printed switching says. Written for t1 and t4, the quadratic is
-symmetric; the double-subtractive linkage has -gamma for gamma.
-
-Forms III and IV are known in the sources as numerical paths. Here: theta6 = theta3, and
-with the half-angle tangents a, b, g, d of the basic links, v = a + g, w = a g (g
-negative for the double-subtractive linkage), N_x = v (1 + w x^2) + x (1 - w)^2 and D_x
-= v (1 + w x^2) - x (1 - w)^2,
-
-    d (D_b t4 + N_b / t4) = b (D_d t1 + N_d / t1),   t1 t2 = -N_d / D_d,
-    t4 t5 = -N_b / D_b,   t3 = (b D_d t1 - d D_b t4) / E,   E = v (d - b) (1 + w b d).
-
-Eliminating t4 gives E t3^2 + b (N_d / t1 - D_d t1) t3 + v (d + b) (1 - w b d) = 0.
 """
 
 from __future__ import annotations
@@ -45,25 +30,10 @@ import itertools
 import math
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
-from linkages.closed_forms.closed_form import (
-    HALF_TURN,
-    ZERO,
-    ClosedForm,
-    Pair,
-    constant,
-    joint,
-    minus,
-    negative,
-    only,
-    plus,
-    reciprocal,
-    symbols,
-    tangent,
-)
 from linkages.construction.conditions import (
     bennett_length,
     require_different,
@@ -197,26 +167,17 @@ def _constructive(sign: int, alpha: float, gamma: float, x: float) -> float:
     return _ratio(x, alpha) * _ratio(x, sign * gamma)
 
 
-class _Fraction(NamedTuple):
-    """A quotient whose denominator may vanish."""
-
-    top: float
-    bottom: float
-
-    @property
-    def value(self) -> float:
-        """The quotient."""
-        return self.top / self.bottom
-
-
-def _non_constructive(sign: int, alpha: float, gamma: float, x: float) -> _Fraction:
-    """t_i t_j of the joints on either side of link x, in Forms III and IV."""
+def _non_constructive(
+    sign: int, alpha: float, gamma: float, x: float
+) -> tuple[float, float]:
+    """t_i t_j of the joints on either side of link x, in Forms III and IV, as a quotient
+    whose denominator may vanish."""
     g = sign * gamma
     total = math.sin(alpha) + math.sin(g)
     part = math.sin(x)
     top = total + part + math.sin(alpha + g + x)
     bottom = total - part + math.sin(alpha + g - x)
-    return _Fraction(-top, bottom)
+    return -top, bottom
 
 
 def _products(sign: int, k_d: float, k_b: float) -> Function:
@@ -282,17 +243,16 @@ def _on_side(base: Function, circuit: Function, side: int) -> Function:
 def _non_constructive_patterns(
     sign: int, alpha: float, beta: float, gamma: float, delta: float
 ) -> tuple[FormPattern, ...]:
-    fraction_d = _non_constructive(sign, alpha, gamma, delta)
-    fraction_b = _non_constructive(sign, alpha, gamma, beta)
-    if min(abs(fraction_d.bottom), abs(fraction_b.bottom)) < ALIKE:
+    top_d, bottom_d = _non_constructive(sign, alpha, gamma, delta)
+    top_b, bottom_b = _non_constructive(sign, alpha, gamma, beta)
+    if min(abs(bottom_d), abs(bottom_b)) < ALIKE:
         return ()
-    k_d = fraction_d.value
-    k_b = fraction_b.value
+    k_d = top_d / bottom_d
+    k_b = top_b / bottom_b
     base = _products(-1, k_d, k_b)
     # with t2 and t5 negated this is the curve of the module's head, of products -k_d
     # and -k_b; the slope is (1 + k_b) / (1 + k_d), which is 0/0 for alpha + gamma = pi
-    slope_top = math.sin(beta) * fraction_d.bottom
-    slope = slope_top / (math.sin(delta) * fraction_b.bottom)
+    slope = math.sin(beta) * bottom_d / (math.sin(delta) * bottom_b)
     circuit = _circuit(-k_d, -k_b, slope, t1_infinite=False, t4_infinite=False)
     return (
         FormPattern(FORM_III, _on_side(base, circuit, +1)),
@@ -387,193 +347,6 @@ def _with_partner(
     return residual
 
 
-# --- closed forms
-
-TWISTS = ("alpha", "beta", "gamma", "delta")
-
-
-class _Tangents:
-    """Half tangents of the basic links: b and d ``exchanged`` if so, gamma negative in
-    the DSG, and following from the others in the special linkages."""
-
-    def __init__(self, sign: int, special: bool = False, exchanged: bool = False):
-        alpha, beta, gamma, delta = (tangent(name) for name in TWISTS)
-        self.a = alpha
-        self.b = delta if exchanged else beta
-        self.d = beta if exchanged else delta
-        self.g = sign * (beta * delta / alpha if special else gamma)
-        self.names = ("alpha", "beta", "delta") if special else TWISTS
-
-    def ratios(self) -> dict[str, Number]:
-        """The constants m_xy of the links b, d with a and c."""
-        g = constant("g")
-        return {
-            "g": self.g,
-            "m_da": _sum_over_difference(self.d, self.a),
-            "m_dc": _sum_over_difference(self.d, g),
-            "m_ba": _sum_over_difference(self.b, self.a),
-            "m_bc": _sum_over_difference(self.b, g),
-        }
-
-
-def _sum_over_difference(x: Number, y: Number) -> Number:
-    return (x + y) / (x - y)
-
-
-def _third_pair(fourth: Pair) -> Pair:
-    """Joint 3 in the constructive forms."""
-    before = reciprocal(joint(1), constant("m_da"))
-    after = (fourth[0], constant("m_bc") * fourth[1])
-    return minus(plus(before, after), HALF_TURN)
-
-
-def constructive_closed_form(
-    linkage: str, sign: int, exchanged: bool = False
-) -> ClosedForm:
-    """Forms I and II; ``exchanged`` where links b and d have changed places."""
-    tangents = _Tangents(sign, exchanged=exchanged)
-    first = joint(1)
-    fourth = joint(4)
-    s1, c1 = first
-    s4, c4 = fourth
-    k_d = constant("m_da") * constant("m_dc")
-    k_b = constant("m_ba") * constant("m_bc")
-    left = (k_d - 1) * (s4**2 + k_b * c4**2) * s1 * c1
-    right = (1 - k_b) * (s1**2 + k_d * c1**2) * s4 * c4
-    third = _third_pair(fourth)
-    equations = "(5.2.2)-(5.2.5)" if sign > 0 else "(5.2.6)-(5.2.8)"
-    half_tangents = only(
-        first,
-        reciprocal(first, k_d),
-        third,
-        fourth,
-        reciprocal(fourth, k_b),
-        negative(third),
-    )
-    return ClosedForm(
-        linkage,
-        "Forms I and II",
-        f"Song 2013, eqs {equations}",
-        tangents.names,
-        half_tangents,
-        tangents.ratios(),
-        relation=left - right,
-        second=4,
-    )
-
-
-def non_constructive_closed_form(
-    linkage: str, sign: int, special: bool = False, exchanged: bool = False
-) -> ClosedForm:
-    """Forms III and IV, by t1 and t3: for nearly equal links b and d the difference of
-    t1 and t4 loses digits."""
-    tangents = _Tangents(sign, special, exchanged)
-    first = joint(1)
-    third = joint(3)
-    s1, c1 = first
-    s3, c3 = third
-    b, d, n_b, d_b, n_d, d_d, e, f = symbols("b d N_b D_b N_d D_d E F")
-    cross = b * (n_d * c1**2 - d_d * s1**2)
-    relation = e * s1 * c1 * s3**2 + cross * s3 * c3 + f * s1 * c1 * c3**2
-    fourth = (
-        (b * d_d * s1 * c3 - e * s3 * c1, d * d_b * c1 * c3),
-        (d * n_b * s1 * c3, e * s1 * s3 + b * n_d * c1 * c3),
-    )
-    fifth = tuple((-n_b * c, d_b * s) for s, c in fourth)
-    second = (-n_d * c1, d_d * s1)
-    return ClosedForm(
-        linkage,
-        "Forms III and IV",
-        "not in the sources, which follow these forms numerically",
-        tangents.names,
-        ((first,), (second,), (third,), fourth, fifth, (third,)),
-        _non_constructive_constants(tangents),
-        relation=relation,
-        second=3,
-    )
-
-
-def _non_constructive_constants(tangents: _Tangents) -> dict[str, Number]:
-    g, v, w, b, d = symbols("g v w b d")
-    constants = {
-        "b": tangents.b,
-        "d": tangents.d,
-        "g": tangents.g,
-        "v": tangents.a + g,
-        "w": tangents.a * g,
-    }
-    for name, x in (("b", b), ("d", d)):
-        even = v * (1 + w * x**2)
-        odd = x * (1 - w) ** 2
-        constants[f"N_{name}"] = even + odd
-        constants[f"D_{name}"] = even - odd
-    constants["E"] = v * (d - b) * (1 + w * b * d)
-    constants["F"] = v * (d + b) * (1 - w * b * d)
-    return constants
-
-
-def _special_closed_form(
-    linkage: str, sign: int, form: str, fourth: Pair, fifth: Pair, bennett: bool
-) -> ClosedForm:
-    """Forms I and II under tan(alpha/2) tan(gamma/2) = tan(beta/2) tan(delta/2), where
-    each is rational."""
-    tangents = _Tangents(sign, special=True)
-    first = joint(1)
-    third = _third_pair(fourth)
-    if bennett:
-        third = ZERO if sign > 0 else HALF_TURN
-    source = "Song 2013, eqs (5.2.6)-(5.2.8) with (5.2.17), m2 being m6"
-    if sign > 0:
-        source = (
-            "Song and Chen 2012, eqs (5.12), (5.13), "
-            "m1/m2 of Form II being m2/tan(theta1/2)"
-        )
-    second = reciprocal(first, constant("m_da") * constant("m_dc"))
-    return ClosedForm(
-        linkage,
-        form,
-        source,
-        tangents.names,
-        only(first, second, third, fourth, fifth, negative(third)),
-        tangents.ratios(),
-    )
-
-
-def _formulas(sign: int, linkage: str) -> tuple[ClosedForm, ...]:
-    return (
-        constructive_closed_form(linkage, sign),
-        non_constructive_closed_form(linkage, sign),
-    )
-
-
-def _special_wdg_formulas(linkage: str) -> tuple[ClosedForm, ...]:
-    first = joint(1)
-    s1, c1 = first
-    opposite = negative(first)
-    other = (-constant("m_ba") * constant("m_bc") * c1, s1)
-    return (
-        _special_closed_form(
-            linkage, +1, "Form I (Bennett 4R)", opposite, other, bennett=True
-        ),
-        _special_closed_form(linkage, +1, "Form II", other, opposite, bennett=False),
-        non_constructive_closed_form(linkage, +1, special=True),
-    )
-
-
-def _special_dsg_formulas(linkage: str) -> tuple[ClosedForm, ...]:
-    first = joint(1)
-    s1, c1 = first
-    rest = minus(HALF_TURN, first)
-    other = (constant("m_ba") * constant("m_bc") * s1, c1)
-    return (
-        _special_closed_form(linkage, -1, "Form I", other, rest, bennett=False),
-        _special_closed_form(
-            linkage, -1, "Form II (Bennett 4R)", rest, other, bennett=True
-        ),
-        non_constructive_closed_form(linkage, -1, special=True),
-    )
-
-
 # --- first guesses
 
 
@@ -617,26 +390,22 @@ ENTRIES = read_entries(
         WDG: Model(
             wohlhart_double_goldberg,
             lambda a, **twists: patterns(+1, **twists),
-            partial(_formulas, +1),
-            partial(_guesses, +1, False),
+            guesses=partial(_guesses, +1, False),
         ),
         DSG: Model(
             double_subtractive_goldberg,
             lambda a, **twists: patterns(-1, **twists),
-            partial(_formulas, -1),
-            partial(_guesses, -1, False),
+            guesses=partial(_guesses, -1, False),
         ),
         f"special-{WDG}": Model(
             special_wohlhart_double_goldberg,
             lambda a, **twists: special_patterns(+1, **twists),
-            _special_wdg_formulas,
-            partial(_guesses, +1, True),
+            guesses=partial(_guesses, +1, True),
         ),
         f"special-{DSG}": Model(
             special_double_subtractive_goldberg,
             lambda a, **twists: special_patterns(-1, **twists),
-            _special_dsg_formulas,
-            partial(_guesses, -1, True),
+            guesses=partial(_guesses, -1, True),
         ),
         "generalized-double-goldberg": Model(
             generalized_double_goldberg, guesses=_generalized_guesses

@@ -9,26 +9,11 @@ checked where they are given.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from functools import partial
 
 import numpy as np
 
-from linkages.closed_forms.closed_form import (
-    HALF_TURN,
-    ZERO,
-    ClosedForm,
-    Pair,
-    constant,
-    joint,
-    minus,
-    only,
-    plus,
-    ratio,
-    reciprocal,
-    symbols,
-    tangent,
-)
 from linkages.construction import numbers
 from linkages.construction.conditions import (
     bennett_length,
@@ -52,7 +37,6 @@ from linkages.entry_table import Model, read_entries
 from linkages.loop import Loop
 
 POSITION = 40
-TWISTS = ("alpha", "beta", "gamma")
 SUM, DIFFERENCE = +1, -1  # how a and c are joined
 
 
@@ -198,7 +182,7 @@ def myard_plane_symmetric(
     return extended_myard(a, alpha, right_angle, offset, b, alpha34)
 
 
-# --- forms and closed forms
+# --- forms
 
 
 def _pattern(name: str, sign: int) -> Callable[..., tuple[FormPattern, ...]]:
@@ -211,88 +195,6 @@ def _pattern(name: str, sign: int) -> Callable[..., tuple[FormPattern, ...]]:
         return np.stack([opposite, others], axis=-1)
 
     return lambda **values: (FormPattern(name, residual),)
-
-
-def goldberg_closed_form(
-    linkage: str,
-    sign: int,
-    alpha: Number,
-    beta: Number,
-    gamma: Number,
-    angles: tuple[str, ...],
-    constants: Mapping[str, Number],
-) -> ClosedForm:
-    """The closed form of the links b, a + ``sign`` c, b, c, a with the half tangents
-    ``alpha``, ``beta``, ``gamma``.
-
-    ``angles`` are the parameters of the linkage that it depends on, ``constants`` those
-    in which the half tangents are written. Song (2013), equations (3.2.2) and (2.2) of
-    Song and Chen (2012); for the difference (3.2.4) and (2.4), where the factor of
-    tan(theta3/2) is printed inverted.
-    """
-    first = joint(1)
-    s_1, c_1 = first
-    m_c = constant("m_c")
-    second = reciprocal(first, constant("m_a"))
-    third: Pair
-    if sign > 0:
-        name = "Goldberg form"
-        source = "(3.2.2)"
-        third = (m_c * s_1, c_1)
-        rest = HALF_TURN
-    else:
-        name = "subtractive Goldberg form"
-        source = "(3.2.4), the factor of tan(theta3/2) inverted"
-        third = (s_1, m_c * c_1)
-        rest = ZERO
-    fourth = minus(rest, first)
-    fifth = minus(rest, plus(second, third))
-    factors = {
-        "m_a": (alpha + beta) / (alpha - beta),
-        "m_c": (gamma + beta) / (gamma - beta),
-    }
-    return ClosedForm(
-        linkage,
-        name,
-        "Song 2013, eq. " + source,
-        angles,
-        only(first, second, third, fourth, fifth),
-        {**constants, **factors},
-    )
-
-
-def _formulas(sign: int, linkage: str) -> tuple[ClosedForm, ...]:
-    alpha, beta, gamma = (tangent(name) for name in TWISTS)
-    return (goldberg_closed_form(linkage, sign, alpha, beta, gamma, TWISTS, {}),)
-
-
-def _syncopated_formulas(linkage: str) -> tuple[ClosedForm, ...]:
-    """The link b of the Goldberg 5R is the difference of d and b, with half tangent
-    u_side."""
-    alpha, beta, gamma = (tangent(name) for name in TWISTS)
-    p, u_delta = symbols("p u_delta")
-    constants = {
-        "p": ratio("alpha", "beta") * ratio("gamma", "beta"),
-        "u_delta": (p + 1) / (p - 1) * (alpha + gamma) / (1 - alpha * gamma),
-        "u_side": (u_delta - beta) / (1 + u_delta * beta),
-    }
-    form = goldberg_closed_form(
-        linkage,
-        SUM,
-        alpha,
-        constant("u_side"),
-        gamma,
-        TWISTS,
-        constants,
-    )
-    return (form,)
-
-
-def _myard_formulas(linkage: str) -> tuple[ClosedForm, ...]:
-    alpha = tangent("alpha")
-    beta = tangent("beta")
-    angles = ("alpha", "beta")
-    return (goldberg_closed_form(linkage, SUM, alpha, beta, alpha, angles, {}),)
 
 
 # --- first guesses
@@ -327,21 +229,18 @@ ENTRIES = read_entries(
         "goldberg-5r": Model(
             goldberg,
             _pattern("Goldberg form", SUM),
-            partial(_formulas, SUM),
         ),
         "subtractive-goldberg-5r": Model(
             subtractive_goldberg,
             _pattern("subtractive Goldberg form", DIFFERENCE),
-            partial(_formulas, DIFFERENCE),
         ),
         "syncopated-goldberg-5r": Model(
             syncopated_goldberg,
-            formulas=_syncopated_formulas,
             guesses=syncopation_guesses(side=0, alpha=4, gamma=3),
         ),
         "generalized-goldberg-5r": Model(generalized_goldberg, guesses=_kink_guesses),
         "myard-plane-symmetric-5r": Model(myard_plane_symmetric),
         "extended-myard-5r": Model(extended_myard),
-        "myard-asymmetric-5r": Model(myard_asymmetric, formulas=_myard_formulas),
+        "myard-asymmetric-5r": Model(myard_asymmetric),
     },
 )

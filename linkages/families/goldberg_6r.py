@@ -15,31 +15,12 @@ of Bennett loops when two of its joints are locked; Song (2013), sections 5.4.3 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from linkages.closed_forms.closed_form import (
-    HALF_TURN,
-    ZERO,
-    ClosedForm,
-    Pair,
-    constant,
-    cosine_of,
-    joint,
-    minus,
-    negative,
-    only,
-    plus,
-    ratio,
-    reciprocal,
-    sine_of,
-    tangent,
-)
-from linkages.construction import numbers
 from linkages.construction.constructions import lock
 from linkages.construction.link import (
     Link,
@@ -143,153 +124,6 @@ generalized_serial_variant = _locked_ring(
 isomerized_l_shape = _locked_ring("d b a c b d c a", (4, "kink_1"), (2, "kink_2"))
 
 
-# --- closed forms
-
-
-class _Joined(NamedTuple):
-    """What the joints before and after a link of two gain, and the kink at which it is
-    locked, as pairs; the constants in which these are written."""
-
-    before: Pair
-    after: Pair
-    kink: Pair
-    constants: Mapping[str, Number]
-
-
-STRAIGHT = _Joined(ZERO, ZERO, ZERO, {})
-
-
-def _joined(number: int, first: str, second: str) -> _Joined:
-    """Links with these twists, locked at the kink of this number, by the projections of
-    the spatial triangle."""
-    u_1, u_2, u_kink = tangent(first), tangent(second), tangent(f"kink_{number}")
-    c_1, s_1 = cosine_of(u_1), sine_of(u_1)
-    c_2, s_2 = cosine_of(u_2), sine_of(u_2)
-    c_kink, s_kink = cosine_of(u_kink), sine_of(u_kink)
-    names = [f"{name}_{number}" for name in "xyzwnk"]
-    x, y, z, w, n, k = (constant(name) for name in names)
-    values = (
-        c_kink * s_2 * c_1 + c_2 * s_1,
-        s_kink * s_2,
-        c_kink * s_1 * c_2 + c_1 * s_2,
-        s_kink * s_1,
-        numbers.sqrt(x**2 + y**2),
-        u_kink,
-    )
-    constants = dict(zip(names, values, strict=True))
-    return _Joined((y, n + x), (w, n + z), (k, 1), constants)
-
-
-def _closed_form(
-    linkage: str,
-    joints: Sequence[Pair],
-    factors: Mapping[str, tuple[str, str]],
-    first: _Joined,
-    second: _Joined,
-) -> tuple[ClosedForm, ...]:
-    """The closed form with the ``factors`` of the Bennett loops, each by the twists whose
-    ratio it is."""
-    constants = {name: ratio(*twists) for name, twists in factors.items()}
-    form = ClosedForm(
-        linkage,
-        "form of three Bennett loops",
-        "from the network of Bennett loops of Song 2013, section 5.4",
-        ("alpha", "beta", "gamma", "delta"),
-        only(*joints),
-        {**constants, **first.constants, **second.constants},
-    )
-    if first is not STRAIGHT:
-        form = replace(
-            form,
-            form="form of the network",
-            source="from the network of Bennett loops of Song (2013), section 5.4",
-            angles=(*form.angles, "kink_1", "kink_2"),
-        )
-    return (form,)
-
-
-def _l_shape_variant_formulas(kinked: bool, linkage: str) -> tuple[ClosedForm, ...]:
-    """Three cells around a common axis, locked at joints 2 and 0: p is the angle of a
-    cell at its outer joint, v that at the joint before."""
-    b_d = _joined(1, "delta", "beta") if kinked else STRAIGHT
-    c_d = _joined(2, "gamma", "delta") if kinked else STRAIGHT
-    p_1 = minus(joint(1), b_d.before)
-    v_1 = reciprocal(p_1, constant("m_a"))
-    v_2 = plus(minus(v_1, HALF_TURN), b_d.kink)
-    p_2 = reciprocal(v_2, constant("m_b"))
-    p_3 = negative(plus(c_d.kink, plus(p_1, p_2)))
-    v_3 = reciprocal(p_3, constant("m_c"))
-    joints = (
-        joint(1),
-        plus(p_2, b_d.after),
-        plus(minus(HALF_TURN, v_2), v_3),
-        p_3,
-        plus(negative(v_3), c_d.before),
-        plus(v_1, c_d.after),
-    )
-    factors = {
-        "m_a": ("delta", "alpha"),
-        "m_b": ("alpha", "beta"),
-        "m_c": ("beta", "gamma"),
-    }
-    return _closed_form(linkage, joints, factors, b_d, c_d)
-
-
-def _serial_variant_formulas(kinked: bool, linkage: str) -> tuple[ClosedForm, ...]:
-    """Three cells in a row, locked at joints U1 and V2."""
-    a_c = _joined(1, "alpha", "gamma") if kinked else STRAIGHT
-    d_c = _joined(2, "delta", "gamma") if kinked else STRAIGHT
-    p_1 = negative(joint(1))
-    v_1 = reciprocal(p_1, constant("m_a"))
-    v_2 = minus(minus(a_c.kink, p_1), HALF_TURN)
-    p_2 = reciprocal(v_2, constant("m_c"))
-    p_3 = minus(minus(HALF_TURN, v_2), d_c.kink)
-    v_3 = reciprocal(p_3, constant("m_d"))
-    joints = (
-        joint(1),
-        plus(v_1, a_c.before),
-        plus(plus(plus(p_2, v_3), HALF_TURN), a_c.after),
-        p_3,
-        plus(negative(v_3), d_c.before),
-        plus(minus(HALF_TURN, plus(v_1, p_2)), d_c.after),
-    )
-    factors = {
-        "m_a": ("beta", "alpha"),
-        "m_c": ("beta", "gamma"),
-        "m_d": ("beta", "delta"),
-    }
-    return _closed_form(linkage, joints, factors, a_c, d_c)
-
-
-def _isomer_formulas(linkage: str) -> tuple[ClosedForm, ...]:
-    """Four cells around a common axis, locked at joints 2 and 4."""
-    b_d = _joined(2, "delta", "beta")
-    a_c = _joined(1, "alpha", "gamma")
-    p_1 = minus(joint(1), b_d.before)
-    v_1 = reciprocal(p_1, constant("m_a"))
-    v_2 = plus(minus(v_1, HALF_TURN), b_d.kink)
-    p_2 = reciprocal(v_2, constant("m_b"))
-    v_3 = plus(minus(v_2, HALF_TURN), a_c.kink)
-    p_3 = reciprocal(v_3, constant("m_c"))
-    p_4 = negative(plus(p_1, plus(p_2, p_3)))
-    v_4 = reciprocal(p_4, constant("m_d"))
-    joints = (
-        joint(1),
-        plus(plus(p_2, b_d.after), a_c.before),
-        plus(p_3, a_c.after),
-        plus(minus(HALF_TURN, v_3), v_4),
-        p_4,
-        plus(minus(HALF_TURN, v_4), v_1),
-    )
-    factors = {
-        "m_a": ("delta", "alpha"),
-        "m_b": ("alpha", "beta"),
-        "m_c": ("beta", "gamma"),
-        "m_d": ("gamma", "delta"),
-    }
-    return _closed_form(linkage, joints, factors, a_c, b_d)
-
-
 # --- first guesses
 
 
@@ -384,12 +218,10 @@ ENTRIES = read_entries(
         ),
         "serial-goldberg-variant-6r": Model(
             serial_variant,
-            formulas=partial(_serial_variant_formulas, False),
             guesses=partial(difference_guesses, "gamma", 1, 5),
         ),
         "l-shape-goldberg-variant-6r": Model(
             l_shape_variant,
-            formulas=partial(_l_shape_variant_formulas, False),
             guesses=partial(difference_guesses, "delta", 0, 3),
         ),
         "generalized-serial-goldberg-6r": Model(
@@ -400,16 +232,14 @@ ENTRIES = read_entries(
         ),
         "generalized-serial-goldberg-variant-6r": Model(
             generalized_serial_variant,
-            formulas=partial(_serial_variant_formulas, True),
             guesses=partial(_hidden_twist_guesses, "gamma", 5, (1, 5), (4, 2)),
         ),
         "generalized-l-shape-goldberg-variant-6r": Model(
             generalized_l_shape_variant,
-            formulas=partial(_l_shape_variant_formulas, True),
             guesses=partial(_hidden_twist_guesses, "delta", 1, (0, 3), (4, 2)),
         ),
         "isomerized-generalized-l-shape-goldberg-6r": Model(
-            isomerized_l_shape, formulas=_isomer_formulas, guesses=_isomer_guesses
+            isomerized_l_shape, guesses=_isomer_guesses
         ),
     },
 )

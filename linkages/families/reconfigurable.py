@@ -14,27 +14,12 @@ from functools import partial
 
 import numpy as np
 
-from linkages.closed_forms.closed_form import (
-    ClosedForm,
-    Pair,
-    constant,
-    cosine_of,
-    joint,
-    minus,
-    only,
-    plus,
-    reciprocal,
-    signed,
-    sine_of,
-    symbols,
-    tangent,
-)
-from linkages.construction import numbers
 from linkages.construction.conditions import (
     bennett_length,
     require_positive,
     require_twists,
 )
+from linkages.construction.equations import numbers_of
 from linkages.construction.link import Link
 from linkages.construction.numbers import Number, pi_like
 from linkages.construction.spatial_triangle import composite_link
@@ -85,7 +70,7 @@ reconfigurable_bricard_1 = partial(reconfigurable_bricard, False)
 reconfigurable_bricard_2 = partial(reconfigurable_bricard, True)
 
 
-# --- forms and closed forms
+# --- forms
 
 
 def _patterns(
@@ -94,9 +79,9 @@ def _patterns(
     name = f"Bennett 4R form (joints 2,5 inactive) {set_up}"
 
     def patterns(**values: float) -> tuple[FormPattern, ...]:
-        arrays = construct(**values).arrays
-        lengths, twists, offsets = (row[:3].tolist() for row in arrays)
-        others = bricard_patterns(*lengths, *twists, *offsets)
+        others = bricard_patterns(
+            False, **numbers_of(np.array(construct(**values).arrays))
+        )
 
         def inactive(theta: np.ndarray) -> np.ndarray:
             gap = np.asarray(theta)[..., [1, 4]] - values["kink"]
@@ -105,66 +90,6 @@ def _patterns(
         return FormPattern(name, inactive), *others
 
     return patterns
-
-
-def _triangle_constants() -> dict[str, Number]:
-    """The constants of the closed form, by the half tangents of alpha, beta, kink,
-    gamma: the spatial triangle, as in `composite_link`, and the product m of the
-    Bennett loop on its third side."""
-    u_a = tangent("alpha")
-    u_b = tangent("beta")
-    u_k = tangent("kink")
-    u_g = tangent("gamma")
-    s_a = sine_of(u_a)
-    c_a = cosine_of(u_a)
-    s_b = sine_of(u_b)
-    c_b = cosine_of(u_b)
-    s_k = sine_of(u_k)
-    c_k = cosine_of(u_k)
-    x_1, y_1, sin_d, u_d = symbols("x_1 y_1 sin_delta u_delta")
-    return {
-        "k": u_k,
-        "x_1": c_k * s_b * c_a + c_b * s_a,
-        "y_1": s_k * s_b,
-        "x_3": c_k * s_a * c_b + c_a * s_b,
-        "y_3": s_k * s_a,
-        "sin_delta": numbers.sqrt(x_1**2 + y_1**2),
-        "u_delta": sin_d / (1 + c_a * c_b - c_k * s_a * s_b),
-        "m": (u_g + u_d) / (u_g - u_d),
-    }
-
-
-def _formulas(sign: int, equation: str, linkage: str) -> tuple[ClosedForm, ...]:
-    """The Bennett form, ``sign`` +1 for the line-symmetric set-up: third sides of the
-    triangles, links 34 and 61.
-
-    The angles of that Bennett loop are theta1 + first, theta3 + third, where first and
-    third are the angles of the spatial triangle at the joints 1 and 3. Song (2013),
-    equations (5.3.13), (5.3.15).
-    """
-    sin_d = constant("sin_delta")
-    first = (constant("y_1"), sin_d + constant("x_1"))
-    third = (constant("y_3"), sin_d + constant("x_3"))
-    kink: Pair = (constant("k"), 1)
-    one = plus(joint(1), first)
-    other = reciprocal(one, constant("m"))
-    angles = (
-        joint(1),
-        kink,
-        minus(other, third),
-        minus(signed(sign, one), first),
-        kink,
-        minus(signed(sign, other), third),
-    )
-    form = ClosedForm(
-        linkage,
-        "Bennett 4R form",
-        f"Song 2013, eq. {equation}",
-        ("alpha", "beta", "kink", "gamma"),
-        only(*angles),
-        _triangle_constants(),
-    )
-    return (form,)
 
 
 # every five degrees, none of them collinear
@@ -177,13 +102,11 @@ ENTRIES = read_entries(
         "reconfigurable-bricard-1": Model(
             reconfigurable_bricard_1,
             _patterns(reconfigurable_bricard_1, "asymmetric"),
-            partial(_formulas, -1, "(5.3.13)"),
             scan=KINK_SCAN,
         ),
         "reconfigurable-bricard-2": Model(
             reconfigurable_bricard_2,
             _patterns(reconfigurable_bricard_2, "line-symmetric"),
-            partial(_formulas, +1, "(5.3.15)"),
             scan=KINK_SCAN,
         ),
     },

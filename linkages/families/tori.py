@@ -32,7 +32,16 @@ from linkages.construction.conditions import (
     require_within,
 )
 from linkages.construction.link import Link, closed_chain
-from linkages.construction.numbers import Number, atan, atan2, cos, pi_like, sin, sqrt
+from linkages.construction.numbers import (
+    Number,
+    asin,
+    atan,
+    atan2,
+    cos,
+    pi_like,
+    sin,
+    sqrt,
+)
 from linkages.construction.possible_angles import kinks
 from linkages.construction.spatial_triangle import composite_link
 from linkages.entry_table import Model, read_entries
@@ -55,6 +64,17 @@ class TorusLink:
     def radius(self) -> Number:
         """Distance of the reference point from the first axis."""
         return sqrt(self.link.length**2 + (self.shift * sin(self.link.twist)) ** 2)
+
+    @property
+    def chi(self) -> Number:
+        """Angle (rad) that turns the second axis, first."""
+        twist = self.link.twist
+        return atan2(self.link.length * sin(twist), self.radius * cos(twist))
+
+    @property
+    def theta(self) -> Number:
+        """Angle (rad) that turns it then."""
+        return asin(self.shift * sin(self.link.twist) ** 2 / self.radius)
 
     @property
     def normal(self) -> Number:
@@ -332,17 +352,16 @@ def _parameters_at_shift(
     main, side = (1, 0) if variant.first == 1 else (0, 1)
     length = lengths[main]
     twist = math.pi - twists[main] if supplement else twists[main]
-    sine = math.sin(twist)
-    radius = math.hypot(length, shift * sine)
+    torus = TorusLink(Link(length, twist), shift)
     cosine = abs(math.cos(twists[side]))
     pin = shift / cosine if cosine > 1e-9 else 0.0
     carried = math.hypot(lengths[2], pin * math.tan(twists[2]))
     carrying = math.hypot(lengths[0], pin * math.sin(twists[0]))
     return {
-        "r1": radius,
+        "r1": float(torus.radius),
         "s1": math.hypot(lengths[side], pin * math.sin(twists[side])),
-        "chi1": math.atan2(length * sine, radius * math.cos(twist)),
-        "theta1": float(np.arcsin(shift * sine**2 / radius)),
+        "chi1": float(torus.chi),
+        "theta1": float(torus.theta),
         "ratio": carried / carrying,
     }
 

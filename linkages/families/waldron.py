@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -58,25 +59,11 @@ def waldron_hybrid(
     return share_joint(first, second, kink_1, kink_2, shift)
 
 
-def waldron_collinear(
-    a: Number,
-    alpha: Number,
-    beta: Number,
-    c: Number,
-    gamma: Number,
-    delta: Number,
-    b: Number | None = None,
-    d: Number | None = None,
-) -> Loop:
-    """Waldron's hybrid 6R without offsets: b and d folded upon each other, a and c in
-    line.
-
-    Links b, a, b - d, c, d, a + c. Source: Yu and Baker (1981); section 2.4.6 in Song
-    (2013).
-    """
-    return waldron_hybrid(
-        a, alpha, beta, c, gamma, delta, Kink.FOLDED, Kink.STRAIGHT, 0, b, d
-    )
+# b and d folded upon each other, a and c in line: links b, a, b - d, c, d, a + c. Yu and
+# Baker (1981); section 2.4.6 in Song (2013)
+waldron_collinear = partial(
+    waldron_hybrid, kink_1=Kink.FOLDED, kink_2=Kink.STRAIGHT, shift=0
+)
 
 
 def _guesses(form: np.ndarray) -> Iterator[dict[str, float]]:

@@ -7,14 +7,6 @@ import math
 
 import numpy as np
 
-from linkages.closed_forms.closed_form import (
-    ClosedForm,
-    cosine_of,
-    joint,
-    sine_of,
-    symbols,
-    tangent,
-)
 from linkages.construction.conditions import require_positive, require_twists
 from linkages.construction.numbers import Number, pi_like
 from linkages.entry import FormPattern
@@ -61,40 +53,7 @@ def _patterns(a: float, alpha: float) -> tuple[FormPattern, ...]:
     return (FormPattern("threefold form", residual),)
 
 
-def _formulas(linkage: str) -> tuple[ClosedForm, ...]:
-    """Odd joints at theta, even joints at phi."""
-    import sympy as sp
-
-    c, s = symbols("c s")
-    s1, c1 = joint(1)
-    s2, c2 = joint(2)
-    sine1 = 2 * s1 * c1
-    cosine1 = c1**2 - s1**2
-    one1 = s1**2 + c1**2
-    sine2 = 2 * s2 * c2
-    cosine2 = c2**2 - s2**2
-    one2 = s2**2 + c2**2
-    relation = (
-        (1 + c**2) * cosine1 * cosine2
-        + s**2 * (cosine1 * one2 + cosine2 * one1)
-        - 2 * c * sine1 * sine2
-        + c**2 * one1 * one2
-    )
-    u = tangent("alpha")
-    form = ClosedForm(
-        linkage,
-        "threefold form",
-        "Racila and Dahan 2010, eq. (15)",
-        ("alpha",),
-        ((joint(1),), (joint(2),)) * 3,
-        {"c": cosine_of(u), "s": sine_of(u)},
-        relation=sp.expand(relation),
-        second=2,
-    )
-    return (form,)
-
-
 ENTRIES = read_entries(
     "wohlhart",
-    {"wohlhart-symmetric": Model(wohlhart_symmetric, _patterns, _formulas)},
+    {"wohlhart-symmetric": Model(wohlhart_symmetric, _patterns)},
 )

@@ -14,12 +14,13 @@ from linkages.files.figures import (
     FigureKind,
     Piece,
     joints_of_figure,
+    polished,
     read_figure,
     table_of_points,
 )
-from linkages.mechanisms.joint import Vector
+from linkages.mechanisms.joint import Vector, unit_vector
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.values import GeometryError, check_number, quoted
+from linkages.values import check_number, checked_list, checked_number, require
 
 Content: TypeAlias = Mapping[str, Any]
 Places: TypeAlias = dict[str, np.ndarray]
@@ -27,7 +28,6 @@ Places: TypeAlias = dict[str, np.ndarray]
 Arcs: TypeAlias = Figure[np.ndarray, np.ndarray]
 
 NEWTON_STEPS = 60
-RANK = 1e-9  # singular value, over the largest, of a motion: no step along it
 
 
 def read_arcs(content: Content, name: str, unit: float) -> Mechanism:
@@ -42,14 +42,18 @@ def read_arcs(content: Content, name: str, unit: float) -> Mechanism:
     def angle(what: str, value: Any) -> float:
         check_number(what, value)
         result = unit * float(value)
-        if not 0.0 < result < np.pi:
-            raise GeometryError(what, value, "more than 0 and less than half a turn")
+        allowed = "more than 0 and less than half a turn"
+        require(0.0 < result < np.pi, what, value, allowed)
         return result
 
-    def along_and_aside(what: str, row: object) -> np.ndarray:
-        return unit * _numbers(what, row, 2)
-
-    kind = FigureKind("arc", "an", "angle", "[along, aside]", angle, along_and_aside)
+    kind = FigureKind(
+        "arc",
+        "an",
+        "angle",
+        "[along, aside]",
+        angle,
+        lambda what, row: unit * _numbers(what, row, 2),
+    )
     table = table_of_points(content, "[x, y, z]")
     points = {point: _direction(f"point {point}", row) for point, row in table.items()}
     figure = read_figure(content, kind, points)
@@ -62,7 +66,8 @@ def read_arcs(content: Content, name: str, unit: float) -> Mechanism:
         across = [np.cross(axes[0], axis) for axis in axes[1:]]
         return any(not is_one_direction(float(np.linalg.norm(x))) for x in across)
 
-    return Mechanism(joints_of_figure(figure, places, are_apart, _axis_at), name)
+    joints = joints_of_figure(figure, places, are_apart, _axis_at)
+    return Mechanism(joints, name)
 
 
 def _axis_at(place: np.ndarray) -> tuple[Vector, Vector]:
@@ -72,20 +77,14 @@ def _axis_at(place: np.ndarray) -> tuple[Vector, Vector]:
 
 def _direction(what: str, row: object) -> np.ndarray:
     numbers = _numbers(what, row, 3)
-    largest = np.abs(numbers).max()
-    if largest == 0.0:
-        raise GeometryError(what, numbers.tolist(), "away from the centre")
-    scaled = numbers / largest
-    direction: np.ndarray = scaled / np.linalg.norm(scaled)
-    return direction
+    is_away = bool(np.any(numbers))
+    require(is_away, what, numbers.tolist(), "away from the centre")
+    return unit_vector(numbers)
 
 
 def _numbers(what: str, row: object, count: int) -> np.ndarray:
-    if not isinstance(row, list) or len(row) != count:
-        raise GeometryError(what, quoted(row), f"a list of {count} numbers")
-    for value in row:
-        check_number(what, value)
-    return np.array(row, dtype=float)
+    row = checked_list(what, row, f"a list of {count} numbers", (count,))
+    return np.array([checked_number(what, value) for value in row])
 
 
 # --- assembly -------------------------------------------------------------------------
@@ -107,9 +106,9 @@ def _normal(what: str, start: np.ndarray, end: np.ndarray) -> np.ndarray:
     """The unit normal (3,) of the plane of an arc."""
     across = np.cross(start, end)
     sine = float(np.linalg.norm(across))
-    if is_one_direction(sine):
-        value = "between points in one direction from the centre, or opposite to it"
-        raise GeometryError(what, value, "an arc of a great circle")
+    value = "between points in one direction from the centre, or opposite to it"
+    is_arc = not is_one_direction(sine)
+    require(is_arc, what, value, "an arc of a great circle")
     normal: np.ndarray = across / sine
     return normal
 
@@ -133,14 +132,14 @@ def _assembled(figure: Arcs) -> Places:
         for arc, angle in zip(figure.pieces, angles, strict=True)
     ]
     worst = int(np.argmax(misfits))
-    if not is_bar_assembled(misfits[worst]):
-        arc = figure.pieces[worst]
-        allowed = (
-            "such that the arcs can be assembled next to the points; as near as they "
-            f"come, arc {arc.name} misses its angle by {np.degrees(misfits[worst]):.3g} deg"
-        )
-        value = f"{np.degrees(angles[worst]):.10g} deg"
-        raise GeometryError(f"angle of arc {arc.name}", value, allowed)
+    arc = figure.pieces[worst]
+    allowed = (
+        "such that the arcs can be assembled next to the points; as near as they "
+        f"come, arc {arc.name} misses its angle by {np.degrees(misfits[worst]):.3g} deg"
+    )
+    value = f"{np.degrees(angles[worst]):.10g} deg"
+    is_assembled = is_bar_assembled(misfits[worst])
+    require(is_assembled, f"angle of arc {arc.name}", value, allowed)
     return places
 
 
@@ -164,25 +163,22 @@ def _fitted(figure: Arcs, free: Sequence[str], angles: np.ndarray) -> Places:
         lengths = np.linalg.norm(values.reshape(-1, 3), axis=1) - 1.0
         return np.concatenate([now - angles, lengths])
 
+    def derivatives(values: np.ndarray) -> np.ndarray:
+        return _differences(gaps, values)
+
     start = np.concatenate([figure.points[name] for name in free])
     solution = least_squares(gaps, start, xtol=1e-15, ftol=1e-15, gtol=1e-15).x
-    return placed(_polished(gaps, solution))
+    return placed(polished(gaps, derivatives, solution, NEWTON_STEPS))
 
 
-def _polished(
+def _differences(
     gaps: Callable[[np.ndarray], np.ndarray], values: np.ndarray
 ) -> np.ndarray:
-    """The ``values`` (n,) after Newton's method, as long as it makes ``gaps`` smaller;
-    derivatives are central differences."""
+    """The derivatives (m, n) of ``gaps`` (m,) at ``values`` (n,), as central
+    differences."""
     step = float(np.finfo(float).eps) ** (1 / 3)
-    for _ in range(NEWTON_STEPS):
-        columns = [
-            (gaps(values + move) - gaps(values - move)) / (2 * step)
-            for move in step * np.eye(len(values))
-        ]
-        now = gaps(values)
-        trial = values - np.linalg.lstsq(np.array(columns).T, now, rcond=RANK)[0]
-        if not np.linalg.norm(gaps(trial)) < np.linalg.norm(now):
-            break
-        values = trial
-    return values
+    columns = [
+        (gaps(values + move) - gaps(values - move)) / (2 * step)
+        for move in step * np.eye(len(values))
+    ]
+    return np.array(columns).T

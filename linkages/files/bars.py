@@ -9,15 +9,17 @@ import numpy as np
 
 from linkages.decisions import is_bar_assembled
 from linkages.files.figures import (
+    RANK,
     Figure,
     FigureKind,
     joints_of_figure,
+    polished,
     read_figure,
     table_of_points,
 )
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.origin import counted_from_near, origin_of
-from linkages.values import GeometryError, check_number, quoted
+from linkages.values import checked_list, checked_number, require
 
 Content: TypeAlias = Mapping[str, Any]
 Bars: TypeAlias = Figure[complex, complex]
@@ -26,7 +28,6 @@ POLISHING_STEPS = 12
 EPSILON = float(np.finfo(float).eps)
 ROUNDING = 16 * EPSILON  # of a length, over the extent
 NEAR_SINGULAR = 1e-3  # singular value, and way to the singular assembly, to look for it
-RANK = 1e-9  # singular value, over the largest, of a motion: no step along it
 TINY = 1e-300  # length of a bar that has none
 
 
@@ -44,8 +45,8 @@ def read_bars(content: Content, name: str) -> Mechanism:
     figure = read_figure(content, BARS, points)
     places = _assembled(figure)
     for bar in figure.pieces:
-        if places[bar.end] == places[bar.start]:
-            raise GeometryError(f"bar {bar.name}", "of length 0", "longer")
+        is_longer = places[bar.end] != places[bar.start]
+        require(is_longer, f"bar {bar.name}", "of length 0", "longer")
     joints = joints_of_figure(
         figure,
         places,
@@ -63,18 +64,13 @@ def read_bars(content: Content, name: str) -> Mechanism:
 
 def _complex(what: str, row: object) -> complex:
     """Two numbers of a file: a place, or the ratio r of start + r (end - start)."""
-    if not isinstance(row, list) or len(row) != 2:
-        raise GeometryError(what, quoted(row), "a list of two numbers")
-    for value in row:
-        check_number(what, value)
-    return complex(float(row[0]), float(row[1]))
+    row = checked_list(what, row, "a list of two numbers", (2,))
+    return complex(*(checked_number(what, value) for value in row))
 
 
 def _length(what: str, value: Any) -> float:
-    check_number(what, value)
-    length = float(value)
-    if not length > 0:
-        raise GeometryError(what, length, "positive")
+    length = checked_number(what, value)
+    require(length > 0, what, length, "positive")
     return length
 
 
@@ -102,25 +98,27 @@ def _assembled(figure: Bars) -> dict[str, complex]:
         return places
     places = _least_squares(figure)
     misfits = np.abs(_misfits(figure, places))
-    if not is_bar_assembled(float(misfits.max()), size):
-        given = [bar for bar in figure.pieces if bar.measure is not None]
-        worst = given[int(np.argmax(misfits))]
-        allowed = (
-            "such that the bars can be assembled next to the points; as near as they "
-            f"come, bar {worst.name} misses its length by {misfits.max():.3g}"
-        )
-        raise GeometryError(f"length of bar {worst.name}", worst.measure, allowed)
+    given = [bar for bar in figure.pieces if bar.measure is not None]
+    worst = given[int(np.argmax(misfits))]
+    allowed = (
+        "such that the bars can be assembled next to the points; as near as they "
+        f"come, bar {worst.name} misses its length by {misfits.max():.3g}"
+    )
+    is_assembled = is_bar_assembled(float(misfits.max()), size)
+    require(is_assembled, f"length of bar {worst.name}", worst.measure, allowed)
     return places
 
 
 def _misfits(figure: Bars, places: Mapping[str, complex]) -> np.ndarray:
     """How much longer than given the bars (k,) are that have a length."""
-    misfits = []
-    for bar in figure.pieces:
-        if bar.measure is not None:
-            misfits.append(abs(places[bar.end] - places[bar.start]) - bar.measure)
     # the lengths of bars without one are those that they have at first
-    return np.array(misfits)
+    given = [bar for bar in figure.pieces if bar.measure is not None]
+    return np.array(
+        [
+            abs(places[bar.end] - places[bar.start]) - (bar.measure or 0.0)
+            for bar in given
+        ]
+    )
 
 
 def _least_squares(figure: Bars) -> dict[str, complex]:
@@ -146,13 +144,7 @@ def _polished(shape: _Shape, solution: np.ndarray) -> np.ndarray:
     beside it, and the bars would have a motion of that size: there the singular
     assembly itself is solved for.
     """
-    for _ in range(POLISHING_STEPS):
-        slope = shape.derivatives(solution)
-        gaps = shape.gaps(solution)
-        trial = solution - np.linalg.lstsq(slope, gaps, rcond=RANK)[0]
-        if not np.linalg.norm(shape.gaps(trial)) < np.linalg.norm(gaps):
-            break
-        solution = trial
+    solution = polished(shape.gaps, shape.derivatives, solution, POLISHING_STEPS)
     singular = _singular_assembly(shape, solution)
     return solution if singular is None else singular
 

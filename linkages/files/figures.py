@@ -12,8 +12,10 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import Any, Generic, TypeVar
 
+import numpy as np
+
 from linkages.mechanisms.joint import Joint, JointKind, Vector
-from linkages.values import GeometryError, quoted
+from linkages.values import SOME, checked_list, checked_table, quoted, require
 
 FRAME = "frame"
 Place = TypeVar("Place")  # of a point: a complex number or a direction (3,)
@@ -95,9 +97,9 @@ class Figure(Generic[Place, Numbers]):
 def table_of_points(content: Mapping[str, Any], row: str) -> Mapping[str, object]:
     """The table ``[points]`` of a file, whose rows look like ``row``; raises
     `GeometryError`."""
-    table = content.get("points")
-    if not isinstance(table, Mapping) or not table:
-        raise GeometryError("points", quoted(table), f"a table of points {row}")
+    given = content.get("points")
+    table = checked_table("points", given, f"a table of points {row}")
+    require(bool(table), "points", quoted(given), f"a table of points {row}")
     return table
 
 
@@ -107,8 +109,13 @@ def read_figure(
     """The figure of these ``points`` that a file describes; raises `GeometryError`."""
     on_pieces = _read_points_on(content, kind, points)
     known = [*points, *on_pieces]
-    fixed = _read_fixed(content, known)
-    return Figure(kind, points, fixed, _read_pieces(content, kind, known), on_pieces)
+    given = content.get("fixed", [])
+    fixed = checked_list("fixed", given, "a list of names of points")
+    for name in fixed:
+        _check_point("fixed", name, known)
+        require(fixed.count(name) == 1, "fixed", quoted(name), "named once")
+    pieces = _read_pieces(content, kind, known)
+    return Figure(kind, points, tuple(fixed), pieces, on_pieces)
 
 
 def _read_points_on(
@@ -116,54 +123,36 @@ def _read_points_on(
 ) -> dict[str, PointOnPiece[Numbers]]:
     key = f"points_on_{kind.noun}s"
     shape = f'["A", "B", {kind.numbers}]'
-    table = content.get(key, {})
-    if not isinstance(table, Mapping):
-        raise GeometryError(key, quoted(table), f"a table of points {shape}")
+    table = checked_table(key, content.get(key, {}), f"a table of points {shape}")
     on_pieces: dict[str, PointOnPiece[Numbers]] = {}
     for name, row in table.items():
         what = f"{key} {name}"
-        if name in points:
-            raise GeometryError(what, quoted(name), "no name of a point in [points]")
-        if not isinstance(row, list) or len(row) != 3:
-            raise GeometryError(what, quoted(row), f"a list {shape}")
+        is_new = name not in points
+        require(is_new, what, quoted(name), "no name of a point in [points]")
+        checked_list(what, row, f"a list {shape}", (3,))
         for end in row[:2]:
-            if end not in points and end not in on_pieces:
-                raise GeometryError(what, quoted(end), "a point that stands before it")
+            is_known = end in points or end in on_pieces
+            require(is_known, what, quoted(end), "a point that stands before it")
         numbers = kind.read_numbers(what, row[2])
         on_pieces[name] = PointOnPiece(row[0], row[1], numbers)
     return on_pieces
-
-
-def _read_fixed(content: Mapping[str, object], known: Sequence[str]) -> tuple[str, ...]:
-    fixed = content.get("fixed", [])
-    if not isinstance(fixed, list):
-        raise GeometryError("fixed", quoted(fixed), "a list of names of points")
-    for name in fixed:
-        _check_point("fixed", name, known)
-        if fixed.count(name) > 1:
-            raise GeometryError("fixed", quoted(name), "named once")
-    return tuple(fixed)
 
 
 def _read_pieces(
     content: Mapping[str, Any], kind: FigureKind[Any], known: Sequence[str]
 ) -> tuple[Piece, ...]:
     key = f"{kind.noun}s"
-    rows = content.get(key)
-    if not isinstance(rows, list) or not rows:
-        raise GeometryError(key, quoted(rows), f'a list of {key} ["A", "B"]')
+    rows = checked_list(key, content.get(key), f'a list of {key} ["A", "B"]', SOME)
     pieces: list[Piece] = []
     for number, row in enumerate(rows, start=1):
         what = f"{key}[{number}]"
-        if not isinstance(row, list) or len(row) not in (2, 3):
-            allowed = f'["A", "B"] or ["A", "B", {kind.measure}]'
-            raise GeometryError(what, quoted(row), allowed)
+        checked_list(what, row, f'["A", "B"] or ["A", "B", {kind.measure}]', (2, 3))
         for name in row[:2]:
             _check_point(what, name, known)
-        if row[0] == row[1]:
-            raise GeometryError(what, row[:2], f"{kind.piece} between two points")
-        if any(set(piece.ends) == set(row[:2]) for piece in pieces):
-            raise GeometryError(what, row[:2], f"{kind.piece} that stands there once")
+        allowed = f"{kind.piece} between two points"
+        require(row[0] != row[1], what, row[:2], allowed)
+        is_new = all(set(piece.ends) != set(row[:2]) for piece in pieces)
+        require(is_new, what, row[:2], f"{kind.piece} that stands there once")
         measure = None
         if len(row) == 3:
             measure = kind.read_measure(f"{kind.measure} of {what}", row[2])
@@ -174,9 +163,30 @@ def _read_pieces(
 
 def _check_point(what: str, name: object, known: Sequence[str]) -> None:
     """Raise `GeometryError` for what is none of the ``known`` points."""
-    if name not in known:
-        allowed = f"one of the points {', '.join(known)}"
-        raise GeometryError(what, quoted(name), allowed)
+    allowed = f"one of the points {', '.join(known)}"
+    require(name in known, what, quoted(name), allowed)
+
+
+# --- assembly -------------------------------------------------------------------------
+
+RANK = 1e-9  # singular value, over the largest, of a motion: no step along it
+
+
+def polished(
+    gaps: Callable[[np.ndarray], np.ndarray],
+    derivatives: Callable[[np.ndarray], np.ndarray],
+    values: np.ndarray,
+    steps: int,
+) -> np.ndarray:
+    """The ``values`` (n,) after so many steps of Newton's method at most, as long as
+    they make ``gaps`` (m,) with these ``derivatives`` (m, n) smaller."""
+    for _ in range(steps):
+        now = gaps(values)
+        trial = values - np.linalg.lstsq(derivatives(values), now, rcond=RANK)[0]
+        if not np.linalg.norm(gaps(trial)) < np.linalg.norm(now):
+            break
+        values = trial
+    return values
 
 
 # --- names ----------------------------------------------------------------------------
@@ -194,12 +204,10 @@ def check_joined_names(noun: str, ends: Iterable[tuple[str, str]]) -> None:
     for pair in ends:
         name = joined_name(*pair)
         other = owners.setdefault(name, pair)
-        if other != pair:
-            shown = " and ".join(
-                f'"{first}" to "{second}"' for first, second in (other, pair)
-            )
-            allowed = "different; call their ends otherwise"
-            raise GeometryError(f"names of {noun}s {shown}", f'"{name}"', allowed)
+        ends_of_both = [f'"{first}" to "{second}"' for first, second in (other, pair)]
+        what = f"names of {noun}s {' and '.join(ends_of_both)}"
+        allowed = "different; call their ends otherwise"
+        require(other == pair, what, f'"{name}"', allowed)
 
 
 # --- joints and bodies ----------------------------------------------------------------
@@ -221,33 +229,26 @@ def joints_of_figure(
     kind = figure.kind
     on_body = {point for points in bodies.values() for point in points}
     for name, one in figure.on_pieces.items():
-        if name not in on_body:
-            ends = f"{one.start} and {one.end}"
-            allowed = f"on {kind.piece}; there is none between {ends}"
-            raise GeometryError(f"points_on_{kind.noun}s {name}", ends, allowed)
+        ends = f"{one.start} and {one.end}"
+        allowed = f"on {kind.piece}; there is none between {ends}"
+        what = f"points_on_{kind.noun}s {name}"
+        require(name in on_body, what, ends, allowed)
     joints = []
     for name, place in places.items():
-        if name not in on_body:
-            value, allowed = f"on no {kind.noun}", f"the end of {kind.piece}"
-            raise GeometryError(f"point {name}", value, allowed)
+        value, allowed = f"on no {kind.noun}", f"the end of {kind.piece}"
+        require(name in on_body, f"point {name}", value, allowed)
         here = tuple(body for body, points in bodies.items() if name in points)
         if len(here) > 1:
             joints.append(Joint(name, JointKind.REVOLUTE, here, *axis_at(place)))
-    if not figure.fixed:
-        _check_held(joints)
-    return tuple(joints)
-
-
-def _check_held(joints: Sequence[Joint]) -> None:
-    """Raise `GeometryError` where a body hangs on one joint for want of a frame."""
     counts = Counter(body for joint in joints for body in joint.bodies)
     for body, count in counts.items():
-        if count < 2:
-            allowed = (
-                "given, the names of the points that hold the frame; without a frame "
-                f"{body} hangs on one joint only"
-            )
-            raise GeometryError("fixed", "a missing key or an empty list", allowed)
+        allowed = (
+            "given, the names of the points that hold the frame; without a frame "
+            f"{body} hangs on one joint only"
+        )
+        is_held = bool(figure.fixed) or count > 1
+        require(is_held, "fixed", "a missing key or an empty list", allowed)
+    return tuple(joints)
 
 
 def _bodies(
@@ -264,31 +265,27 @@ def _bodies(
     _add_points_on(bodies, figure)
     bodies |= {piece.name: list(piece.ends) for piece in figure.pieces}
     _add_points_on(bodies, figure)
-    return _without_parts(bodies, figure, are_apart)
+    while (pair := _held_together(bodies, are_apart)) is not None:
+        first, second = pair
+        others = bodies.pop(second)
+        bodies[first] += [point for point in others if point not in bodies[first]]
+        _add_points_on(bodies, figure)
+    return bodies
 
 
-def _without_parts(
-    bodies: dict[str, list[str]],
-    figure: Figure[Any, Any],
-    are_apart: Callable[[Sequence[str]], bool],
-) -> dict[str, list[str]]:
-    """The bodies, those that points hold together as one.
+def _held_together(
+    bodies: dict[str, list[str]], are_apart: Callable[[Sequence[str]], bool]
+) -> tuple[str, str] | None:
+    """Two bodies that points hold together; None where there are none.
 
-    That is called as the frame is, or as the one with the most points, so that it does
-    not depend on the order of the pieces.
+    The one that gives both its name is the frame, or the one with the most points, so
+    that it does not depend on the order of the pieces.
     """
     ranked = sorted(bodies, key=lambda name: (name != FRAME, -len(bodies[name])))
     for first, second in combinations(ranked, 2):
-        common = [point for point in bodies[first] if point in bodies[second]]
-        if not are_apart(common):
-            continue
-        joined = dict(bodies)
-        others = joined.pop(second)
-        new = [point for point in others if point not in joined[first]]
-        joined[first] = joined[first] + new
-        _add_points_on(joined, figure)
-        return _without_parts(joined, figure, are_apart)
-    return bodies
+        if are_apart([point for point in bodies[first] if point in bodies[second]]):
+            return first, second
+    return None
 
 
 def _add_points_on(bodies: dict[str, list[str]], figure: Figure[Any, Any]) -> None:

@@ -16,15 +16,24 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from networkx.utils import UnionFind
 
-from bifurc.decisions import is_start_solved
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.decisions import is_parallel_axis
-from linkages.files.misfits import check_moved
+from linkages.files.misfits import closed_near
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism, Panel
 from linkages.mechanisms.origin import Coordinates, WrittenNumber, counted_from_near
 from linkages.readout.poses import Poses
-from linkages.values import GeometryError, check_number, quoted
+from linkages.values import (
+    SOME,
+    GeometryError,
+    check_number,
+    checked_list,
+    checked_number,
+    checked_table,
+    checked_text,
+    quoted,
+    require,
+)
 
 Frame: TypeAlias = Mapping[str, Any]
 Side: TypeAlias = tuple[int, int]
@@ -34,6 +43,7 @@ FOLDED = "foldedForm"
 HINGES = ("M", "V", "U")
 RIGID = ("F", "J")
 CUTS = ("B", "C")
+LETTERS = (*HINGES, *RIGID, *CUTS)
 # where hinges of thick panels are, over the thickness: on the faces that come together
 SIDES = {"V": 0.5, "M": -0.5}
 STRAIGHT = 180.0  # degrees, the largest fold angle
@@ -78,18 +88,20 @@ def read_fold(text: str, name: str) -> Mechanism:
         content = json.loads(text, parse_float=WrittenNumber)
     except (json.JSONDecodeError, RecursionError) as error:
         raise GeometryError("content", f"no JSON, {error},", "a FOLD file") from None
-    if not isinstance(content, Mapping):
-        raise GeometryError("content", quoted(content), "a table, as of a FOLD file")
+    content = checked_table("content", content, "a table, as of a FOLD file")
     frame = _frame(content)
     title = content.get("file_title", content.get("frame_title", name))
-    if not isinstance(title, str):
-        raise GeometryError("file_title", quoted(title), "a text in quotes")
+    checked_text("file_title", title)
     points, near = _points(frame)
     faces = _faces(frame, len(points))
     edges = _edges(frame, len(points))
     creases = _creases(faces, edges)
-    if any(key in frame for key in (THICKNESS, HEIGHTS)):
-        _check_thick(frame, points)
+    is_folded = FOLDED in frame.get("frame_classes", [])
+    if THICKNESS in frame or HEIGHTS in frame:
+        key = THICKNESS if THICKNESS in frame else HEIGHTS
+        is_flat = not is_folded and not np.ptp(points[:, 2]) > 0.0
+        allowed = "left out, or given with the flat crease pattern and its fold angles"
+        require(is_flat, key, "given with folded coordinates,", allowed)
     bodies = _bodies(len(faces), creases)
     angles: dict[str, float] = {}
     joints: list[Joint] = []
@@ -108,9 +120,15 @@ def read_fold(text: str, name: str) -> Mechanism:
         rounding=near.rounding,
         panels=_panels(faces, bodies, points, joints),
     )
-    if FOLDED in frame.get("frame_classes", []) or not any(angles.values()):
+    if is_folded or not any(angles.values()):
         return mechanism
-    _check_flat(points)
+    heights = np.ptp(points[:, 2])
+    allowed = (
+        "the same for all vertices where edges_foldAngle is given; a state that is "
+        f'folded has "{FOLDED}" in its frame_classes'
+    )
+    is_flat = not heights > 0.0
+    require(is_flat, "vertices_coords", f"heights {heights:.6g} apart", allowed)
     return _folded(mechanism, angles)
 
 
@@ -121,14 +139,10 @@ def _folded(mechanism: Mechanism, angles: Mapping[str, float]) -> Mechanism:
     """The mechanism in the closed state nearest to fold ``angles`` (rad), by joint,
     from the flat one."""
     problem = MechanismClosure(mechanism)
-    start = np.array([angles[name] for name in problem.names])
-    points, gaps = problem.project(start[None])
-    if not is_start_solved(float(gaps[0])):
-        value = f"folded such that a gap of {gaps[0]:.3g} is left"
-        raise GeometryError("edges_foldAngle", value, "near a closed state")
-    gap = float(np.linalg.norm(problem.residuals(start[None])))
-    check_moved("edges_foldAngle", start, points[0], gap, problem.names)
-    poses = Poses(problem.structure).at(points)[0]
+    start = np.array([angles[name] for name in problem.domain.names])
+    far = "folded such that a gap of {:.3g} is left; near a closed state"
+    point = closed_near(problem, "edges_foldAngle", start, problem.domain.names, far)
+    poses = Poses(problem.structure).at(point[None])[0]
     joints = []
     for joint in mechanism.joints:
         pose = poses[mechanism.bodies.index(joint.bodies[0])]
@@ -143,33 +157,13 @@ def _folded(mechanism: Mechanism, angles: Mapping[str, float]) -> Mechanism:
     return replace(mechanism, joints=tuple(joints), panels=tuple(panels))
 
 
-def _check_flat(points: np.ndarray) -> None:
-    heights = np.ptp(points[:, 2])
-    if heights > 0.0:
-        allowed = (
-            "the same for all vertices where edges_foldAngle is given; a state that is "
-            f'folded has "{FOLDED}" in its frame_classes'
-        )
-        raise GeometryError("vertices_coords", f"heights {heights:.6g} apart", allowed)
-
-
-def _check_thick(frame: Frame, points: np.ndarray) -> None:
-    """Refuse thick panels in a state that is folded in space."""
-    key = THICKNESS if THICKNESS in frame else HEIGHTS
-    if FOLDED in frame.get("frame_classes", []) or np.ptp(points[:, 2]) > 0.0:
-        allowed = "left out, or given with the flat crease pattern and its fold angles"
-        raise GeometryError(key, "given with folded coordinates,", allowed)
-
-
 def _frame(content: Mapping[str, Any]) -> Frame:
     """The first frame that is folded in space, else the first one."""
-    frames = content.get("file_frames", [])
-    if not isinstance(frames, list):
-        raise GeometryError("file_frames", quoted(frames), "a list of frames")
+    given = content.get("file_frames", [])
+    frames = checked_list("file_frames", given, "a list of frames")
     merged: list[Frame] = [content]
     for number, frame in enumerate(frames, start=1):
-        if not isinstance(frame, Mapping):
-            raise GeometryError(f"file_frames[{number}]", quoted(frame), "a table")
+        checked_table(f"file_frames[{number}]", frame, "a table")
         parent = frame.get("frame_parent", 0)
         if not frame.get("frame_inherit", False):
             merged.append(frame)
@@ -181,9 +175,8 @@ def _frame(content: Mapping[str, Any]) -> Frame:
                 f"frame_parent of file_frames[{number}]", quoted(parent), allowed
             )
     for frame in merged:
-        classes = frame.get("frame_classes", [])
-        if not isinstance(classes, list):
-            raise GeometryError("frame_classes", quoted(classes), "a list of texts")
+        given = frame.get("frame_classes", [])
+        classes = checked_list("frame_classes", given, "a list of texts")
         rows = frame.get("vertices_coords")
         in_space = isinstance(rows, list) and all(
             isinstance(row, list) and len(row) == 3 for row in rows
@@ -211,11 +204,9 @@ def _points(frame: Frame) -> tuple[np.ndarray, Coordinates]:
     points = np.zeros((len(rows), 3))
     for number, row in enumerate(rows):
         what = f"vertices_coords[{number}]"
-        if not isinstance(row, list) or len(row) not in (2, 3):
-            raise GeometryError(what, quoted(row), "[x, y] or [x, y, z]")
+        row = checked_list(what, row, "[x, y] or [x, y, z]", (2, 3))
         for k, coordinate in enumerate(row):
-            check_number(what, coordinate)
-            points[number, k] = coordinate
+            points[number, k] = checked_number(what, coordinate)
     return points, near
 
 
@@ -223,76 +214,65 @@ def _faces(frame: Frame, vertices: int) -> list[list[int]]:
     faces = _list(frame, "faces_vertices")
     for number, face in enumerate(faces):
         what = f"faces_vertices[{number}]"
-        if not isinstance(face, list) or len(face) < 3:
-            raise GeometryError(what, quoted(face), "a list of three vertices or more")
+        checked_list(what, face, "a list of three vertices or more", SOME[2:])
         for vertex in face:
             _check_vertex(what, vertex, vertices)
-            if face.count(vertex) > 1:
-                raise GeometryError(what, face, f"different; {vertex} stands twice")
+            is_once = face.count(vertex) == 1
+            require(is_once, what, face, f"different; {vertex} stands twice")
     return faces
 
 
 def _check_vertex(what: str, vertex: object, vertices: int) -> None:
     is_number = isinstance(vertex, int) and not isinstance(vertex, bool)
-    if not is_number or not 0 <= vertex < vertices:  # type: ignore[operator]
-        allowed = f"vertices, numbers from 0 to {vertices - 1}"
-        raise GeometryError(what, quoted(vertex), allowed)
+    is_vertex = is_number and vertex in range(vertices)
+    allowed = f"vertices, numbers from 0 to {vertices - 1}"
+    require(is_vertex, what, quoted(vertex), allowed)
 
 
 def _edges(frame: Frame, vertices: int) -> dict[Side, _Edge]:
     """What is said of edges, by their vertices in ascending order."""
     if "edges_vertices" not in frame:
         for key in ("edges_assignment", "edges_foldAngle", THICKNESS, HEIGHTS):
-            if key in frame:
-                allowed = f"given together with {key}"
-                raise GeometryError("edges_vertices", "a missing key", allowed)
+            allowed = f"given together with {key}"
+            require(key not in frame, "edges_vertices", "a missing key", allowed)
         return {}
     ends = _list(frame, "edges_vertices")
     letters = _of_edges(frame, "edges_assignment", len(ends))
     angles = _of_edges(frame, "edges_foldAngle", len(ends))
     heights = _of_edges(frame, HEIGHTS, len(ends))
-    thickness = _thickness(frame)
+    given = frame.get(THICKNESS, 0.0)
+    thickness = checked_number(THICKNESS, given)
+    require(thickness >= 0, THICKNESS, given, "0 or more")
     edges = {}
     for number, pair in enumerate(ends):
         what = f"edges_vertices[{number}]"
-        if not isinstance(pair, list) or len(pair) != 2:
-            raise GeometryError(what, quoted(pair), "two vertices")
+        checked_list(what, pair, "two vertices", (2,))
         for vertex in pair:
             _check_vertex(what, vertex, vertices)
         letter = letters[number] or "U"
-        if letter not in (*HINGES, *RIGID, *CUTS):
-            allowed = "one of " + ", ".join((*HINGES, *RIGID, *CUTS))
-            raise GeometryError(f"edges_assignment[{number}]", quoted(letter), allowed)
+        allowed = f"one of {', '.join(LETTERS)}"
+        what = f"edges_assignment[{number}]"
+        require(letter in LETTERS, what, quoted(letter), allowed)
         angle = angles[number] or 0.0
-        check_number(f"edges_foldAngle[{number}]", angle)
-        if abs(angle) > STRAIGHT:
-            what = f"edges_foldAngle[{number}]"
-            raise GeometryError(what, angle, "from -180 to 180, in degrees")
+        what = f"edges_foldAngle[{number}]"
+        check_number(what, angle)
+        allowed = "from -180 to 180, in degrees"
+        require(abs(angle) <= STRAIGHT, what, angle, allowed)
         name = f"{pair[0]}-{pair[1]}"
         height = heights[number]
         if height is None:
             height = SIDES.get(letter, 0.0) * thickness
-        check_number(f"{HEIGHTS}[{number}]", height)
-        edge = _Edge(name, letter, float(angle), float(height))
-        edges[min(pair), max(pair)] = edge
+        height = checked_number(f"{HEIGHTS}[{number}]", height)
+        edges[min(pair), max(pair)] = _Edge(name, letter, float(angle), height)
     return edges
-
-
-def _thickness(frame: Frame) -> float:
-    """How thick all panels are."""
-    thickness = frame.get(THICKNESS, 0.0)
-    check_number(THICKNESS, thickness)
-    if thickness < 0:
-        raise GeometryError(THICKNESS, thickness, "0 or more")
-    return float(thickness)
 
 
 def _of_edges(frame: Frame, key: str, count: int) -> list[Any]:
     if key not in frame:
         return [None] * count
     values = _list(frame, key)
-    if len(values) != count:
-        raise GeometryError(f"number of {key}", len(values), f"{count}, one an edge")
+    allowed = f"{count}, one an edge"
+    require(len(values) == count, f"number of {key}", len(values), allowed)
     return values
 
 
@@ -310,10 +290,10 @@ def _creases(faces: Sequence[list[int]], edges: Mapping[Side, _Edge]) -> list[_C
                 raise GeometryError("faces_vertices", value, f"{allowed} ways")
             owners[start, end] = number
     for side, edge in edges.items():
-        if edge.letter in HINGES and not {side, side[::-1]} & owners.keys():
-            value = f"{edge.name}, {quoted(edge.letter)},"
-            allowed = "a side of a face, as every crease (M, V, U) is"
-            raise GeometryError("edge", value, allowed)
+        is_on_face = side in owners or side[::-1] in owners
+        value = f"{edge.name}, {quoted(edge.letter)},"
+        allowed = "a side of a face, as every crease (M, V, U) is"
+        require(is_on_face or edge.letter not in HINGES, "edge", value, allowed)
     creases = []
     for (start, end), left in owners.items():
         right = owners.get((end, start))
@@ -374,13 +354,11 @@ def _joint(
     direction."""
     start, end = points[crease.start], points[crease.end]
     length = float(np.linalg.norm(end - start))
-    if length == 0.0:
-        allowed = "of a length other than zero"
-        raise GeometryError(f"crease {crease.edge.name}", "its ends coincide,", allowed)
+    what = f"crease {crease.edge.name}"
+    require(length != 0.0, what, "its ends coincide,", "of a length other than zero")
     pair = (bodies[crease.left], bodies[crease.right])
-    if pair[0] == pair[1]:
-        allowed = f"flat (F) as well, as other edges make its faces one body, {pair[0]}"
-        raise GeometryError(f"crease {crease.edge.name}", "a fold", allowed)
+    allowed = f"flat (F) as well, as other edges make its faces one body, {pair[0]}"
+    require(pair[0] != pair[1], what, "a fold", allowed)
     along = tuple(((start - end) / length).tolist())
     middle = tuple((0.5 * (start + end) + crease.edge.height * upwards).tolist())
     return Joint(crease.edge.name, JointKind.REVOLUTE, pair, middle, along)

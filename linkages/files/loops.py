@@ -12,16 +12,24 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from bifurc.decisions import is_start_solved
 from linkages.closure.loop_closure import LoopClosure
 from linkages.decisions import is_parallel_axis, meets_in_one_point
 from linkages.files.figures import check_joined_names, joined_name
-from linkages.files.misfits import check_moved
+from linkages.files.misfits import closed_near
 from linkages.loop import Loop
 from linkages.mechanisms.displacements import transforms
 from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.values import GeometryError, check_keys, check_number, quoted
+from linkages.values import (
+    SOME,
+    GeometryError,
+    check_keys,
+    checked_list,
+    checked_number,
+    checked_table,
+    quoted,
+    require,
+)
 
 Table: TypeAlias = Mapping[str, Any]
 
@@ -75,10 +83,9 @@ def read_loops(tables: object, name: str, unit: float) -> Mechanism:
     Raises `GeometryError` for what makes no loop, loops that do not close, that share
     nothing with those before, or whose shared joints are at different places.
     """
-    if not isinstance(tables, list) or not tables:
-        raise GeometryError("loops", quoted(tables), "tables [[loops]]")
+    given = checked_list("loops", tables, "tables [[loops]]", SOME)
     rings: list[_Ring] = []
-    for number, table in enumerate(tables, start=1):
+    for number, table in enumerate(given, start=1):
         names = [link.name for ring in rings for link in ring.links]
         rings.append(_read_ring(f"loops[{number}]", table, unit, names))
     ends = [link.ends for ring in rings for link in ring.links if link.ends]
@@ -137,41 +144,34 @@ def _pose(
         _check_placed(ring, "the first loop stands where it is")
         return np.eye(4)
     shared = [joint for joint in ring.joints if joint in axes]
-    if not shared:
-        allowed = f"such that one is a joint of a loop before: {', '.join(axes)}"
-        raise GeometryError(f"joints of {ring.what}", list(ring.joints), allowed)
+    allowed = f"such that one is a joint of a loop before: {', '.join(axes)}"
+    is_shared = bool(shared)
+    require(is_shared, f"joints of {ring.what}", list(ring.joints), allowed)
     first = shared[0]
     for second in shared[1:]:
         here = _frame_of(ring.axis(first), ring.axis(second))
         there = _frame_of(axes[first], axes[second])
         if here is not None and there is not None:
             _check_placed(ring, f"joints {first} and {second} place the loop")
-            return _brought(here, there)
+            return np.asarray(there @ np.linalg.inv(here))
     axis = axes[first]
-    there = _frame(axis.point, axis.direction, normals[first])
-    there = _turned(there, axis, ring)
-    own = ring.axis(first)
-    normal = _normal(ring, ring.joints.index(first))
-    return _brought(_frame(own.point, own.direction, normal), there)
+    # turned about the axis and shifted along it, as the table says
+    there = _frame(*axis, normals[first])
+    screw = Motion(True, axis.direction, axis.point)
+    there = transforms(screw, np.array([ring.turn]))[0] @ there
+    there[:3, 3] += ring.shift * axis.direction
+    here = _frame(*ring.axis(first), _normal(ring, ring.joints.index(first)))
+    pose: np.ndarray = there @ np.linalg.inv(here)
+    return pose
 
 
 def _check_placed(ring: _Ring, reason: str) -> None:
     """Refuse a turn or a shift of a loop that has its place without them."""
     turn = float(np.degrees(ring.turn))
     for key, value, unit in (("turn", turn, " degrees"), ("shift", ring.shift, "")):
-        if value != 0.0:
-            shown = f"{value:.10g}{unit}"
-            what = f"{key} of {ring.what}"
-            raise GeometryError(what, shown, f"left out, as {reason}")
-
-
-def _turned(frame: np.ndarray, axis: Axis, ring: _Ring) -> np.ndarray:
-    """A frame turned about an axis and shifted along it, as the table of a loop
-    says."""
-    screw = Motion(True, axis.direction, axis.point)
-    turned: np.ndarray = transforms(screw, np.array([ring.turn]))[0] @ frame
-    turned[:3, 3] += ring.shift * axis.direction
-    return turned
+        shown = f"{value:.10g}{unit}"
+        what = f"{key} of {ring.what}"
+        require(value == 0.0, what, shown, f"left out, as {reason}")
 
 
 def _frame_of(first: Axis, second: Axis) -> np.ndarray | None:
@@ -200,12 +200,6 @@ def _frame(origin: np.ndarray, third: np.ndarray, first: np.ndarray) -> np.ndarr
     return frame
 
 
-def _brought(here: np.ndarray, there: np.ndarray) -> np.ndarray:
-    """The displacement (4, 4) that brings a frame to another one."""
-    pose: np.ndarray = there @ np.linalg.inv(here)
-    return pose
-
-
 def _check_same(ring: _Ring, joint: str, axis: Axis, placed: Axis) -> None:
     """A joint that loops share has one axis."""
     cosine = float(np.clip(axis.direction @ placed.direction, -1.0, 1.0))
@@ -224,8 +218,7 @@ def _check_same(ring: _Ring, joint: str, axis: Axis, placed: Axis) -> None:
 
 
 def _read_ring(what: str, table: object, unit: float, known: Sequence[str]) -> _Ring:
-    if not isinstance(table, Mapping):
-        raise GeometryError(what, quoted(table), "a table")
+    table = checked_table(what, table, "a table")
     check_keys(f"key of {what}", table, KEYS)
     joints = _names(f"joints of {what}", table.get("joints"))
     rows = {key: _row(f"{key} of {what}", table.get(key), joints) for key in NUMBERS}
@@ -235,44 +228,29 @@ def _read_ring(what: str, table: object, unit: float, known: Sequence[str]) -> _
         tuple(rows["offsets"]),
         what,
     )
-    angles = _closed(what, loop, unit * np.array(rows["configuration"]), joints)
+    given = unit * np.array(rows["configuration"])
+    shown = np.degrees(given).round(6).tolist()
+    far = f"{shown} degrees, from which a gap of {{:.3g}} is left,; near a closed one"
+    where = f"configuration of {what}"
+    angles = closed_near(LoopClosure(loop), where, given, joints, far)
     return _Ring(
         what,
         joints,
         _links(what, table.get("links"), joints, known),
         loop.frames(angles)[:-1],
         loop.characteristic_length,
-        unit * _number(f"turn of {what}", table.get("turn", 0.0)),
-        _number(f"shift of {what}", table.get("shift", 0.0)),
+        unit * checked_number(f"turn of {what}", table.get("turn", 0.0)),
+        checked_number(f"shift of {what}", table.get("shift", 0.0)),
     )
 
 
-def _closed(
-    what: str, loop: Loop, angles: np.ndarray, joints: Sequence[str]
-) -> np.ndarray:
-    """The closed configuration (n,) nearest to these angles (n,), rad, of ``joints``;
-    raises `GeometryError` where they were not closed but for rounding."""
-    closure = LoopClosure(loop)
-    points, gaps = closure.project(angles[None])
-    if not is_start_solved(float(gaps[0])):
-        value = f"{np.degrees(angles).round(6).tolist()} degrees, from which a gap of"
-        value += f" {gaps[0]:.3g} is left,"
-        raise GeometryError(f"configuration of {what}", value, "near a closed one")
-    closed: np.ndarray = points[0]
-    gap = float(np.linalg.norm(closure.residuals(angles[None])))
-    check_moved(f"configuration of {what}", angles, closed, gap, joints)
-    return closed
-
-
 def _names(what: str, given: object) -> tuple[str, ...]:
-    if not isinstance(given, list):
-        raise GeometryError(what, quoted(given), "a list of names")
-    for name in given:
-        if not isinstance(name, str) or not name.strip():
-            raise GeometryError(what, quoted(name), "names, texts in quotes")
-        if given.count(name) > 1:
-            raise GeometryError(what, quoted(name), "given once")
-    return tuple(given)
+    names = checked_list(what, given, "a list of names")
+    for name in names:
+        is_name = isinstance(name, str) and name.strip() != ""
+        require(is_name, what, quoted(name), "names, texts in quotes")
+        require(names.count(name) == 1, what, quoted(name), "given once")
+    return tuple(names)
 
 
 def _row(what: str, given: object, joints: tuple[str, ...]) -> list[float]:
@@ -280,14 +258,9 @@ def _row(what: str, given: object, joints: tuple[str, ...]) -> list[float]:
     if not isinstance(given, list):
         value = "a missing key" if given is None else quoted(given)
         raise GeometryError(what, value, allowed)
-    if len(given) != len(joints):
-        raise GeometryError(f"number of {what}", len(given), f"{len(joints)}")
-    return [_number(f"{what}[{k}]", one) for k, one in enumerate(given, start=1)]
-
-
-def _number(what: str, given: Any) -> float:
-    check_number(what, given)
-    return float(given)
+    is_whole = len(given) == len(joints)
+    require(is_whole, f"number of {what}", len(given), f"{len(joints)}")
+    return [checked_number(f"{what}[{k}]", one) for k, one in enumerate(given, start=1)]
 
 
 def _links(
@@ -297,9 +270,9 @@ def _links(
     same for the same two."""
     if given is not None:
         names = _names(f"links of {what}", given)
-        if len(names) != len(joints):
-            allowed = f"{len(joints)}, one after each joint"
-            raise GeometryError(f"number of links of {what}", len(names), allowed)
+        allowed = f"{len(joints)}, one after each joint"
+        is_whole = len(names) == len(joints)
+        require(is_whole, f"number of links of {what}", len(names), allowed)
         return tuple(_Link(name) for name in names)
     links = []
     for number, joint in enumerate(joints):

@@ -20,12 +20,30 @@ from linkages.files.arcs import read_arcs
 from linkages.files.bars import read_bars
 from linkages.files.loops import read_loops
 from linkages.mechanisms.couplings import Coupling
-from linkages.mechanisms.joint import DRAWN_ONLY, GEOMETRY, Joint, Limits, Motion
+from linkages.mechanisms.joint import (
+    DRAWN_ONLY,
+    GEOMETRY,
+    Joint,
+    Limits,
+    Motion,
+    check_order,
+)
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.origin import Coordinates, counted_from_near, origin_of
 from linkages.mechanisms.subject import joint_values
 from linkages.structure.plane import normal_of_plane
-from linkages.values import GeometryError, check_angle, check_keys, check_number, quoted
+from linkages.values import (
+    GeometryError,
+    check_angle,
+    check_keys,
+    check_number,
+    checked_list,
+    checked_number,
+    checked_table,
+    checked_text,
+    quoted,
+    require,
+)
 
 Content: TypeAlias = Mapping[str, Any]
 
@@ -49,9 +67,7 @@ log = logging.getLogger(__name__)
 def read_mechanism(content: Content, name: str) -> Mechanism:
     """The mechanism that the content of a TOML file describes; without a name it gets
     this one. Raises `GeometryError` for anything wrong in it."""
-    given = content.get("name", name)
-    if not isinstance(given, str):
-        raise GeometryError("name", quoted(given), "a text in quotes")
+    given = checked_text("name", content.get("name", name))
     if "loops" in content and "joints" not in content:
         check_keys("key", content, OF_LOOPS)
         return read_loops(content["loops"], given, _angle_unit(content))
@@ -63,37 +79,29 @@ def read_mechanism(content: Content, name: str) -> Mechanism:
         return read_bars(content, given)
     check_keys("key", content, OF_FILE)
     unit = _angle_unit(content)
-    tables = content["joints"]
-    if not isinstance(tables, list):
-        raise GeometryError("joints", quoted(tables), "tables [[joints]]")
-    tables, near = _from_near(tables)
+    given_tables = checked_list("joints", content["joints"], "tables [[joints]]")
+    tables, near = _from_near(given_tables)
     joints = [_read_joint(k, table, unit) for k, table in enumerate(tables, start=1)]
     mechanism = Mechanism(tuple(joints), given)
-    return replace(
-        mechanism,
-        is_planar=_read_planar(content, mechanism),
-        origin=origin_of(content, near.origin),
-        rounding=max(near.rounding, _read_rounding(content)),
-    )
+    is_planar = _read_planar(content, mechanism)
+    origin = origin_of(content, near.origin)
+    rounding = content.get("rounding", 0.0)
+    check_number("rounding", rounding)
+    require(rounding >= 0, "rounding", rounding, "0 or more, a length")
+    rounding = max(near.rounding, float(rounding))
+    return replace(mechanism, is_planar=is_planar, origin=origin, rounding=rounding)
 
 
 def _from_near(tables: Sequence[object]) -> tuple[list[object], Coordinates]:
     """The tables of joints with points that are counted from one of them, where they
     are far from the origin, and these points."""
-    points = [
-        table.get("point") if isinstance(table, Mapping) else None for table in tables
+    known = [table if isinstance(table, Mapping) else {} for table in tables]
+    are_anywhere = [table.get("kind") in DRAWN_ONLY for table in known]
+    near = counted_from_near([table.get("point") for table in known], are_anywhere)
+    moved = [
+        table if row is None else {**of_joint, "point": row}
+        for table, of_joint, row in zip(tables, known, near.rows, strict=True)
     ]
-    are_anywhere = [
-        isinstance(table, Mapping) and table.get("kind") in DRAWN_ONLY
-        for table in tables
-    ]
-    near = counted_from_near(points, are_anywhere)
-    moved: list[object] = []
-    for table, row in zip(tables, near.rows, strict=True):
-        if isinstance(table, Mapping) and row is not None:
-            moved.append({**table, "point": row})
-        else:
-            moved.append(table)
     return moved, near
 
 
@@ -106,15 +114,6 @@ def _read_planar(content: Content, mechanism: Mechanism) -> bool:
         allowed = "false, as not all axes are parallel and all slides across them"
         raise GeometryError("planar", "true", allowed)
     return is_planar
-
-
-def _read_rounding(content: Content) -> float:
-    """How far off coordinates of points may be, as the file says."""
-    rounding = content.get("rounding", 0.0)
-    check_number("rounding", rounding)
-    if rounding < 0:
-        raise GeometryError("rounding", rounding, "0 or more, a length")
-    return float(rounding)
 
 
 def _angle_unit(content: Content) -> float:
@@ -130,19 +129,17 @@ def _angle_unit(content: Content) -> float:
 
 def _read_joint(number: int, table: object, unit: float) -> Joint:
     """A joint from its table; angles are in this ``unit``, in rad."""
-    if not isinstance(table, Mapping):
-        raise GeometryError(f"joints[{number}]", quoted(table), "a table")
+    table = checked_table(f"joints[{number}]", table, "a table")
     name = table.get("name")
-    if name is None:
-        raise GeometryError(f"name of joints[{number}]", "a missing key", "a text")
+    is_named = name is not None
+    require(is_named, f"name of joints[{number}]", "a missing key", "a text")
     check_keys(f"key of joint {name}", table, OF_JOINT)
     for key in ("kind", "bodies"):
-        if key not in table:
-            what = f"{key} of joint {name}"
-            raise GeometryError(what, "a missing key", "given for every joint")
+        what, allowed = f"{key} of joint {name}", "given for every joint"
+        require(key in table, what, "a missing key", allowed)
     joint = Joint(**{key: table[key] for key in table if key not in OF_VALUES})
     motions = joint.motions * (len(joint.bodies) - 1)
-    variables = _Variables(name, motions, unit)
+    variables = _Variables(str(name), motions, unit)
     limits = variables.limits(table.get("limits"))
     locked = variables.locked(table.get("locked"), limits)
     coupled = variables.coupled(table.get("coupled"), locked)
@@ -172,8 +169,7 @@ class _Variables:
         rows = list(given) if isinstance(given, list) else []
         if is_single and not any(isinstance(row, list) for row in rows):
             rows = [rows]
-        if len(rows) != len(self.motions):
-            raise GeometryError(what, quoted(given), allowed)
+        require(len(rows) == len(self.motions), what, quoted(given), allowed)
         limits: list[Limits | None] = []
         for row, motion in zip(rows, self.motions, strict=True):
             if row == [] and not is_single:
@@ -182,13 +178,16 @@ class _Variables:
             if not isinstance(row, list) or len(row) != 2:
                 raise GeometryError(what, quoted(given), allowed)
             low, high = (self._in_rad(what, value, motion) for value in row)
-            if not low < high:
-                allowed = "a smaller number and a larger one"
-                if low == high:
-                    allowed += f"; a joint that stands still has locked = {row[0]}"
-                raise GeometryError(what, row, allowed)
-            if motion.is_turn and not motion.advance and self.unit == 1.0:
-                _warn_of_degrees(what, (low, high))
+            check_order(what, row)
+            is_in_rad = motion.is_turn and not motion.advance and self.unit == 1.0
+            if is_in_rad and max(abs(low), abs(high)) > MANY_TURNS:
+                log.warning(
+                    '%s are [%g, %g] with angles = "rad", more than two turns; if they '
+                    'are in degrees, write angles = "deg"',
+                    what,
+                    low,
+                    high,
+                )
             limits.append((low, high))
         return tuple(limits)
 
@@ -202,11 +201,10 @@ class _Variables:
         what = f"locked of joint {self.joint}"
         count = len(self.motions)
         values = given if isinstance(given, list) else [given]
-        if len(values) != count:
+        allowed = f'{count} numbers, "{FREE}" for a variable that is not'
+        if count <= 1:
             allowed = "a number"
-            if count > 1:
-                allowed = f'{count} numbers, "{FREE}" for a variable that is not'
-            raise GeometryError(what, quoted(given), allowed)
+        require(len(values) == count, what, quoted(given), allowed)
         locked = [
             None if value == FREE and count > 1 else self._in_rad(what, value, motion)
             for value, motion in zip(values, self.motions, strict=True)
@@ -228,10 +226,10 @@ class _Variables:
             return ()
         what = f"coupled of joint {self.joint}"
         tables = given if isinstance(given, list) else [given]
-        if len(tables) != len(self.motions):
-            count = len(self.motions)
-            allowed = f"{count} tables" if count != 1 else "a table"
-            raise GeometryError(what, quoted(given), f"{allowed} {{to, ratio, offset}}")
+        count = len(self.motions)
+        allowed = f"{count} tables" if count != 1 else "a table"
+        allowed += " {to, ratio, offset}"
+        require(len(tables) == count, what, quoted(given), allowed)
         pairs = zip(tables, self.motions, strict=True)
         coupled = [self._coupling(what, table, motion) for table, motion in pairs]
         for value, coupling, motion in zip(locked, coupled, self.motions, strict=False):
@@ -243,26 +241,22 @@ class _Variables:
 
     def _coupling(self, what: str, table: object, motion: Motion) -> Coupling | None:
         """A coupling from its table; None from an empty one."""
-        if not isinstance(table, Mapping):
-            raise GeometryError(what, quoted(table), "a table {to, ratio, offset}")
+        table = checked_table(what, table, "a table {to, ratio, offset}")
         if not table:
             return None
         check_keys(f"key of {what}", table, OF_COUPLING)
         for key in ("to", "ratio"):
-            if key not in table:
-                raise GeometryError(f"{key} of {what}", "a missing key", "given")
+            require(key in table, f"{key} of {what}", "a missing key", "given")
         offset = self._in_rad(f"offset of {what}", table.get("offset", 0.0), motion)
         check_number(f"ratio of {what}", table["ratio"])
-        if table["ratio"] == 0:
-            allowed = "other than 0; a joint that stands still is locked"
-            raise GeometryError(f"ratio of {what}", 0, allowed)
+        allowed = "other than 0; a joint that stands still is locked"
+        require(table["ratio"] != 0, f"ratio of {what}", 0, allowed)
         return Coupling(table["to"], table["ratio"], offset)
 
     def _in_rad(self, what: str, value: Any, motion: Motion) -> float:
         """A number of a file in rad, where the motion is a turn; a length as it is."""
         if not motion.is_turn:
-            check_number(what, value)
-            return float(value)
+            return checked_number(what, value)
         check_angle(what, value, in_degrees=self.unit != 1.0)
         return self.unit * float(value)
 
@@ -272,17 +266,6 @@ class _Variables:
             return f"{value:.10g}"
         word = "rad" if self.unit == 1.0 else "degrees"
         return f"{value / self.unit:.10g} {word}"
-
-
-def _warn_of_degrees(what: str, limits: Limits) -> None:
-    """Say in the log that limits, rad, are so wide that degrees may be meant."""
-    if max(map(abs, limits)) > MANY_TURNS:
-        log.warning(
-            '%s are [%g, %g] with angles = "rad", more than two turns; if they are in '
-            'degrees, write angles = "deg"',
-            what,
-            *limits,
-        )
 
 
 # --- writing --------------------------------------------------------------------------

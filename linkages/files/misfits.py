@@ -7,8 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from bifurc.decisions import is_start_solved
+from bifurc.problem import Problem
 from linkages.decisions import keeps_angle
-from linkages.values import GeometryError
+from linkages.values import GeometryError, require
 
 log = logging.getLogger(__name__)
 
@@ -19,15 +21,21 @@ LARGEST_MOVE = 5.0  # degrees
 MOST_SHOWN = 12  # angles in a message
 
 
-def check_moved(
-    what: str, before: np.ndarray, after: np.ndarray, gap: float, names: Sequence[str]
-) -> None:
-    """Warn of angles (n,), rad, of the joints of these ``names`` that were moved to be
-    closed.
+def closed_near(
+    problem: Problem, what: str, before: np.ndarray, names: Sequence[str], far: str
+) -> np.ndarray:
+    """The closed angles (n,), rad, of the joints of these ``names`` that are nearest to
+    given ones (n,); warns of those that were moved.
 
-    Raises `GeometryError` where one of them went by more than `LARGEST_MOVE`: they were
-    not closed, but left a ``gap`` of the characteristic length.
+    Raises `GeometryError` where none are near, as ``far`` says of the gap that is left,
+    and where one of them went by more than `LARGEST_MOVE`: they were not closed.
     """
+    points, gaps = problem.project(before[None])
+    value, allowed = far.split("; ")
+    is_near = is_start_solved(float(gaps[0]))
+    require(is_near, what, value.format(gaps[0]), allowed)
+    after: np.ndarray = points[0]
+    gap = float(np.linalg.norm(problem.residuals(before[None])))
     changes = np.abs(np.remainder(after - before + np.pi, 2 * np.pi) - np.pi)
     largest = int(np.argmax(changes))
     change = float(np.degrees(changes[largest]))
@@ -45,3 +53,4 @@ def check_moved(
         raise GeometryError(what, value, allowed)
     if not keeps_angle(float(changes[largest])):
         log.warning("%s: moved by up to %.3g degrees to be closed", what, change)
+    return after

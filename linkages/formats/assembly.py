@@ -3,6 +3,7 @@ bodies that it joins, with no closed configuration or one that is rounded."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -11,18 +12,7 @@ import numpy as np
 
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import LARGEST, JointKind, Limits, Vector
-from linkages.values import GeometryError, quoted
-
-# what variables are: turns about the third axis of the first frame, and slides along its
-# axes
-TURN, SLIDES = "turn", "xyz"
-MOVES: dict[JointKind, tuple[str, ...]] = {
-    JointKind.REVOLUTE: (TURN,),
-    JointKind.HELICAL: (TURN,),
-    JointKind.PRISMATIC: ("z",),
-    JointKind.CYLINDRICAL: (TURN, "z"),
-    JointKind.PLANAR: ("x", "y", TURN),
-}
+from linkages.values import GeometryError, quoted, require
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,15 +76,19 @@ class Assembly:
         _check_names("name of a joint", [joint.name for joint in self.joints])
         known = set(self.bodies)
         for joint in self.joints:
+            owner = f"of joint {joint.name}"
             for body in joint.bodies:
                 if body not in known:
-                    what = f"body of joint {joint.name}"
                     allowed = f"one of {', '.join(self.bodies)}"
-                    raise GeometryError(what, quoted(body), allowed)
-            _check_size(f"point of joint {joint.name}", joint.points)
-            if joint.bodies[0] == joint.bodies[1]:
-                what = f"bodies of joint {joint.name}"
-                raise GeometryError(what, list(joint.bodies), "two different bodies")
+                    raise GeometryError(f"body {owner}", quoted(body), allowed)
+            # squares of coordinates that are larger are beyond all numbers
+            largest = float(np.abs(joint.points).max())
+            allowed = f"within {LARGEST:.0e}"
+            is_small = not largest > LARGEST
+            require(is_small, f"point {owner}", f"at {largest:.3g}", allowed)
+            first, second = joint.bodies
+            allowed = "two different bodies"
+            require(first != second, f"bodies {owner}", [first, second], allowed)
 
     @cached_property
     def numbers(self) -> dict[str, int]:
@@ -109,19 +103,9 @@ class Assembly:
         return first @ joint.frames[0], second @ joint.frames[1]
 
 
-def _check_size(what: str, points: Sequence[np.ndarray]) -> None:
-    """Raise `GeometryError` for coordinates whose squares are beyond all numbers."""
-    largest = float(np.abs(points).max())
-    if largest > LARGEST:
-        raise GeometryError(what, f"at {largest:.3g}", f"within {LARGEST:.0e}")
-
-
 def _check_names(what: str, names: Sequence[str]) -> None:
-    seen = set()
-    for name in names:
-        if name in seen:
-            raise GeometryError(what, quoted(name), "given once")
-        seen.add(name)
+    for name, count in Counter(names).items():
+        require(count == 1, what, quoted(name), "given once")
 
 
 def translation(point: Sequence[float] | np.ndarray) -> np.ndarray:

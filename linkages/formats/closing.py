@@ -13,10 +13,11 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
+import networkx as nx
 import numpy as np
 
-from linkages.formats.assembly import MOVES, SLIDES, TURN, Assembly, BodyJoint
-from linkages.mechanisms.joint import JointKind, Limits
+from linkages.formats.assembly import Assembly, BodyJoint
+from linkages.mechanisms.joint import Fit, JointKind, Limits, Move
 
 MOST_STEPS = 100
 POLISHING_STEPS = 4
@@ -25,15 +26,6 @@ LEAST_DAMPING, MOST_DAMPING = 1e-14, 1e8
 AT_REST = 1e-15  # of the residual: no longer smaller by a step
 RANK = 1e-9  # singular value, over the largest, of a motion: no step along it
 ORIGIN_COLUMN = 3  # of a frame
-ONE_POINT = (
-    JointKind.REVOLUTE,
-    JointKind.SPHERICAL,
-    JointKind.UNIVERSAL,
-    JointKind.RIGID,
-    JointKind.HELICAL,
-)
-ACROSS = JointKind.PRISMATIC, JointKind.CYLINDRICAL
-TURNLESS = JointKind.PRISMATIC, JointKind.RIGID, JointKind.HELICAL
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,22 +140,21 @@ class Closing:
             frames.append(pose @ scaled)
         one, other = frames
         parts = []
-        if joint.kind in ONE_POINT:
-            parts.append(_difference(one, other, ORIGIN_COLUMN))
-        elif joint.kind in ACROSS:
-            parts += [_along(one, other, column) for column in (0, 1)]
-        elif joint.kind is JointKind.PLANAR:
-            parts.append(_along(one, other, 2))
-        if joint.kind is JointKind.UNIVERSAL:
-            parts.append(_angle(one, other, joint.cosine))
-        elif joint.kind is not JointKind.SPHERICAL:
-            parts.append(_difference(one, other, 2))
-        if joint.kind in TURNLESS:
-            parts.append(_difference(one, other, 0))
+        for fit in joint.kind.facets.fit:
+            if fit in SHARED:
+                parts.append(_difference(one, other, SHARED[fit]))
+            elif fit is Fit.ANGLE:
+                parts.append(_angle(one, other, joint.cosine))
+            else:
+                parts += [_along(one, other, column) for column in ACROSS[fit]]
         return _Rows(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
 # --- pieces of equations --------------------------------------------------------------
+
+# the column that both frames have in common, and those along which there is no gap
+SHARED = {Fit.POINT: ORIGIN_COLUMN, Fit.AXIS: 2, Fit.TURN: 0}
+ACROSS = {Fit.LINE: (0, 1), Fit.PLANE: (2,)}
 
 
 def _rates(frame: np.ndarray, column: int) -> np.ndarray:
@@ -222,57 +213,47 @@ class Starts:
     def __init__(self, assembly: Assembly, size: float):
         self.assembly = assembly
         self.size = size
-        self._tree = self._spanning_tree()
+        graph = nx.MultiGraph()
+        for joint in assembly.joints:
+            graph.add_edge(*joint.bodies, joint=joint)
+        # a joint to every body, from the first one on
+        self._tree: list[tuple[str, BodyJoint]] = [
+            (start, next(iter(graph[start][end].values()))["joint"])
+            for start, end in nx.bfs_edges(graph, assembly.bodies[0])
+        ]
 
     def draw(self, rng: np.random.Generator) -> np.ndarray:
         """Poses (b, 4, 4); the first body is at rest."""
         poses = np.tile(np.eye(4), (len(self.assembly.bodies), 1, 1))
-        for joint, is_forward in self._tree:
+        for start, joint in self._tree:
             first, second = (self.assembly.numbers[body] for body in joint.bodies)
             own, far = joint.frames
             motion = own @ self._motion(joint, rng) @ np.linalg.inv(far)
-            if is_forward:
+            if start == joint.bodies[0]:
                 poses[second] = poses[first] @ motion
             else:
                 poses[first] = poses[second] @ np.linalg.inv(motion)
         return poses
 
-    def _spanning_tree(self) -> list[tuple[BodyJoint, bool]]:
-        """Joints that reach every body from the first one, and whether from their first
-        body to the second one."""
-        tree = []
-        reached = [self.assembly.bodies[0]]
-        for body in reached:  # it grows on the way
-            for joint in self.assembly.joints:
-                if body not in joint.bodies:
-                    continue
-                is_forward = joint.bodies[0] == body
-                there = joint.bodies[1] if is_forward else joint.bodies[0]
-                if there not in reached:
-                    reached.append(there)
-                    tree.append((joint, is_forward))
-        return tree
-
     def _motion(self, joint: BodyJoint, rng: np.random.Generator) -> np.ndarray:
         """A random motion (4, 4) of the second frame in the first one."""
+        from scipy.spatial.transform import Rotation
+
         motion = np.eye(4)
         if joint.kind is JointKind.UNIVERSAL:
             first, second = (_turn(_random_angle(rng, None)) for _ in range(2))
             motion[:3, :3] = first @ _tilt(joint.cosine) @ second
         elif joint.kind is JointKind.SPHERICAL:
-            motion[:3, :3] = _any_rotation(rng)
+            motion[:3, :3] = Rotation.random(rng=rng).as_matrix()
         elif joint.kind is not JointKind.HELICAL:
             limits = [*joint.limits, None, None, None]
-            for move, pair in zip(MOVES.get(joint.kind, ()), limits, strict=False):
-                if move == TURN:
+            for move, pair in zip(joint.kind.facets.moves, limits, strict=False):
+                if move is Move.TURN:
                     motion[:3, :3] = _turn(_random_angle(rng, pair))
                 else:
-                    motion[SLIDES.index(move), 3] = self._slide(rng, pair)
+                    low, high = pair or (-self.size, self.size)
+                    motion[move.value, 3] = rng.uniform(low, high)
         return motion
-
-    def _slide(self, rng: np.random.Generator, limits: Limits | None) -> float:
-        low, high = limits or (-self.size, self.size)
-        return float(rng.uniform(low, high))
 
 
 def _random_angle(rng: np.random.Generator, limits: Limits | None) -> float:
@@ -290,10 +271,3 @@ def _tilt(cosine: float) -> np.ndarray:
     """The rotation (3, 3) about the first axis by an angle of this cosine."""
     sine = math.sqrt(max(0.0, 1 - cosine**2))
     return np.array([[1.0, 0.0, 0.0], [0.0, cosine, -sine], [0.0, sine, cosine]])
-
-
-def _any_rotation(rng: np.random.Generator) -> np.ndarray:
-    from scipy.spatial.transform import Rotation
-
-    rotation: np.ndarray = Rotation.random(rng=rng).as_matrix()
-    return rotation

@@ -24,11 +24,11 @@ from linkages.formats.assembly import (
     translation,
 )
 from linkages.formats.xml_tree import Element
-from linkages.mechanisms.joint import JointKind, Limits
+from linkages.mechanisms.joint import FACETS, JointKind, Limits
 
 TINY = 1e-300  # of coordinates that are all 0
 WHOLE = JointKind.CYLINDRICAL, JointKind.PLANAR
-WORDS = {JointKind.REVOLUTE: "hinge", JointKind.PRISMATIC: "slide"}
+SINGLE = {facets.mjcf: kind for kind, facets in FACETS.items() if facets.mjcf}
 
 
 class Axis(NamedTuple):
@@ -83,14 +83,24 @@ def joints_of_axes(
     if kinds == ["slide", "hinge"] and _is_one_axis(axes[1], axes[0]):
         return [_turn_and_slide(axes[1], axes[0], couplings, locks)]
     if kinds == ["hinge", "hinge"] and _is_universal(axes):
-        return [_universal(axes, locks)]
+        frames = [frame_along(axis.point, axis.direction) for axis in axes]
+        return [_joint(JointKind.UNIVERSAL, axes, locks, frames)]
     if kinds == ["slide", "slide", "hinge"] and _is_plane(axes):
         return [_plane(axes, locks)]
     if kinds == ["hinge", "slide", "slide"]:
-        inverse = [_opposite(axis) for axis in reversed(axes)]
+        # each the other way round: its variable keeps its value
+        inverse = [one._replace(direction=-one.direction) for one in reversed(axes)]
         if _is_plane(inverse):
             return [_plane(inverse, locks)._replace(is_reversed=True)]
     return [_single(axis, locks) for axis in axes]
+
+
+def _single(axis: Axis, locks: Mapping[str, float]) -> WorldJoint:
+    kind = SINGLE[axis.kind]
+    frame = translation(axis.point)
+    if kind.facets.moves:
+        frame = frame_along(axis.point, axis.direction)
+    return _joint(kind, [axis], locks, [frame])
 
 
 def _unit(vector: np.ndarray) -> np.ndarray:
@@ -115,11 +125,6 @@ def _is_universal(axes: list[Axis]) -> bool:
     return is_one_joint(distance, size) and not is_parallel
 
 
-def _opposite(axis: Axis) -> Axis:
-    """The same joint the other way round: its variable keeps its value."""
-    return axis._replace(direction=-axis.direction)
-
-
 def _is_plane(axes: list[Axis]) -> bool:
     x, y, normal = (_unit(axis.direction) for axis in axes)
     return is_one_joint(float(np.linalg.norm(np.cross(normal, x) - y)))
@@ -135,6 +140,7 @@ def _joint(
     """The joint that has the variables of some axes. It is called as their names begin
     before the last point: "J" of "J.turn" and "J.slide"; else by all of them."""
     names = tuple(axis.name for axis in axes)
+    moving = axes if kind.facets.moves else []
     stems = {name.rpartition(".")[0] for name in names}
     is_stem = len(names) > 1 and len(stems) == 1 and stems != {""}
     return WorldJoint(
@@ -142,19 +148,11 @@ def _joint(
         kind,
         frames[0],
         frames[-1],
-        limits=tuple(axis.limits for axis in axes),
-        locked=tuple(locks.get(name) for name in names),
-        axes=names,
+        limits=tuple(axis.limits for axis in moving),
+        locked=tuple(locks.get(axis.name) for axis in moving),
+        axes=tuple(axis.name for axis in moving),
         pitch=pitch,
     )
-
-
-def _single(axis: Axis, locks: Mapping[str, float]) -> WorldJoint:
-    if axis.kind == "ball":
-        frame = translation(axis.point)
-        return WorldJoint(axis.name, JointKind.SPHERICAL, frame, frame, (), (), ())
-    kind = JointKind.REVOLUTE if axis.kind == "hinge" else JointKind.PRISMATIC
-    return _joint(kind, [axis], locks, [frame_along(axis.point, axis.direction)])
 
 
 def _turn_and_slide(
@@ -170,11 +168,6 @@ def _turn_and_slide(
     del couplings[slide.name]
     pitch = 2 * math.pi * coupling.ratio
     return _joint(JointKind.HELICAL, [turn], locks, frames, pitch)
-
-
-def _universal(axes: list[Axis], locks: Mapping[str, float]) -> WorldJoint:
-    frames = [frame_along(axis.point, axis.direction) for axis in axes]
-    return _joint(JointKind.UNIVERSAL, axes, locks, frames)
 
 
 def _plane(axes: list[Axis], locks: Mapping[str, float]) -> WorldJoint:
@@ -228,13 +221,13 @@ def _joined(
     moved = next((one for one in chain[-1].bodies if one != links[-1]), "")
     axes = []
     for joint, pair in zip(chain, pairwise([base, *links, moved]), strict=True):
-        if set(joint.bodies) != {*pair} or joint.kind not in WORDS:
+        word = joint.kind.facets.mjcf
+        if set(joint.bodies) != {*pair} or not (word and joint.kind.facets.moves):
             return None
         frame = pose_of(joint.bodies[0]) @ joint.frames[0]
         # the world, which is no child in SDF, may be the body that moves
         sign = 1.0 if joint.bodies == pair else -1.0
         (limits,) = joint.limits
-        word = WORDS[joint.kind]
         axes.append(Axis(joint.name, word, frame[:3, 3], sign * frame[:3, 2], limits))
     wholes = joints_of_axes(axes, {}, {})
     if len(wholes) > 1 or wholes[0].kind is not kind or wholes[0].is_reversed:

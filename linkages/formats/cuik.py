@@ -23,18 +23,16 @@ from linkages.formats.assembly import (
 )
 from linkages.formats.cuik_links import (
     Link,
-    frame_of,
     read_end,
     read_links,
     read_point,
     read_transforms,
     rotation,
-    skip_appearance,
-    skip_dynamics,
+    skip_details,
 )
 from linkages.formats.cuik_tokens import Cursor, tokens_of
 from linkages.mechanisms.joint import JointKind, Limits, Vector
-from linkages.values import GeometryError, quoted
+from linkages.values import GeometryError, quoted, require
 
 NAMED = ("sph_sph", "sph_prs_sph")
 NOT_TAKEN = {
@@ -71,8 +69,7 @@ def read_world(text: str, name: str, folder: Path) -> Assembly:
     world = _World(folder)
     while cursor.token.kind != "end":
         _read_section(cursor, world)
-    if not world.joints:
-        raise GeometryError("[JOINTS]", "missing", "a section with joints")
+    require(bool(world.joints), "[JOINTS]", "missing", "a section with joints")
     bodies = (*world.links, *world.extra_bodies)
     joined = {body for joint in world.joints for body in joint.bodies}
     loose = [body for body in bodies if body not in joined]
@@ -94,22 +91,17 @@ def _read_section(cursor: Cursor, world: _World) -> None:
         case "JOINTS":
             while not cursor.is_at_section:
                 _read_joint(cursor, world)
-        case "OBSTACLES" | "COLLISIONS":
-            _skip_section(cursor)
-        case "EQUATIONS":
-            world.notes.append("left out: equations besides those of the joints")
-            _skip_section(cursor)
+        case "OBSTACLES" | "COLLISIONS" | "EQUATIONS":
+            if section.text == "EQUATIONS":
+                world.notes.append("left out: equations besides those of the joints")
+            while not cursor.is_at_section:
+                cursor.next()
         case "INCLUDE":
             allowed = "no part of a world that is read; put all links in one file"
             raise GeometryError(f"line {section.line}", "[INCLUDE]", allowed)
         case _:
             allowed = "[CONSTANTS], [LINKS], [JOINTS], [OBSTACLES] or [COLLISIONS]"
             raise GeometryError(f"line {section.line}", f"[{section.text}]", allowed)
-
-
-def _skip_section(cursor: Cursor) -> None:
-    while not cursor.is_at_section:
-        cursor.next()
 
 
 def _read_constants(cursor: Cursor) -> None:
@@ -120,8 +112,8 @@ def _read_constants(cursor: Cursor) -> None:
             continue
         line = cursor.token.line
         name = cursor.name("the name of a constant")
-        if name in cursor.constants:
-            raise GeometryError(f"line {line}", quoted(name), "given once")
+        is_new = name not in cursor.constants
+        require(is_new, f"line {line}", quoted(name), "given once")
         cursor.expect(":=")
         cursor.constants[name] = cursor.number()
 
@@ -140,13 +132,11 @@ class _Side:
 def _read_joint(cursor: Cursor, world: _World) -> None:
     line = cursor.token.line
     word = cursor.name("a joint").lower()
-    if word in NOT_TAKEN:
-        allowed = "a joint of a mechanism of rigid bodies"
-        value = f"{word}, {NOT_TAKEN[word]},"
-        raise GeometryError(f"joint on line {line}", value, allowed)
-    if word not in _READERS:
-        allowed = f"one of {', '.join(_READERS)}"
-        raise GeometryError(f"joint on line {line}", quoted(word), allowed)
+    what = f"joint on line {line}"
+    allowed = "a joint of a mechanism of rigid bodies"
+    value = f"{word}, {NOT_TAKEN.get(word)},"
+    require(word not in NOT_TAKEN, what, value, allowed)
+    require(word in _READERS, what, quoted(word), f"one of {', '.join(_READERS)}")
     name = f"J{len(world.joints) + 1}"
     if word in NAMED and cursor.token.text != ":":
         name = cursor.name("the name of a joint")
@@ -157,9 +147,8 @@ def _read_joint(cursor: Cursor, world: _World) -> None:
 def _read_link(cursor: Cursor, world: _World) -> Link:
     line = cursor.token.line
     name = cursor.name("the name of a link")
-    if name not in world.links:
-        allowed = f"one of the links {', '.join(world.links)}"
-        raise GeometryError(f"line {line}", quoted(name), allowed)
+    allowed = f"one of the links {', '.join(world.links)}"
+    require(name in world.links, f"line {line}", quoted(name), allowed)
     return world.links[name]
 
 
@@ -201,29 +190,28 @@ def _read_sides(
 
 
 def _axis_frames(sides: Iterable[_Side], name: str) -> tuple[np.ndarray, np.ndarray]:
-    what = f"joint {name}"
-    first, second = (frame_of(s.points[0], s.points[1], what) for s in sides)
-    return first, second
+    frames = []
+    for side in sides:
+        first, second = side.points
+        direction = np.subtract(second, first)
+        is_axis = bool(np.any(direction))
+        value = [first, second]
+        require(is_axis, f"axis of joint {name}", value, "two different points")
+        frames.append(frame_along(first, direction))
+    return frames[0], frames[1]
 
 
-def _within(
-    joint: BodyJoint, limits: Limits, motion: Callable[[float], np.ndarray]
-) -> BodyJoint:
-    """The joint within ``limits``; a rigid one where they are a single value, at which
-    its ``motion`` is a displacement (4, 4)."""
+def _within(joint: BodyJoint, limits: Limits) -> BodyJoint:
+    """The joint within ``limits``; a rigid one where they are a single value."""
     if limits[0] < limits[1]:
         return replace(joint, limits=(limits,))
     first, second = joint.frames
-    frames = first @ motion(limits[0]), second
+    if joint.kind is JointKind.REVOLUTE:
+        motion = rotation((0.0, 0.0, 1.0), limits[0])
+    else:
+        motion = translation((0.0, 0.0, limits[0]))
+    frames = first @ motion, second
     return replace(joint, kind=JointKind.RIGID, frames=frames)
-
-
-def _turn(angle: float) -> np.ndarray:
-    return rotation((0.0, 0.0, 1.0), angle)
-
-
-def _slide(length: float) -> np.ndarray:
-    return translation((0.0, 0.0, length))
 
 
 def _read_revolute(cursor: Cursor, world: _World, name: str) -> None:
@@ -241,7 +229,7 @@ def _read_revolute(cursor: Cursor, world: _World, name: str) -> None:
     _skip_options(cursor)
     joint = BodyJoint(name, JointKind.REVOLUTE, bodies, frames)
     if limits is not None and limits[1] - limits[0] < FULL_TURN:
-        joint = _within(joint, limits, _turn)
+        joint = _within(joint, limits)
     world.joints.append(joint)
 
 
@@ -258,9 +246,9 @@ def _referred(
         across = reference - (reference @ along) * along
         length = float(np.linalg.norm(reference))
         is_along = is_one_direction(float(np.linalg.norm(across)), length)
-        if is_along or length == 0.0:
-            allowed = "a point that is not on the axis"
-            raise GeometryError(f"reference of joint {name}", "on its axis", allowed)
+        is_beside = not is_along and length != 0.0
+        allowed = "a point that is not on the axis"
+        require(is_beside, f"reference of joint {name}", "on its axis", allowed)
         frames.append(frame_along(start, along, across))
     return frames[0], frames[1]
 
@@ -268,11 +256,8 @@ def _referred(
 def _read_range(cursor: Cursor, name: str) -> Limits:
     line = cursor.token.line
     low, high = cursor.row("[]", 2)
-    if not low <= high:
-        allowed = "a smaller number and a larger one"
-        raise GeometryError(
-            f"range of joint {name} on line {line}", [low, high], allowed
-        )
+    what = f"range of joint {name} on line {line}"
+    require(low <= high, what, [low, high], "a smaller number and a larger one")
     return (low, high)
 
 
@@ -286,7 +271,7 @@ def _read_prismatic(cursor: Cursor, world: _World, name: str) -> None:
     limits = _read_range(cursor, name)
     _skip_options(cursor)
     joint = BodyJoint(name, JointKind.PRISMATIC, bodies, (first, second))
-    world.joints.append(_within(joint, limits, _slide))
+    world.joints.append(_within(joint, limits))
 
 
 def _read_spherical(cursor: Cursor, world: _World, name: str) -> None:
@@ -331,8 +316,7 @@ def _read_rod(cursor: Cursor, world: _World, name: str) -> None:
     line = cursor.token.line
     cursor.expect("length")
     length = cursor.number()
-    if not length > 0:
-        raise GeometryError(f"length of {name} on line {line}", length, "positive")
+    require(length > 0, f"length of {name} on line {line}", length, "positive")
     _skip_options(cursor)
     world.extra_bodies.append(name)
     ends = translation((0.0, 0.0, 0.0)), translation((length, 0.0, 0.0))
@@ -346,15 +330,15 @@ def _read_leg(cursor: Cursor, world: _World, name: str) -> None:
     line = cursor.token.line
     cursor.expect("range")
     limits = _read_range(cursor, name)
-    if not limits[0] >= 0 or not limits[1] > 0:
-        allowed = "lengths, which are positive"
-        raise GeometryError(f"range of {name} on line {line}", list(limits), allowed)
+    are_lengths = limits[0] >= 0 and limits[1] > 0
+    what = f"range of {name} on line {line}"
+    require(are_lengths, what, list(limits), "lengths, which are positive")
     _skip_options(cursor)
     bodies = f"{name}.1", f"{name}.2"
     world.extra_bodies += bodies
     frames = np.eye(4), np.eye(4)
     joint = BodyJoint(name, JointKind.PRISMATIC, bodies, frames)
-    world.joints.append(_within(joint, limits, _slide))
+    world.joints.append(_within(joint, limits))
     _add_ends(world, name, sides, bodies, frames)
 
 
@@ -378,7 +362,10 @@ def _add_ends(
 
 def _skip_options(cursor: Cursor) -> None:
     """Go on behind what says how a joint looks and what it can bear."""
-    while not cursor.is_at_section and not _is_at_joint(cursor):
+    while not cursor.is_at_section:
+        is_colon_near = ":" in (cursor.ahead(1), cursor.ahead(2))
+        if is_colon_near and cursor.token.kind == "word":
+            return  # the next joint
         if cursor.is_word("avoid"):
             cursor.next()
             cursor.expect("limits")
@@ -387,12 +374,8 @@ def _skip_options(cursor: Cursor) -> None:
         elif cursor.is_word(*NUMBERS):
             cursor.next()
             cursor.number()
-        elif not skip_appearance(cursor) and not skip_dynamics(cursor):
+        elif not skip_details(cursor):
             cursor.refuse("an option of a joint, or the next joint")
-
-
-def _is_at_joint(cursor: Cursor) -> bool:
-    return ":" in (cursor.ahead(1), cursor.ahead(2)) and cursor.token.kind == "word"
 
 
 _READERS: dict[str, Callable[[Cursor, _World, str], None]] = {

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from linkages.formats.assembly import frame_along, translation
+from linkages.formats.assembly import translation
 from linkages.formats.cuik_tokens import Cursor
 from linkages.mechanisms.joint import Vector
-from linkages.values import GeometryError, quoted
+from linkages.values import GeometryError, quoted, require
 
 COLORS = (
     *("red", "green", "blue", "black", "grey", "gray", "white", "yellow", "purple"),
@@ -33,15 +33,15 @@ class Link:
 
     def point(self, shape: int, number: int, what: str) -> Vector:
         """A point (3,) of a shape, by number from 0; raises `GeometryError`."""
-        if not 0 <= shape < len(self.shapes):
-            allowed = f"below {len(self.shapes)}, the number of shapes of {self.name}"
-            raise GeometryError(f"shape of {what}", shape, allowed)
+        allowed = f"below {len(self.shapes)}, the number of shapes of {self.name}"
+        is_shape = 0 <= shape < len(self.shapes)
+        require(is_shape, f"shape of {what}", shape, allowed)
         points = self.shapes[shape]
         if isinstance(points, Path):
             points = self.shapes[shape] = _points_of_off(points)
-        if not 0 <= number < len(points):
-            allowed = f"below {len(points)}, the number of points of {self.name}"
-            raise GeometryError(f"point of {what}", number, allowed)
+        allowed = f"below {len(points)}, the number of points of {self.name}"
+        is_point = 0 <= number < len(points)
+        require(is_point, f"point of {what}", number, allowed)
         return points[number]
 
 
@@ -51,20 +51,14 @@ def read_links(cursor: Cursor, folder: Path, links: dict[str, Link]) -> None:
     while not cursor.is_at_section:
         line = cursor.token.line
         name = cursor.name("the name of a link")
-        if name in links:
-            raise GeometryError(f"line {line}", quoted(name), "given once")
+        require(name not in links, f"line {line}", quoted(name), "given once")
         links[name] = Link(name)
-        if cursor.take(":") or cursor.take("-"):
-            _read_shapes(cursor, folder, links[name])
-
-
-def _read_shapes(cursor: Cursor, folder: Path, link: Link) -> None:
-    """Read shapes and what else stands behind the name of a link."""
-    while not cursor.is_at_section:
-        if cursor.is_word(*SHAPES) and cursor.ahead(1) not in (":", "-"):
-            link.shapes.append(_read_shape(cursor, folder))
-        elif not skip_appearance(cursor) and not skip_dynamics(cursor):
-            return
+        has_parts = cursor.take(":") or cursor.take("-")
+        while has_parts and not cursor.is_at_section:
+            if cursor.is_word(*SHAPES) and cursor.ahead(1) not in (":", "-"):
+                links[name].shapes.append(_read_shape(cursor, folder))
+            elif not skip_details(cursor):
+                break
 
 
 def _read_shape(cursor: Cursor, folder: Path) -> list[Vector] | Path:
@@ -86,39 +80,35 @@ def _read_shape(cursor: Cursor, folder: Path) -> list[Vector] | Path:
             cursor.number()
             return points
         case "segments":
-            return _read_segments(cursor)
+            cursor.expect("(")
+            rows = [cursor.numbers(3)]
+            while cursor.take(";"):
+                rows.append(cursor.numbers(3))
+            cursor.expect(")")
+            return [(x, y, z) for x, y, z in rows]
         case _:
             return _read_points(cursor)
 
 
-def skip_appearance(cursor: Cursor) -> bool:
-    """Whether a color or another word on how a shape looks stands here; the cursor goes
-    on behind it."""
-    is_name = cursor.ahead(1) in (":", "-")
-    if cursor.token.kind == "number" and cursor.ahead(1) == "*":
+def skip_details(cursor: Cursor) -> bool:
+    """Whether a word on how a shape looks, on mass or on inertia stands here; the
+    cursor goes on behind it."""
+    following = cursor.ahead(1).lower()
+    is_name = following in (":", "-")
+    if cursor.token.kind == "number" and following == "*":
         cursor.place += 2
-    elif cursor.is_word("color") and cursor.ahead(1) == "(":
+    elif cursor.is_word("color") and following == "(":
         cursor.next()
         read_point(cursor)
-    elif cursor.is_word("granularity"):
+    elif cursor.is_word("granularity") or (cursor.is_word("mass") and not is_name):
         cursor.next()
         cursor.number()
     elif cursor.is_word(*COLORS, "hidden", "decoration") and not is_name:
         cursor.next()
-    else:
-        return cursor.take("+")
-    return True
-
-
-def skip_dynamics(cursor: Cursor) -> bool:
-    """Whether mass or inertia stand here; the cursor goes on behind them."""
-    if cursor.is_word("mass") and cursor.ahead(1) not in (":", "-"):
-        cursor.next()
-        cursor.number()
-    elif cursor.is_word("inertial") and cursor.ahead(1).lower() == "frame":
+    elif cursor.is_word("inertial") and following == "frame":
         cursor.place += 2
         read_transforms(cursor)
-    elif cursor.is_word("inertia") and cursor.ahead(1).lower() == "matrix":
+    elif cursor.is_word("inertia") and following == "matrix":
         cursor.place += 2
         cursor.take("solid")
         if cursor.token.text.lower().split("_")[0] in INERTIAS:
@@ -127,7 +117,7 @@ def skip_dynamics(cursor: Cursor) -> bool:
         while cursor.take(","):
             cursor.number()
     else:
-        return False
+        return cursor.take("+")
     return True
 
 
@@ -155,15 +145,6 @@ def read_end(cursor: Cursor, start: Vector) -> Vector:
     return (start[0] + x, start[1] + y, start[2] + z)
 
 
-def _read_segments(cursor: Cursor) -> list[Vector]:
-    cursor.expect("(")
-    points = [cursor.numbers(3)]
-    while cursor.take(";"):
-        points.append(cursor.numbers(3))
-    cursor.expect(")")
-    return [(x, y, z) for x, y, z in points]
-
-
 def _points_of_off(path: Path) -> list[Vector]:
     """The vertices of a body in an OFF file; raises `GeometryError`."""
     try:
@@ -172,10 +153,9 @@ def _points_of_off(path: Path) -> list[Vector]:
         words = " ".join(lines).split()
         start = 1 if words[0].upper().endswith("OFF") else 0
         count = int(words[start])
-        if not 0 <= count <= MOST_POINTS:
-            raise ValueError
         numbers = [float(word) for word in words[start + 3 : start + 3 + 3 * count]]
-        if len(numbers) < 3 * count or not np.all(np.isfinite(numbers)):
+        is_whole = len(numbers) == 3 * count and bool(np.all(np.isfinite(numbers)))
+        if not (0 <= count <= MOST_POINTS and is_whole):
             raise ValueError
     except OSError as error:
         allowed = f"a file that can be read ({error.strerror})"
@@ -227,12 +207,3 @@ def rotation(direction: Vector, angle: float) -> np.ndarray:
     result = np.eye(4)
     result[:3, :3] = turns(np.array(direction), np.array([angle]))[0]
     return result
-
-
-def frame_of(first: Vector, second: Vector, what: str) -> np.ndarray:
-    """The frame (4, 4) at ``first`` with its third axis towards ``second``; raises
-    `GeometryError` where they are one point."""
-    direction = np.subtract(second, first)
-    if not np.any(direction):
-        raise GeometryError(f"axis of {what}", [first, second], "two different points")
-    return frame_along(first, direction)

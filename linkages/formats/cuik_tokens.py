@@ -12,8 +12,9 @@ import operator
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NoReturn
 
-from linkages.values import GeometryError, quoted
+from linkages.values import GeometryError, quoted, require
 
 COMMENT = re.compile(r"/\*.*?\*/|%[^\n]*|#[^\n]*|//[^\n]*", re.DOTALL)
 TOKEN = re.compile(
@@ -61,18 +62,14 @@ class Token:
 def tokens_of(text: str) -> list[Token]:
     """The tokens of a file; raises `GeometryError` for a character that none begins
     with."""
-
-    def blank(match: re.Match[str]) -> str:
-        return " " + "\n" * match.group().count("\n")
-
     tokens = []
     line = 1
-    for match in TOKEN.finditer(COMMENT.sub(blank, text)):
+    bare = COMMENT.sub(lambda match: " " + "\n" * match.group().count("\n"), text)
+    for match in TOKEN.finditer(bare):
         kind = str(match.lastgroup)
         word = match.group()
-        if kind == "unknown":
-            allowed = "a name, a number or a sign of a world file"
-            raise GeometryError(f"line {line}", quoted(word), allowed)
+        allowed = "a name, a number or a sign of a world file"
+        require(kind != "unknown", f"line {line}", quoted(word), allowed)
         if kind == "section":
             tokens.append(Token(kind, word.strip("[] \t").upper(), line))
         elif kind != "space":
@@ -137,7 +134,7 @@ class Cursor:
             self.refuse(what)
         return self.next().text
 
-    def refuse(self, allowed: str) -> None:
+    def refuse(self, allowed: str) -> NoReturn:
         """Raise `GeometryError` for the token here."""
         token = self.token
         shown = token.text if token.kind in ("end", "text") else quoted(token.text)
@@ -200,17 +197,13 @@ class Cursor:
             return self._in_parentheses()
         if token.kind != "word":
             self.refuse("a number, a constant or a function")
+        word = token.text.lower()
         if token.text in self.constants:
             return self.constants[self.next().text]
-        word = token.text.lower()
-        if word == "pi":
-            self.next()
-            return math.pi
-        if word == "atan2" or word in ONE_ARGUMENT:
-            self.next()
-            return self._function(word)
-        self.refuse("a constant that stands before it, or a function")
-        raise AssertionError("refuse raises")
+        if word not in ("pi", "atan2", *ONE_ARGUMENT):
+            self.refuse("a constant that stands before it, or a function")
+        self.next()
+        return math.pi if word == "pi" else self._function(word)
 
     def _in_parentheses(self) -> float:
         if self._depth >= DEEPEST:

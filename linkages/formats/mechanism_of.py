@@ -17,19 +17,12 @@ from linkages.decisions import (
     is_file_nearly_closed,
     is_rounding_of_zero,
 )
-from linkages.formats.assembly import (
-    MOVES,
-    SLIDES,
-    TURN,
-    Assembly,
-    BodyJoint,
-    listed,
-)
+from linkages.formats.assembly import Assembly, BodyJoint, listed
 from linkages.formats.closing import ClosedPoses, Closing, Starts
 from linkages.mechanisms.couplings import Coupling, leaders
-from linkages.mechanisms.joint import Joint, JointKind, Limits, Vector
+from linkages.mechanisms.joint import Joint, JointKind, Limits, Move, Vector
 from linkages.mechanisms.mechanism import FRAMES, Mechanism
-from linkages.values import GeometryError
+from linkages.values import GeometryError, require
 
 log = logging.getLogger(__name__)
 
@@ -65,9 +58,11 @@ def mechanism_of_assembly(assembly: Assembly) -> Mechanism:
         frames = assembly.placed(joint, closed.poses)
         joints.append(_placed(joint, bodies, *frames))
         values |= zip(joint.labels, _values(joint, *frames), strict=False)
-    if not joints:
-        allowed = "one with a joint that can move"
-        raise GeometryError("mechanism", "rigid: no joint is left in a loop", allowed)
+    value, allowed = (
+        "rigid: no joint is left in a loop",
+        "one with a joint that can move",
+    )
+    require(len(joints) > 0, "mechanism", value, allowed)
     joints = _coupled(joints, assembly, values, notes)
     for note in notes:
         log.warning("%s: %s", assembly.name, note)
@@ -93,10 +88,9 @@ def _without_branches(assembly: Assembly, notes: list[str]) -> Assembly:
     while ends:
         graph.remove_nodes_from(ends)
         ends = [body for body in graph if graph.degree(body) < 2]
-    if not graph:
-        value = f"{count_of(len(assembly.bodies), 'body')} without a closed loop"
-        allowed = "a mechanism with a closed loop at least"
-        raise GeometryError("mechanism", value, allowed)
+    value = f"{count_of(len(assembly.bodies), 'body')} without a closed loop"
+    allowed = "a mechanism with a closed loop at least"
+    require(len(graph) > 0, "mechanism", value, allowed)
     bodies = tuple(body for body in assembly.bodies if body in graph)
     joints = tuple(j for j in assembly.joints if set(j.bodies) <= set(bodies))
     left_out = [joint.name for joint in assembly.joints if joint not in joints]
@@ -157,10 +151,10 @@ def _closed(assembly: Assembly) -> ClosedPoses:
             closed = closing.close(given)
     else:
         closed = _from_random_starts(assembly, closing)
-    if is_file_nearly_closed(closed.gap):
-        return closed
     value = f"open: the joints miss each other by {closed.gap * closed.size:.3g}"
-    raise GeometryError("mechanism", value, "one that can be closed")
+    is_closed = is_file_nearly_closed(closed.gap)
+    require(is_closed, "mechanism", value, "one that can be closed")
+    return closed
 
 
 def _from_random_starts(assembly: Assembly, closing: Closing) -> ClosedPoses:
@@ -171,7 +165,15 @@ def _from_random_starts(assembly: Assembly, closing: Closing) -> ClosedPoses:
     is_met = False
     for _ in range(MOST_STARTS):
         closed = closing.close(starts.draw(rng))
-        within = _is_within_limits(assembly, closed.poses)
+        within = all(
+            pair is None or pair[0] <= value <= pair[1]
+            for joint in assembly.joints
+            for pair, value in zip(
+                joint.limits,
+                _values(joint, *assembly.placed(joint, closed.poses)),
+                strict=False,
+            )
+        )
         if within and is_file_closed(closed.gap):
             return closed
         is_met = is_met or is_file_closed(closed.gap)
@@ -181,15 +183,6 @@ def _from_random_starts(assembly: Assembly, closing: Closing) -> ClosedPoses:
         value = f"outside them in all configurations of {MOST_STARTS} random starts"
         raise GeometryError("limits of the joints", value, "met by a configuration")
     return best
-
-
-def _is_within_limits(assembly: Assembly, poses: np.ndarray) -> bool:
-    for joint in assembly.joints:
-        values = _values(joint, *assembly.placed(joint, poses))
-        for pair, value in zip(joint.limits, values, strict=False):
-            if pair is not None and not pair[0] <= value <= pair[1]:
-                return False
-    return True
 
 
 # --- couplings ------------------------------------------------------------------------
@@ -251,11 +244,11 @@ def _values(joint: BodyJoint, first: np.ndarray, second: np.ndarray) -> list[flo
         return [0.0, 0.0]
     gap = second[:3, 3] - first[:3, 3]
     values = []
-    for number, move in enumerate(MOVES.get(joint.kind, ())):
-        if move == TURN:
+    for number, move in enumerate(joint.kind.facets.moves):
+        if move is Move.TURN:
             values.append(_angle(joint, number, first, second))
         else:
-            values.append(float(first[:3, SLIDES.index(move)] @ gap))
+            values.append(float(first[:3, move.value] @ gap))
     return values
 
 

@@ -12,7 +12,8 @@ from linkages.formats.exact_poses import ExactPose
 from linkages.formats.xml_tree import Element
 from linkages.values import quoted
 
-ORIENTATIONS = ("quat", "axisangle", "euler", "xyaxes", "zaxis")
+# what gives an orientation, with how many numbers
+ORIENTATIONS = {"quat": 4, "axisangle": 4, "euler": 3, "xyaxes": 6, "zaxis": 3}
 AT_REST = (0.0, 0.0, 0.0)
 MAIN = "main"  # the class of defaults that holds where none is named
 
@@ -37,9 +38,8 @@ class Settings:
         which is its tag as a rule; raises `GeometryError` for a class that is not
         there."""
         name = element.attributes.get("class", childclass or MAIN)
-        if name not in self.defaults:
-            classes = ", ".join(self.defaults)
-            element.refuse("class", quoted(name), f"one of {classes}")
+        allowed = f"one of {', '.join(self.defaults)}"
+        element.require(name in self.defaults, "class", quoted(name), allowed)
         tag = "joint" if element.tag == "freejoint" else element.tag
         default = self.defaults[name].get(kind or tag, {})
         own = element.attributes
@@ -55,15 +55,16 @@ def read_settings(root: Element) -> Settings:
     settings = Settings()
     for compiler in root.all("compiler"):
         coordinate = compiler.attributes.get("coordinate", "local")
-        if coordinate != "local":
-            compiler.refuse("coordinate", quoted(coordinate), '"local"')
+        is_local = coordinate == "local"
+        compiler.require(is_local, "coordinate", quoted(coordinate), '"local"')
         unit = compiler.attributes.get("angle")
         if unit is not None:
             compiler.choice("angle", ("degree", "radian"), unit)
             settings.angle_unit = math.pi / 180 if unit == "degree" else 1.0
         sequence = compiler.attributes.get("eulerseq", settings.euler_sequence)
-        if len(sequence) != 3 or set(sequence) - set("xyzXYZ"):
-            compiler.refuse("eulerseq", quoted(sequence), "three of x, y, z, X, Y, Z")
+        is_sequence = len(sequence) == 3 and set(sequence) <= set("xyzXYZ")
+        allowed = "three of x, y, z, X, Y, Z"
+        compiler.require(is_sequence, "eulerseq", quoted(sequence), allowed)
         settings.euler_sequence = sequence
         if "autolimits" in compiler.attributes:
             automatic = compiler.choice("autolimits", ("true", "false"), "true")
@@ -100,9 +101,8 @@ def pose_of(element: Element, settings: Settings) -> ExactPose:
     """The pose of a body, a frame or a site in the element around it; raises
     `GeometryError`."""
     given = [key for key in ORIENTATIONS if key in element.attributes]
-    if len(given) > 1:
-        allowed = "the only orientation"
-        element.refuse(f"{given[0]} and {given[1]}", "both given", allowed)
+    both = " and ".join(given[:2])
+    element.require(len(given) < 2, both, "both given", "the only orientation")
     rotation = _orientation(element, given[0], settings) if given else None
     return ExactPose.at(element.numbers("pos", (3,)) or AT_REST, rotation)
 
@@ -111,10 +111,7 @@ def _orientation(element: Element, key: str, settings: Settings) -> np.ndarray:
     """The rotation (3, 3) that an attribute gives."""
     from scipy.spatial.transform import Rotation
 
-    count = {"quat": 4, "axisangle": 4, "euler": 3, "xyaxes": 6, "zaxis": 3}[key]
-    numbers = np.array(element.numbers(key, (count,)))
-    value = quoted(element.attributes[key])
-    allowed = "directions of a length other than zero"
+    numbers = np.array(element.numbers(key, (ORIENTATIONS[key],)))
     if key == "euler":
         angles = settings.angle_unit * numbers
         # a small letter of MJCF is an axis that moves, and a capital in scipy
@@ -124,26 +121,26 @@ def _orientation(element: Element, key: str, settings: Settings) -> np.ndarray:
             step = Rotation.from_euler(letter.lower(), angle).as_matrix()
             result = result @ step if letter.isupper() else step @ result
         return result
-    if key == "axisangle":
-        if not np.any(numbers[:3]):
-            element.refuse(key, value, allowed)
-        axis = numbers[:3] / np.linalg.norm(numbers[:3])
-        turn = settings.angle_unit * numbers[3] * axis
-        rotation: np.ndarray = Rotation.from_rotvec(turn).as_matrix()
-        return rotation
+    direction = numbers[:3] if key == "axisangle" else numbers
+    if key == "xyaxes":
+        direction = np.cross(numbers[:3], numbers[3:])
+    words = {
+        "quat": "a quaternion of a length other than zero",
+        "xyaxes": "two directions that are not parallel",
+    }
+    allowed = words.get(key, "directions of a length other than zero")
+    is_given = bool(np.any(direction))
+    element.require(is_given, key, quoted(element.attributes[key]), allowed)
     if key == "quat":
-        if not np.any(numbers):
-            element.refuse(key, value, "a quaternion of a length other than zero")
         return rotation_of_quaternion(numbers)
+    if key == "xyaxes":
+        return frame_along((0.0, 0.0, 0.0), direction, numbers[:3])[:3, :3]
+    axis = direction / np.linalg.norm(direction)
     if key == "zaxis":
-        if not np.any(numbers):
-            element.refuse(key, value, allowed)
-        return _least_turn(numbers / np.linalg.norm(numbers))
-    x, y = numbers[:3], numbers[3:]
-    normal = np.cross(x, y)
-    if not np.any(normal):
-        element.refuse(key, value, "two directions that are not parallel")
-    return frame_along((0.0, 0.0, 0.0), normal, x)[:3, :3]
+        return _least_turn(axis)
+    turn = settings.angle_unit * numbers[3] * axis
+    rotation: np.ndarray = Rotation.from_rotvec(turn).as_matrix()
+    return rotation
 
 
 def rotation_of_quaternion(quaternion: np.ndarray) -> np.ndarray:

@@ -43,11 +43,11 @@ from linkages.formats.mjcf_poses import (
     read_settings,
     rotation_of_quaternion,
 )
-from linkages.formats.names import TakenNames, numbered
+from linkages.formats.names import TakenNames, first_new, numbered
 from linkages.formats.xml_tree import Element
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import JointKind, Limits
-from linkages.values import GeometryError, quoted
+from linkages.values import GeometryError, quoted, require
 
 WORLD = "world"
 NOT_READ = ("include", "attach", "replicate", "composite", "flexcomp")
@@ -56,7 +56,7 @@ TINY = 1e-300  # of coordinates that are all 0
 NUMBERED = re.compile(r"\.\d+$")
 
 
-@dataclass
+@dataclass(eq=False)
 class _Body:
     """A body that may move: its ``name``, and the ``frame`` (4, 4) at qpos0 in which
     its joints are written."""
@@ -111,12 +111,12 @@ def read_mjcf(root: Element, name: str) -> Assembly:
     if origin.place is not None:
         model = _read_model(root, origin)
         rounding = model.rounding
-    bodies = tuple(body.name for body in model.bodies)
+    poses = {body.name: body.frame for body in model.bodies}
     return Assembly(
         root.attributes.get("model", name),
-        bodies,
+        tuple(body.name for body in model.bodies),
         tuple(model.joints),
-        {body.name: body.frame for body in model.bodies},
+        poses,
         tuple(model.notes),
         model.origin.vector,
         rounding,
@@ -183,7 +183,7 @@ def _read_body(
     name = element.attributes.get("name")
     if name is None:
         numbers = itertools.count(len(model.elements))
-        name = model.taken.new_body(f"body{number}" for number in numbers)
+        name = first_new((f"body{number}" for number in numbers), model.taken.bodies)
     element.check_new(name, model.elements)
     pose = pose @ pose_of(element, model.settings)
     joints = [
@@ -211,13 +211,13 @@ def _read_axis(joint: Element, pose: ExactPose, model: _Model) -> Axis:
     name = joint.attributes.get("name")
     if name is None:
         numbers = itertools.count(len(model.axes) + 1)
-        name = model.taken.new_axis(f"J{number}" for number in numbers)
+        name = first_new((f"J{number}" for number in numbers), model.taken.joints)
     joint.check_new(name, model.axes)
     point = ExactPose.at(joint.numbers("pos", (3,)) or AT_REST)
     direction = np.array(joint.numbers("axis", (3,)) or (0.0, 0.0, 1.0))
-    if kind != "ball" and not np.any(direction):
-        value = quoted(joint.attributes["axis"])
-        joint.refuse("axis", value, "of a length other than zero")
+    is_axis = kind == "ball" or bool(np.any(direction))
+    value = quoted(joint.attributes.get("axis"))
+    joint.require(is_axis, "axis", value, "of a length other than zero")
     unit = model.settings.angle_unit if kind == "hinge" else 1.0
     limits = _read_limits(joint, kind, unit, model.settings)
     low, high = limits or (0.0, 0.0)
@@ -230,12 +230,10 @@ def _read_axis(joint: Element, pose: ExactPose, model: _Model) -> Axis:
     if kind == "ball" and limits is not None:
         limits = None
         model.notes.append(f"left out: the range of the ball joint {name}")
-    is_slide = kind == "slide"
-    place_of = model.origin.place_of_slide if is_slide else model.point
+    place_of = model.origin.place_of_slide if kind == "slide" else model.point
     place = place_of(pose @ point)
-    axis = Axis(name, kind, place, pose.rotation @ direction, limits)
-    model.axes[name] = axis
-    return axis
+    model.axes[name] = Axis(name, kind, place, pose.rotation @ direction, limits)
+    return model.axes[name]
 
 
 def _read_limits(
@@ -248,16 +246,16 @@ def _read_limits(
     low, high = joint.numbers("range", (2,)) or (0.0, 0.0)
     is_limited = limited == "true"
     if limited == "auto":
-        if (low or high) and not settings.has_auto_limits:
-            allowed = 'with `limited`, as the compiler says autolimits="false"'
-            joint.refuse("range", [low, high], allowed)
+        is_said = settings.has_auto_limits or not (low or high)
+        allowed = 'with `limited`, as the compiler says autolimits="false"'
+        joint.require(is_said, "range", [low, high], allowed)
         is_limited = low < high
     if not is_limited:
         return None
-    if kind == "ball" and low:
-        joint.refuse("range", [low, high], "0 and the largest angle of a ball")
-    if kind != "ball" and not low < high:
-        joint.refuse("range", [low, high], "a smaller number and a larger one")
+    allowed = "0 and the largest angle of a ball"
+    joint.require(kind != "ball" or not low, "range", [low, high], allowed)
+    allowed = "a smaller number and a larger one"
+    joint.require(kind == "ball" or low < high, "range", [low, high], allowed)
     reference = (joint.numbers("ref", (1,)) or [0.0])[0]
     return (unit * (low - reference), unit * (high - reference))
 
@@ -270,7 +268,7 @@ def _add_chains(model: _Model) -> None:
         for number, joint in enumerate(joints, start=1):
             second = body
             if number < len(joints):
-                name = model.taken.new_body(numbered(f"{body.name}.{number}"))
+                name = first_new(numbered(f"{body.name}.{number}"), model.taken.bodies)
                 second = _Body(name, body.frame)
                 model.bodies.append(second)
             base, moved = (second, first) if joint.is_reversed else (first, second)
@@ -299,15 +297,13 @@ def _add_couplings(model: _Model) -> None:
     coupled: dict[str, Coupling] = {}
     for axis, (to, ratio, offset, element) in model.couplings.items():
         for key, name in (("joint1", axis), ("joint2", to)):
-            if name not in model.labels:
-                value = f"{quoted(name)}, a ball joint or the slide of a helical one,"
-                element.refuse(key, value, "a hinge or a slide with a variable")
+            value = f"{quoted(name)}, a ball joint or the slide of a helical one,"
+            allowed = "a hinge or a slide with a variable"
+            element.require(name in model.labels, key, value, allowed)
         coupled[model.labels[axis]] = Coupling(model.labels[to], ratio, offset)
-    joints = []
-    for joint in model.joints:
+    for number, joint in enumerate(model.joints):
         own = {label: coupled[label] for label in joint.labels if label in coupled}
-        joints.append(replace(joint, coupled=own))
-    model.joints = joints
+        model.joints[number] = replace(joint, coupled=own)
 
 
 # --- equality -------------------------------------------------------------------------
@@ -322,36 +318,36 @@ def _read_couplings(equality: Element, model: _Model) -> None:
     `GeometryError` for a coupling that is not linear."""
     for element in equality.children:
         element = model.settings.attributes(element, None, "equality")
-        if element.tag in COUPLINGS and _is_active(element):
-            value = f"<{element.tag}>"
-            allowed = "<connect>, <weld> or <joint>"
-            raise GeometryError(f"equality on line {element.line}", value, allowed)
+        is_read = element.tag not in COUPLINGS or not _is_active(element)
+        what = f"equality on line {element.line}"
+        allowed = "<connect>, <weld> or <joint>"
+        require(is_read, what, f"<{element.tag}>", allowed)
         if element.tag != "joint" or not _is_active(element):
             continue
         first, second = (element.attributes.get(key) for key in ("joint1", "joint2"))
         allowed = f"one of the joints {', '.join(model.axes)}"
-        if first not in model.axes:
-            element.refuse("joint1", quoted(first), allowed)
-        if second is not None and second not in model.axes:
-            element.refuse("joint2", quoted(second), allowed)
+        element.require(first in model.axes, "joint1", quoted(first), allowed)
+        is_known = second is None or second in model.axes
+        element.require(is_known, "joint2", quoted(second), allowed)
         given = element.numbers("polycoef", (1, 2, 3, 4, 5)) or []
         # those that are not given stay at MuJoCo's default
         offset, ratio, *higher = [*given, *(0.0, 1.0, 0.0, 0.0, 0.0)[len(given) :]]
         assert first is not None
         if second is None or (ratio == 0.0 and not any(higher)):
             model.locks[first] = offset
-        elif any(higher):
-            value = f"a coupling of joints {first} and {second} that is not linear"
-            element.refuse("polycoef", value, "two numbers, and zeros after them")
-        elif first in model.couplings:
-            element.refuse("joint1", quoted(first), "coupled to one joint")
-        else:
-            model.couplings[first] = AxisCoupling(second, ratio, offset, element)
+            continue
+        value = f"a coupling of joints {first} and {second} that is not linear"
+        allowed = "two numbers, and zeros after them"
+        element.require(not any(higher), "polycoef", value, allowed)
+        is_new = first not in model.couplings
+        element.require(is_new, "joint1", quoted(first), "coupled to one joint")
+        model.couplings[first] = AxisCoupling(second, ratio, offset, element)
 
 
 def _read_closures(equality: Element, model: _Model) -> None:
     """Read the joints that close loops."""
     groups: dict[tuple[str, str], list[_Anchor]] = {}
+    closures: list[BodyJoint] = []
     for number, element in enumerate(equality.children, start=1):
         element = model.settings.attributes(element, None, "equality")
         if element.tag not in ("connect", "weld") or not _is_active(element):
@@ -360,7 +356,7 @@ def _read_closures(equality: Element, model: _Model) -> None:
         if element.tag == "weld":
             weld = _read_weld(element, name, model)
             if weld.bodies[0] != weld.bodies[1]:
-                _add_closure(weld, model)
+                closures.append(weld)
             continue
         anchor = _read_connect(element, name, model)
         if anchor.bodies[0] is anchor.bodies[1]:
@@ -370,17 +366,18 @@ def _read_closures(equality: Element, model: _Model) -> None:
             anchor = anchor.reversed()
             key = key[::-1]
         groups.setdefault(key, []).append(anchor)
-    for anchors in groups.values():
-        _add_closure(_joint_of_anchors(anchors), model)
+    closures += [_joint_of_anchors(anchors) for anchors in groups.values()]
+    for joint in closures:
+        _add_closure(joint, model)
 
 
 def _add_closure(joint: BodyJoint, model: _Model) -> None:
     """Add a joint of an equality, which may have the name of a joint of the tree."""
     named = model.taken.named_joint(joint, numbered(joint.name))
+    model.joints.append(named)
     if named.name != joint.name:
         note = f"equality {joint.name} is called {named.name}, as there is such a joint"
         model.notes.append(note)
-    model.joints.append(named)
 
 
 @dataclass
@@ -399,15 +396,15 @@ class _Anchor:
 
 def _read_ends(element: Element, model: _Model) -> tuple[_Placed, _Placed, bool]:
     """What an equality joins, two sites or two bodies; and whether they are sites."""
-    if "site1" in element.attributes or "site2" in element.attributes:
-        allowed = "the name of a site"
-        one = element.reference("site1", model.sites, allowed)
-        other = element.reference("site2", model.sites, allowed)
-        return model.sites[one], model.sites[other], True
+    are_sites = "site1" in element.attributes or "site2" in element.attributes
     allowed = f"one of the bodies {', '.join(model.elements)}"
-    one = element.reference("body1", model.elements, allowed)
-    other = element.reference("body2", model.elements, allowed, default=WORLD)
-    return model.elements[one], model.elements[other], False
+    noun, known, default = "body", model.elements, WORLD
+    if are_sites:
+        allowed = "the name of a site"
+        noun, known, default = "site", model.sites, ""
+    one = element.reference(f"{noun}1", known, allowed)
+    other = element.reference(f"{noun}2", known, allowed, default)
+    return known[one], known[other], are_sites
 
 
 def _read_connect(element: Element, name: str, model: _Model) -> _Anchor:
@@ -453,16 +450,11 @@ def _joint_of_anchors(anchors: list[_Anchor]) -> BodyJoint:
             frame = frame_along(points[0], np.cross(across, other), across)
         frames.append(frame)
     own = in_bodies((first.frame, second.frame), frames)
-    return BodyJoint(_name_of_anchors(anchors), kind, (first.name, second.name), own)
-
-
-def _name_of_anchors(anchors: list[_Anchor]) -> str:
-    """What anchors "J.1" and "J.2" are called together: "J"; else the first name."""
-    names = [anchor.name for anchor in anchors]
-    stems = {NUMBERED.sub("", name) for name in names}
-    if len(names) > 1 and len(stems) == 1:
-        return stems.pop()
-    return names[0]
+    # "J.1" and "J.2" are "J" together
+    stems = {NUMBERED.sub("", anchor.name) for anchor in anchors}
+    is_one = len(anchors) > 1 and len(stems) == 1
+    name = stems.pop() if is_one else anchors[0].name
+    return BodyJoint(name, kind, (first.name, second.name), own)
 
 
 def _kind_of_points(points: np.ndarray) -> tuple[JointKind, tuple[int, ...]]:

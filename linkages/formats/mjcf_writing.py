@@ -128,9 +128,8 @@ class _Writer:
         for k in pair.variables:
             variable = self.mechanism.variables[k]
             is_alone = leaders[k] == k and leaders.count(k) == 1
-            if variable.limits is not None or variable.locked is not None:
-                return False
-            if not is_alone:
+            is_bound = variable.limits is not None or variable.locked is not None
+            if is_bound or not is_alone:
                 return False
         return kind in CONNECTED
 
@@ -161,8 +160,8 @@ class _Writer:
         """The lines of a body that a pair joins to its parent, and what stands in
         it."""
         pair = self.mechanism.pairs[number]
-        is_copy = name not in self.mechanism.bodies
-        points = [] if is_copy else self._points(name)
+        # none for a copy of a body
+        points = [one.place for one in self.mechanism.joints if name in one.bodies]
         joint = self._joint(pair)
         center = np.mean(points or [joint.place], axis=0)
         moment = repr(max(self.size**2, LEAST_INERTIA))
@@ -177,10 +176,6 @@ class _Writer:
             *inner,
             f"{pad}</body>",
         ]
-
-    def _points(self, body: str) -> list[np.ndarray]:
-        joints = [joint for joint in self.mechanism.joints if body in joint.bodies]
-        return [joint.place for joint in joints]
 
     def _shapes(self, points: list[np.ndarray]) -> list[str]:
         """Rods between the points of a body, as it is drawn."""

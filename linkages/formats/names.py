@@ -19,7 +19,6 @@ from typing import TypeAlias
 
 from linkages.formats.assembly import BodyJoint
 from linkages.formats.xml_tree import Element
-from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism, Pair
 
@@ -72,11 +71,11 @@ def with_names_for(mechanism: Mechanism, rules: NameRules) -> Mechanism:
     taken = taken_by_bodies if rules.siblings else set()
     renamed: dict[str, Joint] = {}
     # names that can stay are given first, so that no alternative takes one of them
-    for alternatives in (_no_alternatives, _alternatives):
+    for most in (1, None):
         for joint in mechanism.joints:
             if joint.name in renamed:
                 continue
-            names = alternatives(joint.name, "joint")
+            names = itertools.islice(_alternatives(joint.name, "joint"), most)
             own = _renamed(joint, names, bodies, rules, taken, taken_by_bodies)
             if own is None:
                 continue
@@ -89,27 +88,25 @@ def with_names_for(mechanism: Mechanism, rules: NameRules) -> Mechanism:
         labels |= zip(joint.labels, own.labels, strict=True)
     _say(bodies, "body")
     _say({name: joint.name for name, joint in renamed.items()}, "joint")
-    coupled = tuple(_with_leaders(joint, labels) for joint in joints)
-    return replace(mechanism, joints=coupled)
+    for number, joint in enumerate(joints):
+        coupled = tuple(
+            one and replace(one, to=labels[one.to]) for one in joint.coupled
+        )
+        joints[number] = replace(joint, coupled=coupled)
+    return replace(mechanism, joints=tuple(joints))
 
 
 def _names_of_bodies(mechanism: Mechanism, rules: NameRules) -> dict[str, str]:
     """The name in the file of every body, by its own; those that are allowed stay."""
-    moving = [body for body in mechanism.bodies if body != mechanism.frame]
-    taken = {body for body in moving if rules.is_allowed(body)}
     bodies = {mechanism.frame: mechanism.frame}
+    moving = [body for body in mechanism.bodies if body != mechanism.frame]
+    bodies |= {body: body for body in moving if rules.is_allowed(body)}
+    taken = {*bodies.values()} - {mechanism.frame}
     for body in moving:
-        if rules.is_allowed(body):
-            bodies[body] = body
-            continue
-        names = (
-            name
-            for name in _alternatives(body, "body")
-            if rules.is_allowed(name) and name not in taken
-        )
-        bodies[body] = next(names)
-        taken.add(bodies[body])
-    return bodies
+        if body not in bodies:
+            allowed = filter(rules.is_allowed, _alternatives(body, "body"))
+            bodies[body] = first_new(allowed, taken)
+    return {body: bodies[body] for body in (mechanism.frame, *moving)}
 
 
 def _renamed(
@@ -135,10 +132,6 @@ def _renamed(
     return None
 
 
-def _no_alternatives(name: str, ending: str) -> Iterator[str]:
-    yield name
-
-
 def _alternatives(name: str, ending: str) -> Iterator[str]:
     """A name, and others that say what it was, with another end or begin: what stands
     in a file for a joint begins with its name and may end with that of a body."""
@@ -150,15 +143,6 @@ def _alternatives(name: str, ending: str) -> Iterator[str]:
     for number in itertools.count(2):
         yield f"{plain}.{ending}{number}"
         yield f"{ending}{number}.{plain}"
-
-
-def _with_leaders(joint: Joint, labels: Mapping[str, str]) -> Joint:
-    """The joint with couplings to variables by their new labels."""
-    coupled = tuple(
-        None if one is None else Coupling(labels[one.to], one.ratio, one.offset)
-        for one in joint.coupled
-    )
-    return replace(joint, coupled=coupled)
 
 
 def _say(names: Mapping[str, str], noun: str) -> None:
@@ -189,14 +173,6 @@ class TakenNames:
                 self.joints.add(name)
             self._enter(child)
 
-    def new_body(self, names: Iterable[str]) -> str:
-        """The first of the names that no body has; it is taken from now on."""
-        return _first_new(names, self.bodies)
-
-    def new_axis(self, names: Iterable[str]) -> str:
-        """The first of the names that no joint has; it is taken from now on."""
-        return _first_new(names, self.joints)
-
     def named_joint(
         self, joint: BodyJoint, names: Iterable[str], axes: Iterable[str] = ()
     ) -> BodyJoint:
@@ -220,7 +196,8 @@ def numbered(*names: str) -> Iterator[str]:
         yield f"{names[-1]}.{number}"
 
 
-def _first_new(names: Iterable[str], taken: set[str]) -> str:
+def first_new(names: Iterable[str], taken: set[str]) -> str:
+    """The first of the names that is not taken; it is from now on."""
     name = next(name for name in names if name not in taken)
     taken.add(name)
     return name

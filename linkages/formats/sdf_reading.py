@@ -30,7 +30,7 @@ from linkages.formats.composites import with_joints_of_chains
 from linkages.formats.exact_poses import ExactPose, Origin
 from linkages.formats.xml_tree import Element
 from linkages.mechanisms.couplings import Coupling
-from linkages.mechanisms.joint import JointKind, Limits
+from linkages.mechanisms.joint import DRAWN_ONLY, FACETS, JointKind, Limits
 from linkages.values import quoted
 
 OLDEST, NEWEST = (1, 5), (1, 11)
@@ -41,15 +41,7 @@ MIMIC_SINCE = (1, 11)
 AXES = ("axis", "axis2")
 WORLD, MODEL = "world", "__model__"
 UNLIMITED = 1e16  # SDF's word for no limit
-KINDS = {
-    "revolute": JointKind.REVOLUTE,
-    "continuous": JointKind.REVOLUTE,
-    "prismatic": JointKind.PRISMATIC,
-    "ball": JointKind.SPHERICAL,
-    "universal": JointKind.UNIVERSAL,
-    "screw": JointKind.HELICAL,
-    "fixed": JointKind.RIGID,
-}
+KINDS = {word: kind for kind, facets in FACETS.items() for word in facets.sdf}
 
 
 class _Gearbox(NamedTuple):
@@ -92,23 +84,29 @@ class _Model:
 def read_sdf(root: Element, name: str) -> Assembly:
     """The assembly that the one model of an SDF file describes; raises
     `GeometryError`."""
-    version = _version(root)
+    text = root.attributes.get("version", "")
+    match = re.fullmatch(r"(\d+)\.(\d+)", text)
+    version = (int(match[1]), int(match[2])) if match else (0, 0)
+    is_read = OLDEST <= version <= NEWEST
+    root.require(is_read, "version", quoted(text), "from 1.5 to 1.11")
     worlds = list(root.all("world"))
     models = [m for parent in (root, *worlds) for m in parent.all("model")]
     jointed = [model for model in models if model.first("joint") is not None]
-    if len(jointed) != 1:
-        names = ", ".join(m.attributes.get("name", "?") for m in jointed) or "none"
-        root.refuse("models with joints", names, "one")
+    names = ", ".join(m.attributes.get("name", "?") for m in jointed) or "none"
+    root.require(len(jointed) == 1, "models with joints", names, "one")
     (element,) = jointed
-    for tag in ("model", "include"):
-        inner = element.first(tag)
-        if inner is not None:
-            value = f"on line {inner.line}"
-            element.refuse(f"<{tag}>", value, "left out; models are not nested")
+    for inner in (*element.all("model"), *element.all("include")):
+        value = f"on line {inner.line}"
+        element.refuse(f"<{inner.tag}>", value, "left out; models are not nested")
     model = _Model(element, version, Origin())
     _collect(model)
     rounding = 0.0
-    poses_of_joints = [_pose(joint, model) for joint in _joints_with_places(element)]
+    elsewhere = [word for word, kind in KINDS.items() if kind in DRAWN_ONLY]
+    poses_of_joints = [
+        _pose(joint.attributes["name"], model)
+        for joint in element.all("joint")
+        if joint.attributes.get("type") not in (*elsewhere, GEARBOX)
+    ]
     origin = Origin.near([pose.place for pose in poses_of_joints])
     if origin.place is not None:
         model = _Model(element, version, origin)
@@ -138,27 +136,6 @@ def read_sdf(root: Element, name: str) -> Assembly:
     )
 
 
-def _joints_with_places(element: Element) -> list[str]:
-    """The names of the joints of a model that are at a place."""
-    elsewhere = [
-        word for word, kind in KINDS.items() if kind.facets.is_point_drawn_only
-    ]
-    return [
-        joint.attributes["name"]
-        for joint in element.all("joint")
-        if joint.attributes.get("type") not in (*elsewhere, GEARBOX)
-    ]
-
-
-def _version(root: Element) -> tuple[int, int]:
-    text = root.attributes.get("version", "")
-    match = re.fullmatch(r"(\d+)\.(\d+)", text)
-    version = (int(match[1]), int(match[2])) if match else (0, 0)
-    if not OLDEST <= version <= NEWEST:
-        root.refuse("version", quoted(text), "from 1.5 to 1.11")
-    return version
-
-
 def _read_joints(model: _Model) -> tuple[BodyJoint, ...]:
     """All joints, coupled where they follow others."""
     joints: dict[str, BodyJoint] = {}
@@ -171,13 +148,11 @@ def _read_joints(model: _Model) -> tuple[BodyJoint, ...]:
     coupled = {name: _mimics(joint, joints, model) for name, joint in joints.items()}
     for gearbox in gearboxes:
         leader, follower, rate = _geared(gearbox, joints, model)
-        if coupled[follower]:
-            allowed = "a joint that is coupled once"
-            gearbox.element.refuse("<child>", f"on joint {follower}", allowed)
+        is_free = not coupled[follower]
+        allowed = "a joint that is coupled once"
+        gearbox.element.require(is_free, "<child>", f"on joint {follower}", allowed)
         coupled[follower] = {follower: Coupling(leader, rate)}
-    followers = [
-        replace(joint, coupled=coupled[name]) for name, joint in joints.items()
-    ]
+    followers = [replace(one, coupled=coupled[name]) for name, one in joints.items()]
     return with_joints_of_chains(followers, model.frame)
 
 
@@ -216,28 +191,22 @@ def _pose(name: str, model: _Model, path: tuple[str, ...] = ()) -> ExactPose:
         return model.poses[name]
     posed = model.posed[name]
     element = posed.element
-    if name in path:
-        element.refuse("<pose>", "relative to itself", "relative to another frame")
+    allowed = "relative to another frame"
+    element.require(name not in path, "<pose>", "relative to itself", allowed)
     own, relative_to = _own_pose(element)
-    if relative_to is not None and model.version < FRAMES_SINCE:
-        allowed = "left out before version 1.7"
-        element.refuse("relative_to", quoted(relative_to), allowed)
+    is_allowed = relative_to is None or model.version >= FRAMES_SINCE
+    allowed = "left out before version 1.7"
+    element.require(is_allowed, "relative_to", quoted(relative_to), allowed)
     base = relative_to or posed.relative_to
-    if base not in model.posed and base not in (MODEL, WORLD):
-        _refuse_base(element, base, is_said=relative_to is not None, model=model)
+    key = "attached_to" if relative_to is None else "relative_to"
+    allowed = f"one of the links, joints and frames {', '.join(model.posed)}"
+    if relative_to is None and element.tag == "joint":
+        key = "<child>"
+        allowed = f"world or one of the links {_listed_links(model)}"
+    is_known = base in model.posed or base in (MODEL, WORLD)
+    element.require(is_known, key, quoted(base), allowed)
     model.poses[name] = _pose(base, model, (*path, name)) @ own
     return model.poses[name]
-
-
-def _refuse_base(element: Element, base: str, *, is_said: bool, model: _Model) -> None:
-    """Raise `GeometryError` for what a pose is relative to, as ``relative_to`` says or
-    as it is for a joint or a frame without that, where there is no such thing."""
-    if not is_said and element.tag == "joint":
-        allowed = f"world or one of the links {_listed_links(model)}"
-        element.refuse("<child>", quoted(base), allowed)
-    key = "relative_to" if is_said else "attached_to"
-    names = ", ".join(model.posed)
-    element.refuse(key, quoted(base), f"one of the links, joints and frames {names}")
 
 
 def _listed_links(model: _Model) -> str:
@@ -261,8 +230,8 @@ def _own_pose(element: Element) -> tuple[ExactPose, str | None]:
     rotation = None
     turn = np.array(numbers[3:])
     if kind == "quat_xyzw":
-        if not np.any(turn):
-            element.refuse("<pose>", quoted(text), "with a quaternion other than 0")
+        allowed = "with a quaternion other than 0"
+        element.require(bool(np.any(turn)), "<pose>", quoted(text), allowed)
         rotation = Rotation.from_quat(turn).as_matrix()
     elif np.any(turn):
         if child.attributes.get("degrees") in ("true", "1"):
@@ -278,9 +247,8 @@ def _read_joint(element: Element, model: _Model) -> BodyJoint:
     """A joint with its frames in both links."""
     name = element.attributes["name"]
     word = element.attributes.get("type", "")
-    if word not in KINDS:
-        allowed = f"one of {', '.join(KINDS)}, {GEARBOX}"
-        element.refuse("type", quoted(word), allowed)
+    allowed = f"one of {', '.join(KINDS)}, {GEARBOX}"
+    element.require(word in KINDS, "type", quoted(word), allowed)
     kind = KINDS[word]
     first, second = (_body(element, tag, model) for tag in ("parent", "child"))
     pose = _pose(name, model)
@@ -298,8 +266,8 @@ def _read_joint(element: Element, model: _Model) -> BodyJoint:
     cosine = 0.0
     if kind is JointKind.UNIVERSAL:
         second_axis = _axis(element, "axis2", pose, model)
-        if is_one_direction(float(np.linalg.norm(np.cross(axis, second_axis)))):
-            element.refuse("<axis2>", "along <axis>", "another direction")
+        is_along = is_one_direction(float(np.linalg.norm(np.cross(axis, second_axis))))
+        element.require(not is_along, "<axis2>", "along <axis>", "another direction")
         other = frame_along(place[:3, 3], second_axis)
         cosine = float(one[:3, 2] @ other[:3, 2])
         limits = (*limits, _limits(element, "axis2", word, model))
@@ -342,15 +310,15 @@ def _axis(element: Element, tag: str, pose: ExactPose, model: _Model) -> np.ndar
     xyz = axis.first("xyz")
     text = "0 0 1" if xyz is None else xyz.text
     direction = np.array(element.parsed_numbers(f"<{tag}><xyz>", text, (3,)))
-    if not np.any(direction):
-        allowed = "of a length other than zero"
-        element.refuse(f"<{tag}><xyz>", quoted(text.strip()), allowed)
+    is_direction = bool(np.any(direction))
+    allowed = "of a length other than zero"
+    element.require(is_direction, f"<{tag}><xyz>", quoted(text.strip()), allowed)
     rotation = pose.rotation
     expressed = "" if xyz is None else xyz.attributes.get("expressed_in", "")
     if expressed:
-        if expressed not in model.posed and expressed not in (MODEL, WORLD):
-            allowed = f"one of {', '.join(model.posed)}"
-            element.refuse("expressed_in", quoted(expressed), allowed)
+        is_known = expressed in model.posed or expressed in (MODEL, WORLD)
+        allowed = f"one of {', '.join(model.posed)}"
+        element.require(is_known, "expressed_in", quoted(expressed), allowed)
         rotation = _pose(expressed, model).rotation
     flag = axis.first("use_parent_model_frame")
     if flag is not None and flag.text.strip() in ("1", "true"):
@@ -382,8 +350,8 @@ def _limits(element: Element, tag: str, word: str, model: _Model) -> Limits | No
             "above the upper one is no limit in SDF"
         )
         return None
-    if low == high:
-        element.refuse("<limit>", [low, high], "a smaller number and a larger one")
+    allowed = "a smaller number and a larger one"
+    element.require(low != high, "<limit>", [low, high], allowed)
     return (low, high)
 
 
@@ -395,8 +363,7 @@ def _pitch(element: Element, model: _Model) -> float:
     if old is None:
         element.refuse("<thread_pitch>", "missing", "given for a screw")
     turn = _number(element, "thread_pitch", None)
-    if turn == 0:
-        element.refuse("<thread_pitch>", turn, "other than 0")
+    element.require(turn != 0, "<thread_pitch>", turn, "other than 0")
     return -2 * math.pi / turn  # rad a length, left-handed
 
 
@@ -426,12 +393,12 @@ def _coupling(mimic: Element, joints: Mapping[str, BodyJoint]) -> Coupling:
     allowed = f"one of the joints {', '.join(joints)}"
     leader = joints[mimic.reference("joint", joints, allowed)]
     number = AXES.index(mimic.choice("axis", AXES, AXES[0]))
-    if number >= len(leader.labels):
-        shown = f"{AXES[number]} of {leader.name}"
-        mimic.refuse("axis", shown, "an axis that the joint has")
+    shown = f"{AXES[number]} of {leader.name}"
+    is_axis = number < len(leader.labels)
+    mimic.require(is_axis, "axis", shown, "an axis that the joint has")
     ratio = _number(mimic, "multiplier", None)
-    if ratio == 0.0:
-        mimic.refuse("<multiplier>", 0, "other than 0; what stands still is fixed")
+    allowed = "other than 0; what stands still is fixed"
+    mimic.require(ratio != 0.0, "<multiplier>", 0, allowed)
     offset = _number(mimic, "offset", 0.0) - ratio * _number(mimic, "reference", 0.0)
     return Coupling(leader.labels[number], ratio, offset)
 
@@ -452,8 +419,7 @@ def _geared(
     """The joints that hold the links of a gearbox, and how much the second one turns
     for a turn of the first one."""
     rate = -_number(gearbox.element, "gearbox_ratio", 1.0)
-    if rate == 0.0:
-        gearbox.element.refuse("<gearbox_ratio>", 0, "other than 0")
+    gearbox.element.require(rate != 0.0, "<gearbox_ratio>", 0, "other than 0")
     (first, sign), (second, other) = (
         _hinge(gearbox, number, joints.values(), model) for number in range(len(AXES))
     )

@@ -26,7 +26,7 @@ from linkages.formats.sdf_reading import AXES
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism, Pair, Variable
 from linkages.mechanisms.size import Size
-from linkages.values import GeometryError
+from linkages.values import require
 
 
 def mechanism_sdf(mechanism: Mechanism) -> str:
@@ -35,6 +35,9 @@ def mechanism_sdf(mechanism: Mechanism) -> str:
     which SDF has no word. Names that SDF forbids, or that stand there for two things,
     are changed, and the log says so."""
     mechanism = with_names_for(mechanism, NAMES)
+    name = mechanism.name.replace("::", ".") or "mechanism"
+    if not _is_allowed(name):
+        name += ".model"
     moment = repr(Size(mechanism).characteristic_length ** 2)
     links = [body for body in mechanism.bodies if body != mechanism.frame]
     joints = []
@@ -45,7 +48,7 @@ def mechanism_sdf(mechanism: Mechanism) -> str:
     lines = [
         '<?xml version="1.0"?>',
         '<sdf version="1.11">',
-        f"  <model name={quoteattr(_model_name(mechanism))}>",
+        f"  <model name={quoteattr(name)}>",
     ]
     for link in links:
         lines += _link(body_name(mechanism, link), moment)
@@ -77,11 +80,6 @@ NAMES = NameRules(
 )
 
 
-def _model_name(mechanism: Mechanism) -> str:
-    name = mechanism.name.replace("::", ".") or "mechanism"
-    return name if _is_allowed(name) else f"{name}.model"
-
-
 def _link(name: str, moment: str) -> list[str]:
     diagonal = "".join(f"<{key}>{moment}</{key}>" for key in ("ixx", "iyy", "izz"))
     return [
@@ -96,25 +94,20 @@ def _pair(mechanism: Mechanism, pair: Pair) -> tuple[list[str], list[str]]:
     joint = mechanism.joint(pair.joint)
     variables = [mechanism.variables[number] for number in pair.variables]
     for variable in variables:
-        if variable.locked:
-            allowed = "0, or left out, in an SDF file"
-            what = f"locked of joint {variable.label}"
-            value = f"{variable.locked:.10g}"
-            if variable.motion.is_turn:
-                value = f"{math.degrees(variable.locked):.10g} degrees"
-            raise GeometryError(what, value, allowed)
+        locked = variable.locked or 0.0
+        value = f"{locked:.10g}"
+        if variable.motion.is_turn:
+            value = f"{math.degrees(locked):.10g} degrees"
+        what = f"locked of joint {variable.label}"
+        require(locked == 0.0, what, value, "0, or left out, in an SDF file")
     base, moved = (body_name(mechanism, body) for body in (pair.base, pair.moved))
     name = pair_name(joint, pair)
     place = joint.place
-    if joint.kind is JointKind.SPHERICAL:
-        return _joint(name, "ball", base, moved, place, []), []
-    if joint.kind is JointKind.RIGID:
-        return _joint(name, "fixed", base, moved, place, []), []
-    if _has_two_axes(mechanism, pair):
+    if not variables or _has_two_axes(mechanism, pair):
         axes = []
-        for tag, variable in zip(AXES, variables, strict=True):
+        for tag, variable in zip(AXES, variables, strict=False):
             axes += _axis(tag, variable, mechanism, 1.0)
-        return _joint(name, "universal", base, moved, place, axes), []
+        return _joint(name, joint.kind.facets.sdf[0], base, moved, place, axes), []
     between = [link_behind(variable.label) for variable in variables[:-1]]
     bodies = [base, *between, moved]
     lines = []
@@ -132,10 +125,12 @@ def _pair(mechanism: Mechanism, pair: Pair) -> tuple[list[str], list[str]]:
 
 def _kind(variable: Variable) -> str:
     if variable.locked is not None:
-        return "fixed"
-    if not variable.motion.is_turn:
-        return "prismatic"
-    return "screw" if variable.motion.advance else "revolute"
+        kind = JointKind.RIGID
+    elif not variable.motion.is_turn:
+        kind = JointKind.PRISMATIC
+    else:
+        kind = JointKind.HELICAL if variable.motion.advance else JointKind.REVOLUTE
+    return kind.facets.sdf[0]
 
 
 def _axis(tag: str, variable: Variable, mechanism: Mechanism, sign: float) -> list[str]:
@@ -144,7 +139,10 @@ def _axis(tag: str, variable: Variable, mechanism: Mechanism, sign: float) -> li
     if variable.locked is not None:
         return []
     direction = row_text(sign * variable.motion.direction)
-    more = _limit(variable) + _mimic(variable, mechanism)
+    more = _mimic(variable, mechanism)
+    if variable.limits is not None:
+        low, high = (repr(float(value)) for value in variable.limits)
+        more = f"<limit><lower>{low}</lower><upper>{high}</upper></limit>{more}"
     return [f"<{tag}><xyz>{direction}</xyz>{more}</{tag}>"]
 
 
@@ -153,22 +151,16 @@ def _mimic(variable: Variable, mechanism: Mechanism) -> str:
     number, ratio, offset = variable.leader
     if mechanism.variables[number].label == variable.label:
         return ""
-    joint, tag = _axis_of_variable(mechanism, number)
+    joint, tag = mechanism.variables[number].label, AXES[0]
+    for pair in mechanism.pairs:
+        if number in pair.variables and _has_two_axes(mechanism, pair):
+            tag = AXES[pair.variables.index(number)]
+            joint = pair_name(mechanism.joint(pair.joint), pair)
     numbers = (
         f"<multiplier>{ratio!r}</multiplier><offset>{offset!r}</offset>"
         "<reference>0</reference>"
     )
     return f'<mimic joint={quoteattr(joint)} axis="{tag}">{numbers}</mimic>'
-
-
-def _axis_of_variable(mechanism: Mechanism, number: int) -> tuple[str, str]:
-    """The name of the joint in the file that a variable, by number, moves, and which of
-    its axes."""
-    for pair in mechanism.pairs:
-        if number in pair.variables and _has_two_axes(mechanism, pair):
-            tag = AXES[pair.variables.index(number)]
-            return pair_name(mechanism.joint(pair.joint), pair), tag
-    return mechanism.variables[number].label, AXES[0]
 
 
 def _has_two_axes(mechanism: Mechanism, pair: Pair) -> bool:
@@ -178,13 +170,6 @@ def _has_two_axes(mechanism: Mechanism, pair: Pair) -> bool:
     if pair.moved == mechanism.frame:
         return False
     return all(mechanism.variables[number].locked is None for number in pair.variables)
-
-
-def _limit(variable: Variable) -> str:
-    if variable.limits is None:
-        return ""
-    low, high = (repr(float(value)) for value in variable.limits)
-    return f"<limit><lower>{low}</lower><upper>{high}</upper></limit>"
 
 
 def _joint(

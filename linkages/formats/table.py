@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import TYPE_CHECKING, NamedTuple
 
-from linkages.values import GeometryError
+from bifurc.files.text_file import read_text
+from linkages.values import GeometryError, require
 
 if TYPE_CHECKING:
-    from linkages.formats.assembly import Assembly
-    from linkages.formats.xml_tree import Element
     from linkages.mechanisms.mechanism import Mechanism
 
 MOST_BYTES = 50_000_000  # of a file of another program
@@ -23,16 +23,17 @@ class FileFormat(NamedTuple):
 
     ``read`` takes the path of a file, and raises `GeometryError`, `OSError` or
     `bifurc.files.text_file.TextFileError`; without it files are TOML of this project,
-    read by `linkages.file`. ``write`` gives the text of one. An XML file is told by its
-    first element, and read by ``read_root``, whatever its ending.
+    read by `linkages.file`. An XML file is told by its first element, the ``root``,
+    whatever its ending. ``write`` and ``read_root`` name functions: the text of a
+    mechanism, and the assembly of a root and a name.
     """
 
     endings: tuple[str, ...]
     words: str = ""
     read: Callable[[Path], Mechanism] | None = None
-    write: Callable[[Mechanism], str] | None = None
+    write: str = ""
     root: str = ""
-    read_root: Callable[[Element, str], Assembly] | None = None
+    read_root: str = ""
 
 
 def format_of(path: Path) -> FileFormat | None:
@@ -44,18 +45,12 @@ def format_of(path: Path) -> FileFormat | None:
 def mechanism_text(mechanism: Mechanism, path: Path) -> str:
     """The text of a file of this name that describes a mechanism."""
     one = format_of(path)
-    assert one is not None and one.write is not None
-    return one.write(mechanism)
+    assert one is not None and one.write
+    text: str = resolve_name(one.write)(mechanism)
+    return text
 
 
-# --- readers --------------------------------------------------------------------------
-
-
-def _read_fold(path: Path) -> Mechanism:
-    from bifurc.files.text_file import read_text
-    from linkages.files.fold import read_fold
-
-    return read_fold(read_text(path), path.stem)
+# --- readers -----------------------------------------------------------------------------
 
 
 def _read_xml(path: Path) -> Mechanism:
@@ -84,70 +79,45 @@ def _read_content(path: Path, content: bytes) -> Mechanism:
 
     root = parse_xml(content)
     for one in FORMATS:
-        if one.read_root is not None and one.root == root.tag:
-            return mechanism_of_assembly(one.read_root(root, path.stem))
+        if one.root == root.tag:
+            return mechanism_of_assembly(resolve_name(one.read_root)(root, path.stem))
     allowed = " or ".join(f"<{one.root}>" for one in FORMATS if one.root)
     raise GeometryError(f"first element, line {root.line}", f"<{root.tag}>", allowed)
 
 
 def _content(path: Path) -> bytes:
     content = path.read_bytes()
-    if len(content) > MOST_BYTES:
-        allowed = f"at most {MOST_BYTES} bytes"
-        raise GeometryError("size of the file", len(content), allowed)
+    is_small = len(content) <= MOST_BYTES
+    allowed = f"at most {MOST_BYTES} bytes"
+    require(is_small, "size of the file", len(content), allowed)
     return content
 
 
-def _read_mjcf(root: Element, name: str) -> Assembly:
-    from linkages.formats.mjcf_reading import read_mjcf
+def _read_fold(path: Path) -> Mechanism:
+    from linkages.files.fold import read_fold
 
-    return read_mjcf(root, name)
-
-
-def _read_sdf(root: Element, name: str) -> Assembly:
-    from linkages.formats.sdf_reading import read_sdf
-
-    return read_sdf(root, name)
-
-
-# --- writers --------------------------------------------------------------------------
-
-
-def _toml_text(mechanism: Mechanism) -> str:
-    from linkages.files.mechanism_file import mechanism_toml
-
-    return mechanism_toml(mechanism)
-
-
-def _mjcf_text(mechanism: Mechanism) -> str:
-    from linkages.formats.mjcf_writing import mechanism_mjcf
-
-    return mechanism_mjcf(mechanism)
-
-
-def _sdf_text(mechanism: Mechanism) -> str:
-    from linkages.formats.sdf_writing import mechanism_sdf
-
-    return mechanism_sdf(mechanism)
+    return read_fold(read_text(path), path.stem)
 
 
 FORMATS = (
-    FileFormat((".toml",), ".toml", write=_toml_text),
+    FileFormat(
+        (".toml",), ".toml", write="linkages.files.mechanism_file:mechanism_toml"
+    ),
     FileFormat(
         (".xml", ".mjcf"),
         ".xml or .mjcf (MJCF)",
         read=_read_xml,
-        write=_mjcf_text,
+        write="linkages.formats.mjcf_writing:mechanism_mjcf",
         root="mujoco",
-        read_root=_read_mjcf,
+        read_root="linkages.formats.mjcf_reading:read_mjcf",
     ),
     FileFormat(
         (".sdf",),
         ".sdf",
         read=_read_xml,
-        write=_sdf_text,
+        write="linkages.formats.sdf_writing:mechanism_sdf",
         root="sdf",
-        read_root=_read_sdf,
+        read_root="linkages.formats.sdf_reading:read_sdf",
     ),
     FileFormat((".world",), ".world (CUIK)", read=_read_world),
     FileFormat((".fold",), read=_read_fold),

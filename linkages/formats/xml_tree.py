@@ -8,7 +8,7 @@ from typing import NoReturn
 from xml.parsers import expat
 
 from linkages.mechanisms.origin import WrittenNumber
-from linkages.values import GeometryError, check_number, quoted
+from linkages.values import GeometryError, check_number, quoted, require
 
 DEEPEST = 500  # elements inside each other
 
@@ -43,6 +43,13 @@ class Element:
         """Raise `GeometryError` for an attribute, or the text, of this element."""
         raise GeometryError(f"{attribute} of {self.place}", value, allowed)
 
+    def require(
+        self, is_met: bool, attribute: str, value: object, allowed: str
+    ) -> None:
+        """Raise as `refuse` unless what must be ``is_met``."""
+        if not is_met:
+            self.refuse(attribute, value, allowed)
+
     def numbers(self, attribute: str, counts: tuple[int, ...]) -> list[float] | None:
         """The numbers of an attribute; None where there is none. Raises
         `GeometryError` unless there are so many, or one of so many."""
@@ -63,8 +70,7 @@ class Element:
             numbers: list[float] = [WrittenNumber(word) for word in text.split()]
         except ValueError:
             self.refuse(what, quoted(text), allowed)
-        if len(numbers) not in counts:
-            self.refuse(what, quoted(text), allowed)
+        self.require(len(numbers) in counts, what, quoted(text), allowed)
         for number in numbers:
             check_number(f"{what} of {self.place}", number)
         return numbers
@@ -73,8 +79,8 @@ class Element:
         """The value of an attribute that is one of some words; raises
         `GeometryError`."""
         value = self.attributes.get(attribute, default)
-        if value not in allowed:
-            self.refuse(attribute, quoted(value), f"one of {', '.join(allowed)}")
+        words = f"one of {', '.join(allowed)}"
+        self.require(value in allowed, attribute, quoted(value), words)
         return value
 
     def reference(
@@ -89,8 +95,7 @@ class Element:
 
     def check_new(self, name: str, known: Container[str]) -> None:
         """Raise `GeometryError` where the ``name`` of this element is known."""
-        if name in known:
-            self.refuse("name", quoted(name), "given once")
+        self.require(name not in known, "name", quoted(name), "given once")
 
 
 def parse_xml(content: bytes) -> Element:
@@ -99,14 +104,32 @@ def parse_xml(content: bytes) -> Element:
     A document type is refused, and with it every entity that a file could define.
     Raises `GeometryError` with the line.
     """
-    builder = _Builder()
     parser = expat.ParserCreate()
-    parser.StartElementHandler = builder.start
-    parser.EndElementHandler = builder.end
-    parser.CharacterDataHandler = builder.add_text
-    parser.StartDoctypeDeclHandler = builder.refuse_document_type
+    document = Element("", 0)
+    open_elements = [document]
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        element = Element(tag, parser.CurrentLineNumber, attributes)
+        open_elements[-1].children.append(element)
+        open_elements.append(element)
+        is_near = len(open_elements) - 1 <= DEEPEST
+        allowed = f"at most {DEEPEST} elements inside each other"
+        require(is_near, f"line {element.line}", f"<{tag}>", allowed)
+
+    def add_text(text: str) -> None:
+        open_elements[-1].text += text
+
+    def refuse_document_type(name: str, *others: object) -> None:
+        # entities may be large beyond measure, or files
+        what = f"line {parser.CurrentLineNumber}"
+        allowed = "left out; entities are not read"
+        raise GeometryError(what, f"<!DOCTYPE {name}>", allowed)
+
+    parser.StartElementHandler = start
+    parser.EndElementHandler = lambda tag: open_elements.pop()
+    parser.CharacterDataHandler = add_text
+    parser.StartDoctypeDeclHandler = refuse_document_type
     parser.buffer_text = True
-    builder.parser = parser
     try:
         parser.Parse(content, True)
     except expat.ExpatError as error:
@@ -117,42 +140,4 @@ def parse_xml(content: bytes) -> Element:
         if isinstance(error, GeometryError):
             raise
         raise GeometryError("encoding", error, "UTF-8") from None
-    assert builder.root is not None
-    return builder.root
-
-
-class _Builder:
-    """The elements that are open while a document is parsed."""
-
-    parser: expat.XMLParserType
-
-    def __init__(self) -> None:
-        self.root: Element | None = None
-        self._open: list[Element] = []
-
-    def start(self, tag: str, attributes: dict[str, str]) -> None:
-        """Open an element."""
-        element = Element(tag, self.parser.CurrentLineNumber, attributes)
-        if self._open:
-            self._open[-1].children.append(element)
-        else:
-            self.root = element
-        self._open.append(element)
-        if len(self._open) > DEEPEST:
-            allowed = f"at most {DEEPEST} elements inside each other"
-            raise GeometryError(f"line {element.line}", f"<{tag}>", allowed)
-
-    def end(self, tag: str) -> None:
-        """Close the element that is open."""
-        self._open.pop()
-
-    def add_text(self, text: str) -> None:
-        """Add characters to the element that is open."""
-        if self._open:
-            self._open[-1].text += text
-
-    def refuse_document_type(self, name: str, *others: object) -> None:
-        """Raise `GeometryError`: entities may be large beyond measure, or files."""
-        what = f"line {self.parser.CurrentLineNumber}"
-        allowed = "left out; entities are not read"
-        raise GeometryError(what, f"<!DOCTYPE {name}>", allowed)
+    return document.children[0]

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 
@@ -43,24 +42,20 @@ class Reading:
 
     def of(self, values: np.ndarray) -> np.ndarray:
         """The table (3, n) as it reads this way."""
-        out = np.roll(
-            _reversed(values) if self.is_reversed else values, -self.shift, axis=1
-        )
+        out = _reversed(values) if self.is_reversed else values
+        out = np.roll(out, -self.shift, axis=1)
         return _mirrored(out) if self.is_mirrored else out
 
     def undone(self, values: np.ndarray) -> np.ndarray:
         """The table whose reading is ``values`` (3, n)."""
-        out = np.roll(
-            _mirrored(values) if self.is_mirrored else values, self.shift, axis=1
-        )
+        out = _mirrored(values) if self.is_mirrored else values
+        out = np.roll(out, self.shift, axis=1)
         return _reversed(out) if self.is_reversed else out
 
     def __str__(self) -> str:
-        start = (
-            f"from joint {self.shift + 1}"
-            if not self.is_reversed
-            else f"backwards, shift {self.shift}"
-        )
+        start = f"from joint {self.shift + 1}"
+        if self.is_reversed:
+            start = f"backwards, shift {self.shift}"
         return start + (", mirrored" if self.is_mirrored else "")
 
 
@@ -107,13 +102,9 @@ class Signs:
     def of(self, values: np.ndarray) -> np.ndarray:
         """The table (3, n) with these links and axes reversed."""
         turns = np.where(_opposite_to_next(self.axes), np.pi, 0.0)
-        return np.array(
-            [
-                self.links * values[0],
-                self.links * values[1] + turns,
-                self.axes * values[2],
-            ]
-        )
+        lengths, twists, offsets = values
+        rows = [self.links * lengths, self.links * twists + turns, self.axes * offsets]
+        return np.array(rows)
 
 
 def _opposite_to_next(signs: np.ndarray) -> np.ndarray:
@@ -170,9 +161,9 @@ def compare(target: np.ndarray, candidates: np.ndarray, unit: float) -> Comparis
 
     Lengths and offsets are measured in ``unit``.
     """
-    links = _link_costs(target, candidates, unit).least
+    plain, other = _link_costs(target, candidates, unit)
     joints = _joint_costs(target, candidates, unit)
-    return _compare_costs(links, joints)
+    return _compare_costs(np.minimum(plain, other), joints)
 
 
 def _compare_costs(links: np.ndarray, joints: np.ndarray) -> Comparison:
@@ -193,39 +184,28 @@ def find_signs(target: np.ndarray, candidate: np.ndarray, unit: float) -> Signs:
     """The reversals that bring ``candidate`` (3, n) as near to ``target`` (3, n) as
     they can."""
     n = candidate.shape[1]
-    links = _link_costs(target, candidate[None], unit)
+    plain, other = _link_costs(target, candidate[None], unit)
     joints = _joint_costs(target, candidate[None], unit)
-    best = _compare_costs(links.least, joints).axes[0]
+    best = _compare_costs(np.minimum(plain, other), joints).axes[0]
     axes = _axis_choices(n).signs[best]
     turns = _opposite_to_next(axes).astype(int)
-    reverse = links.is_reversed[0][np.arange(n), turns]
+    reverse = (other < plain)[0][np.arange(n), turns]
     return Signs(np.where(reverse, -1.0, 1.0), axes)
 
 
-class _LinkCosts(NamedTuple):
-    """Squared distances (k, n, 2) of links without and with pi added to the twist, the
-    ``least`` of both senses of the link, and whether that is the reversed one."""
-
-    least: np.ndarray
-    is_reversed: np.ndarray
-
-
-def _link_costs(target: np.ndarray, candidates: np.ndarray, unit: float) -> _LinkCosts:
-    plain = _sense_costs(target, candidates, unit, 1.0)
-    other = _sense_costs(target, candidates, unit, -1.0)
-    return _LinkCosts(np.minimum(plain, other), other < plain)
-
-
-def _sense_costs(
-    target: np.ndarray, candidates: np.ndarray, unit: float, sign: float
-) -> np.ndarray:
-    """The costs (k, n, 2) of links, all reversed for ``sign`` -1."""
-    length = (target[..., 0, :] - sign * candidates[:, 0]) / unit
-    half = (target[..., 1, :] - sign * candidates[:, 1]) / 2
-    square = length**2
-    without = square + 4 * np.sin(half) ** 2
-    turned = square + 4 * np.cos(half) ** 2
-    return np.stack([without, turned], axis=-1)
+def _link_costs(
+    target: np.ndarray, candidates: np.ndarray, unit: float
+) -> list[np.ndarray]:
+    """Squared distances (k, n, 2) of links without and with pi added to the twist, of
+    links as they are and reversed."""
+    costs = []
+    for sign in (1.0, -1.0):
+        length = (target[..., 0, :] - sign * candidates[:, 0]) / unit
+        half = (target[..., 1, :] - sign * candidates[:, 1]) / 2
+        without = length**2 + 4 * np.sin(half) ** 2
+        turned = length**2 + 4 * np.cos(half) ** 2
+        costs.append(np.stack([without, turned], axis=-1))
+    return costs
 
 
 def _joint_costs(target: np.ndarray, candidates: np.ndarray, unit: float) -> np.ndarray:

@@ -111,7 +111,7 @@ def best_member(entry: Entry, views: Sequence[View], unit: float) -> Member | No
     order = np.argsort(np.round(gaps.exact, 10), kind="stable")
     near = [k for k in order[:FITTED] if gaps.exact[k] < NEAR]
     chosen = near or order[:1]
-    members = [_member(entry, candidates[k], unit) for k in chosen]
+    members = [_member(candidates[k], unit) for k in chosen]
     least = gaps.exact.min()
     if least > NEAR / 10:
         # twists modulo pi and signs of offsets may have been read off wrongly
@@ -231,7 +231,7 @@ def _unchanged(
     return np.asarray(mask)
 
 
-def _member(entry: Entry, candidate: Candidate, unit: float) -> Member:
+def _member(candidate: Candidate, unit: float) -> Member:
     view = candidate.view
     signs = find_signs(view.values, candidate.values, unit)
     gaps = _gaps(view.values, signs.of(candidate.values), unit)
@@ -259,14 +259,13 @@ def _with_other_signs(
         if others:
             tables = np.array([other.values for other in others])
             gaps = compare(candidate.view.values, tables, unit).exact
-            members.append(_member(entry, others[gaps.argmin()], unit))
+            members.append(_member(others[gaps.argmin()], unit))
     return members
 
 
 def _resigned(entry: Entry, candidate: Candidate) -> Iterator[dict[str, float]]:
     """The parameters with every choice of half turns and signs."""
-    names = []
-    choices = []
+    choices: dict[str, list[float]] = {}
     for name, place in plain_parameters(entry).items():
         value = candidate.parameters[name]
         values = [value]
@@ -276,10 +275,9 @@ def _resigned(entry: Entry, candidate: Candidate) -> Iterator[dict[str, float]]:
                 values += [-value, np.pi - value]
         elif place.row is Row.OFFSETS:
             values.append(-value)
-        names.append(name)
-        choices.append(values)
-    for choice in itertools.product(*choices):
-        yield {**candidate.parameters, **dict(zip(names, choice, strict=True))}
+        choices[name] = values
+    for choice in itertools.product(*choices.values()):
+        yield {**candidate.parameters, **dict(zip(choices, choice, strict=True))}
 
 
 # --- fitting
@@ -315,13 +313,12 @@ def _improved(
     """The member after the step, shortened until that is an improvement; None if it
     never is."""
     for part in PARTS:
-        parameters = {}
-        for name, value in member.parameters.items():
-            parameters[name] = value + part * step[name]
+        parameters = {
+            name: value + part * step[name] for name, value in member.parameters.items()
+        }
         values = _build(entry, parameters)
         if values is not None:
-            candidate = Candidate(member.view, parameters, values)
-            after = _member(entry, candidate, unit)
+            after = _member(Candidate(member.view, parameters, values), unit)
             if after.distance < member.distance:
                 return after
     return None
@@ -338,24 +335,19 @@ def _jacobian(
 ) -> np.ndarray:
     """Derivatives (3 n, k) of the signed table by the parameters, these in their
     scales."""
+    base = member.signs.of(member.values)
     columns = []
     for name, scale in zip(names, _scales(entry, names, unit), strict=True):
-        columns.append(_derivative(entry, member, name, scale, unit))
+        column = np.zeros(base.size)
+        # from the side that the constructor accepts
+        for step in (STEP, -STEP):
+            moved = member.parameters[name] + step * scale
+            values = _build(entry, {**member.parameters, name: moved})
+            if values is not None:
+                column = _gaps(member.signs.of(values), base, unit) / step
+                break
+        columns.append(column)
     return np.array(columns).T
-
-
-def _derivative(
-    entry: Entry, member: Member, name: str, scale: float, unit: float
-) -> np.ndarray:
-    """Derivative (3 n,) by one parameter, from the side that the constructor accepts; 0
-    for none."""
-    base = member.signs.of(member.values)
-    for step in (STEP, -STEP):
-        moved = member.parameters[name] + step * scale
-        values = _build(entry, {**member.parameters, name: moved})
-        if values is not None:
-            return _gaps(member.signs.of(values), base, unit) / step
-    return np.zeros(base.size)
 
 
 def _descend(
@@ -365,7 +357,7 @@ def _descend(
     the signs that fit best at each step."""
     candidate = start
     for _ in range(STEPS):
-        member = _member(entry, candidate, unit)
+        member = _member(candidate, unit)
         gaps = _gaps(member.view.values, member.signs.of(member.values), unit)
         jacobian = _jacobian(entry, member, names, unit)
         step = np.linalg.lstsq(jacobian, gaps, rcond=1e-9)[0]

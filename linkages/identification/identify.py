@@ -121,9 +121,12 @@ def identify(
     """
     if not (math.isfinite(tolerance) and tolerance >= 0):
         raise ToleranceError(tolerance)
-    tolerance = max(tolerance, _distance_by_rounding(loop))
     given = table(loop)
     unit = loop.characteristic_length
+    # how far the loop is from itself with every length and offset off by as much as
+    # it may be
+    count = len(loop.lengths) + len(loop.offsets)
+    tolerance = max(tolerance, math.sqrt(count) * loop.rounding / unit)
     views = views_of(given)
     candidates = []
     for entry in catalogue().values() if entries is None else entries:
@@ -139,25 +142,22 @@ def identify(
     return Identification(loop, tolerance, tuple(matches), nearest, locked)
 
 
-def _distance_by_rounding(loop: Loop) -> float:
-    """The largest `Match.distance` of a loop from itself with every length and offset
-    off by as much as it may be."""
-    count = len(loop.lengths) + len(loop.offsets)
-    return math.sqrt(count) * loop.rounding / loop.characteristic_length
-
-
 def _match(member: Member, entry: Entry, given: np.ndarray, unit: float) -> Match:
     units = np.array([[unit], [1.0], [unit]])
     residuals = (given - member.as_given) / units
     residuals[1] = _wrapped(residuals[1])
     # reversing twice is not reversing
     labelled = member.signs.of(member.view.values) / units
-    conditions = []
-    for condition in entry.conditions:
-        conditions.append((condition.text, condition.residual(labelled)))
+    conditions = [(one.text, one.residual(labelled)) for one in entry.conditions]
+    parameters = {}
+    for parameter in entry.parameters:
+        value = member.parameters[parameter.name]
+        if parameter.kind is ParameterKind.ANGLE:
+            value = float(_wrapped(np.array(value)))
+        parameters[parameter.name] = value
     return Match(
         entry,
-        _wrapped_parameters(entry, member),
+        parameters,
         member.view.reading,
         given - residuals * units,
         residuals,
@@ -165,17 +165,6 @@ def _match(member: Member, entry: Entry, given: np.ndarray, unit: float) -> Matc
         member.freedom,
         tuple(conditions),
     )
-
-
-def _wrapped_parameters(entry: Entry, member: Member) -> dict[str, float]:
-    """The parameters of the member, angles in [-pi, pi)."""
-    out = {}
-    for parameter in entry.parameters:
-        value = member.parameters[parameter.name]
-        if parameter.kind is ParameterKind.ANGLE:
-            value = float(_wrapped(np.array(value)))
-        out[parameter.name] = value
-    return out
 
 
 def _wrapped(angles: np.ndarray) -> np.ndarray:

@@ -13,7 +13,7 @@ from linkages.networks.assembly import motion_at
 from linkages.networks.mechanism import NetworkMechanism, lock_network, replaced_ring
 from linkages.networks.network import Network
 from linkages.networks.placement import PlacedNetwork
-from linkages.values import GeometryError
+from linkages.values import GeometryError, require
 
 
 @dataclass(frozen=True)
@@ -51,8 +51,8 @@ def locked_states(
     given, where they stand in the reference configuration. Raises `GeometryError` for
     another number of kinks.
     """
-    if kinks and len(kinks) != count:
-        raise GeometryError("number of kinks", len(kinks), f"{count}, one for each")
+    is_whole = len(kinks) in (0, count)
+    require(is_whole, "number of kinks", len(kinks), f"{count}, one for each")
     reference = lock_network(network, {}).placed.reference
     for axes in combinations(network.plan.ring, count):
         if not kinks:

@@ -7,7 +7,7 @@ the entry has ``guesses``, or a ``scan``, see `linkages.entry.Entry`.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 from functools import cache
@@ -58,7 +58,11 @@ def plain_places(
     """The same for a constructor and its parameters."""
     members = []
     for nudge in NUDGES:
-        values = _nudged(parameters, nudge)
+        # each differs from its default by its own part
+        values = {
+            p.name: p.default * (1 + nudge * i / (i + 1))
+            for i, p in enumerate(parameters, start=1)
+        }
         members.append((values, table(construct(**values))))
     places = {}
     for parameter in parameters:
@@ -68,14 +72,6 @@ def plain_places(
                 places[parameter.name] = place
                 break
     return places
-
-
-def _nudged(parameters: tuple[Parameter, ...], nudge: float) -> Mapping[str, float]:
-    """Parameters that differ from the defaults, each by its own part of ``nudge``."""
-    values = {}
-    for i, p in enumerate(parameters):
-        values[p.name] = p.default * (1 + nudge * (i + 1) / (i + 2))
-    return values
 
 
 def _possible_places(parameter: Parameter, n: int) -> Iterator[Place]:

@@ -39,6 +39,24 @@ class LeastDistance:
     error: float
 
 
+class _Sample(NamedTuple):
+    """A value of the distance ``number``, at ``s``."""
+
+    value: float
+    number: int
+    s: float
+
+
+class _Intervals(NamedTuple):
+    """Intervals (k,) of one width, each for the distance of a number: where they begin,
+    and the values at both ends."""
+
+    numbers: np.ndarray
+    low: np.ndarray
+    at_low: np.ndarray
+    at_high: np.ndarray
+
+
 def find_least_distance(
     distance: Distance,
     slopes: np.ndarray,
@@ -49,116 +67,40 @@ def find_least_distance(
     """The least along a branch of some distances, each of which changes by at most its
     slope (p,) for each unit of arclength and is never below the ``floor``; to within
     ``error`` unless that takes too many intervals."""
-    minimum = _global_minimum(distance, slopes, length, error, floor)
-    s = _polished(distance, minimum)
-    number = np.array([minimum.number])
-    value = float(distance(number, np.array([s]))[0])
-    missed = max(value - minimum.bound, 0.0)
-    return LeastDistance(minimum.number, value, s, missed)
+    width = length / FIRST_INTERVALS
+    intervals = _first_intervals(distance, len(slopes), length)
+    best = _least_end(intervals, width)
+    while True:
+        rises = slopes[intervals.numbers] * width
+        bounds = np.maximum((intervals.at_low + intervals.at_high - rises) / 2, floor)
+        may_hold_less = bounds < best.value - error
+        count = np.count_nonzero(may_hold_less)
+        if count == 0 or count > MOST_INTERVALS * len(slopes):
+            break
+        width /= 2
+        wanted = _Intervals(*(column[may_hold_less] for column in intervals))
+        intervals = _halves(distance, wanted, width)
+        best = min(best, _least_end(intervals, width))
+    lowest = best.value - error
+    if count:
+        lowest = min(float(bounds.min()), lowest)
+    s = _polished(distance, best, width, length)
+    value = float(distance(np.array([best.number]), np.array([s]))[0])
+    missed = max(value - max(lowest, floor), 0.0)
+    return LeastDistance(best.number, value, s, missed)
 
 
 def largest_rates(branch: Branch) -> np.ndarray:
     """The largest |d theta / ds| (n,) of each joint along a branch."""
+    _, rates = places_along(branch)
+    largest: np.ndarray = MARGIN * np.abs(rates).max(axis=0)
+    return largest
+
+
+def places_along(branch: Branch) -> tuple[np.ndarray, np.ndarray]:
+    """Points (k, n) of all pieces of a branch, and the derivatives (k, n) there."""
     places = branch.places(np.linspace(0.0, 1.0, RATE_SAMPLES)).ravel()
-    rates: np.ndarray = MARGIN * np.abs(branch(places, derivative=1)).max(axis=0)
-    return rates
-
-
-class _Sample(NamedTuple):
-    """A value of the distance ``number``, at ``s``."""
-
-    value: float
-    number: int
-    s: float
-
-
-@dataclass(frozen=True, eq=False)
-class _Intervals:
-    """Intervals (k,) of one ``width``, each for the distance of a number: where they
-    begin, and the values at both ends."""
-
-    numbers: np.ndarray
-    low: np.ndarray
-    at_low: np.ndarray
-    at_high: np.ndarray
-    width: float
-
-    def bounds(self, slopes: np.ndarray, floor: float) -> np.ndarray:
-        """What the distances (k,) cannot fall below inside."""
-        rises = slopes[self.numbers] * self.width
-        least: np.ndarray = np.maximum((self.at_low + self.at_high - rises) / 2, floor)
-        return least
-
-    def halved(self, distance: Distance) -> _Intervals:
-        """The halves of all intervals, first the lower ones."""
-        width = self.width / 2
-        middle = self.low + width
-        at_middle = distance(self.numbers, middle)
-        return _Intervals(
-            np.concatenate([self.numbers, self.numbers]),
-            np.concatenate([self.low, middle]),
-            np.concatenate([self.at_low, at_middle]),
-            np.concatenate([at_middle, self.at_high]),
-            width,
-        )
-
-    def those(self, mask: np.ndarray) -> _Intervals:
-        """The intervals where ``mask`` (k,) says so."""
-        return _Intervals(
-            self.numbers[mask],
-            self.low[mask],
-            self.at_low[mask],
-            self.at_high[mask],
-            self.width,
-        )
-
-    def least(self) -> _Sample:
-        """The least value at an end."""
-        values = np.minimum(self.at_low, self.at_high)
-        k = int(np.argmin(values))
-        is_at_low = self.at_low[k] <= self.at_high[k]
-        s = self.low[k] if is_at_low else self.low[k] + self.width
-        return _Sample(float(values[k]), int(self.numbers[k]), float(s))
-
-
-@dataclass(frozen=True)
-class _Minimum:
-    """A least value, of the distance ``number``, at ``s`` between ``low`` and
-    ``high``, and a ``bound`` that no value is below."""
-
-    number: int
-    low: float
-    s: float
-    high: float
-    bound: float
-
-
-def _global_minimum(
-    distance: Distance, slopes: np.ndarray, length: float, error: float, floor: float
-) -> _Minimum:
-    """The minimum of all distances along a branch, to within ``error`` unless that
-    takes too many intervals."""
-    intervals = _first_intervals(distance, len(slopes), length)
-    most = MOST_INTERVALS * len(slopes)
-    best = intervals.least()
-    while True:
-        bounds = intervals.bounds(slopes, floor)
-        may_hold_less = bounds < best.value - error
-        count = np.count_nonzero(may_hold_less)
-        if count == 0 or count > most:
-            break
-        intervals = intervals.those(may_hold_less).halved(distance)
-        best = min(best, intervals.least())
-    lowest = best.value - error
-    if count:
-        lowest = min(float(bounds.min()), lowest)
-    return _Minimum(
-        number=best.number,
-        low=max(best.s - intervals.width, 0.0),
-        s=best.s,
-        high=min(best.s + intervals.width, length),
-        bound=max(lowest, floor),
-    )
+    return branch(places), branch(places, derivative=1)
 
 
 def _first_intervals(distance: Distance, count: int, length: float) -> _Intervals:
@@ -171,25 +113,42 @@ def _first_intervals(distance: Distance, count: int, length: float) -> _Interval
         np.tile(ends[:-1], count),
         values[:, :-1].ravel(),
         values[:, 1:].ravel(),
-        length / FIRST_INTERVALS,
     )
 
 
-def _polished(distance: Distance, minimum: _Minimum) -> float:
-    """The arclength of the minimum, to rounding."""
-    number = np.array([minimum.number])
+def _halves(distance: Distance, whole: _Intervals, width: float) -> _Intervals:
+    """The halves, of this ``width``, of all intervals, first the lower ones."""
+    middle = whole.low + width
+    at_middle = distance(whole.numbers, middle)
+    lower = whole._replace(at_high=at_middle)
+    upper = whole._replace(low=middle, at_low=at_middle)
+    return _Intervals(*map(np.concatenate, zip(lower, upper, strict=True)))
+
+
+def _least_end(intervals: _Intervals, width: float) -> _Sample:
+    """The least value at an end of intervals of this ``width``."""
+    values = np.minimum(intervals.at_low, intervals.at_high)
+    k = int(np.argmin(values))
+    is_at_low = intervals.at_low[k] <= intervals.at_high[k]
+    s = intervals.low[k] if is_at_low else intervals.low[k] + width
+    return _Sample(float(values[k]), int(intervals.numbers[k]), float(s))
+
+
+def _polished(distance: Distance, best: _Sample, width: float, length: float) -> float:
+    """The arclength of the minimum within a ``width`` of a sample, to rounding."""
+    low, high = max(best.s - width, 0.0), min(best.s + width, length)
 
     def value(x: float) -> float:
-        return float(distance(number, np.array([minimum.s + x]))[0])
+        return float(distance(np.array([best.number]), np.array([best.s + x]))[0])
 
     found = minimize_scalar(
         # counted from near the minimum: steps are relative to the variable
         value,
-        bounds=(minimum.low - minimum.s, minimum.high - minimum.s),
+        bounds=(low - best.s, high - best.s),
         method="bounded",
         options={"xatol": 1e-12},
     )
-    return minimum.s + float(found.x) if found.fun < value(0.0) else minimum.s
+    return best.s + float(found.x) if found.fun < value(0.0) else best.s
 
 
 # --- of segments ----------------------------------------------------------------------

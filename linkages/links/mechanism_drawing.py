@@ -4,7 +4,7 @@ in the reference configuration, in characteristic lengths."""
 from __future__ import annotations
 
 from itertools import combinations, pairwise
-from typing import NamedTuple, TypedDict
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -20,35 +20,8 @@ RAIL_END = 0.15  # how far a rail goes on beyond the places that the slide comes
 ENOUGH_OF_AN_AXIS = 0.35  # of its length: showing more of it makes no view better
 TRIANGLE = 3  # joints of a body that is drawn as a polygon; one of more is a star
 
-Segment = list[list[float]]
-
-
-class BodyDrawing(TypedDict):
-    """A body, and the lines (from, to) and ``panels`` that are drawn of it, each a
-    polygon by its corners."""
-
-    name: str
-    lines: list[Segment]
-    panels: list[list[list[float]]]
-
-
-class SymbolDrawing(TypedDict):
-    """The symbol of a joint on its body ``holder``, and the body ``other``.
-
-    ``directions`` holds that of the axis, the slide or the normal, with the second one
-    of a universal joint, which is on the body ``other``, and none where a joint has
-    none. ``columns`` are the unknowns of the joint; None where what it does is not
-    among them. A joint between several bodies has its ``label`` once, on the first
-    symbol.
-    """
-
-    label: str
-    kind: str
-    place: list[float]
-    directions: list[list[float]]
-    holder: int
-    other: int
-    columns: list[int] | None
+Segment: TypeAlias = list[list[float]]
+Drawing: TypeAlias = dict[str, Any]  # values that JSON can hold
 
 
 class _Sides(NamedTuple):
@@ -63,13 +36,15 @@ class _Sides(NamedTuple):
 # --- bodies ---------------------------------------------------------------------------
 
 
-def draw_bodies(structure: Structure, points: np.ndarray) -> list[BodyDrawing]:
-    """The bodies with their lines: straight from joint to joint, triangles, stars where
-    joints are more, and rails as long as slides are used at ``points`` (k, n)."""
+def draw_bodies(structure: Structure, points: np.ndarray) -> list[Drawing]:
+    """The ``name`` of every body, its ``lines`` (from, to), and the ``panels``, each a
+    polygon by its corners. Lines go straight from joint to joint, as triangles, as stars
+    where joints are more, and as rails that are as long as slides are used at ``points``
+    (k, n)."""
     mechanism = structure.mechanism
     places = _places(structure)
     rails = _rails(structure, points, places)
-    drawings: list[BodyDrawing] = []
+    drawings: list[Drawing] = []
     for body in mechanism.bodies:
         numbers = [k for k, one in enumerate(mechanism.joints) if body in one.bodies]
         lines = _lines(places[numbers]) + rails.get(body, [])
@@ -146,12 +121,20 @@ def _sides(mechanism: Mechanism, pair: Pair) -> _Sides:
 # --- joints ---------------------------------------------------------------------------
 
 
-def draw_symbols(structure: Structure) -> list[SymbolDrawing]:
+def draw_symbols(structure: Structure) -> list[Drawing]:
     """The symbols of all joints: one for every pair of bodies, but for joints whose
-    bodies share one."""
+    bodies share one.
+
+    Each has the ``kind`` of its joint and its ``place`` on its body, the ``holder``;
+    ``directions`` holds that of the axis, the slide or the normal, with the second one
+    of a universal joint, which is on the ``other`` body, and none where a joint has
+    none. ``columns`` are the unknowns of the joint; None where what it does is not
+    among them. A joint between several bodies has its ``label`` once, on the first
+    symbol.
+    """
     mechanism = structure.mechanism
     places = _places(structure)
-    symbols: list[SymbolDrawing] = []
+    symbols: list[Drawing] = []
     first = 0
     for number, joint in enumerate(mechanism.joints):
         pairs = range(first, first + len(joint.bodies) - 1)
@@ -165,7 +148,7 @@ def draw_symbols(structure: Structure) -> list[SymbolDrawing]:
 
 def _symbol(
     structure: Structure, label: str, pairs: list[int], place: np.ndarray
-) -> SymbolDrawing:
+) -> Drawing:
     mechanism = structure.mechanism
     pair = mechanism.pairs[pairs[0]]
     joint = mechanism.joint(pair.joint)
@@ -218,30 +201,21 @@ def _places(structure: Structure) -> np.ndarray:
     mechanism = structure.mechanism
     places = structure.size.points / structure.unit
     for number, joint in enumerate(mechanism.joints):
-        if joint.kind.facets.place is Place.ANYWHERE and joint.point is not None:
+        if joint.kind.facets.place is not Place.ANYWHERE:
+            continue
+        if joint.point is not None:
             places[number] = joint.place / structure.unit
-        elif (
-            joint.kind.facets.place is Place.ANYWHERE
-            and mechanism.frame in joint.bodies
-        ):
-            places[number] = _place_on_slider(mechanism, number, places)
+        elif mechanism.frame in joint.bodies:
+            # the middle of the other joints of the body that slides in the frame
+            slider = next(body for body in joint.bodies if body != mechanism.frame)
+            others = [
+                k
+                for k, one in enumerate(mechanism.joints)
+                if slider in one.bodies and k != number
+            ]
+            places[number] = places[others].mean(axis=0)
     apart: np.ndarray = places + _steps_aside(mechanism, places)
     return apart
-
-
-def _place_on_slider(
-    mechanism: Mechanism, number: int, places: np.ndarray
-) -> np.ndarray:
-    """The middle (3,) of the other joints of the body that slides in the frame."""
-    joint = mechanism.joints[number]
-    slider = next(body for body in joint.bodies if body != mechanism.frame)
-    others = [
-        k
-        for k, one in enumerate(mechanism.joints)
-        if slider in one.bodies and k != number
-    ]
-    middle: np.ndarray = places[others].mean(axis=0)
-    return middle
 
 
 def _steps_aside(mechanism: Mechanism, places: np.ndarray) -> np.ndarray:

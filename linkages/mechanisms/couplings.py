@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from linkages.values import GeometryError, check_number, quoted
+from linkages.values import GeometryError, check_number, quoted, require
 
 
 @dataclass(frozen=True)
@@ -33,9 +33,9 @@ class Coupling:
             value = getattr(self, key)
             check_number(f"{key} of the coupling to {self.to}", value)
             object.__setattr__(self, key, float(value))
-        if self.ratio == 0.0:
-            allowed = "other than 0; a joint that stands still is locked"
-            raise GeometryError(f"ratio of the coupling to {self.to}", 0, allowed)
+        allowed = "other than 0; a joint that stands still is locked"
+        what = f"ratio of the coupling to {self.to}"
+        require(self.ratio != 0.0, what, 0, allowed)
 
 
 class Leader(NamedTuple):
@@ -65,9 +65,9 @@ def leaders(
     lead back to themselves.
     """
     for label, coupling in couplings.items():
-        if coupling.to not in labels:
-            allowed = f"one of the variables {', '.join(labels)}"
-            raise GeometryError(f"coupled of {label}", quoted(coupling.to), allowed)
+        is_known = coupling.to in labels
+        allowed = f"one of the variables {', '.join(labels)}"
+        require(is_known, f"coupled of {label}", quoted(coupling.to), allowed)
     numbers = {label: number for number, label in enumerate(labels)}
     return tuple(_leader(label, numbers, couplings) for label in labels)
 
@@ -80,9 +80,9 @@ def _leader(
     while chain[-1] in couplings:
         coupling = couplings[chain[-1]]
         chain.append(coupling.to)
-        if coupling.to in chain[:-1]:
-            allowed = "a chain of couplings that ends at a variable that is not coupled"
-            raise GeometryError(f"coupled of {label}", " -> ".join(chain), allowed)
+        is_new = coupling.to not in chain[:-1]
+        allowed = "a chain of couplings that ends at a variable that is not coupled"
+        require(is_new, f"coupled of {label}", " -> ".join(chain), allowed)
         offset += ratio * coupling.offset
         ratio *= coupling.ratio
     return Leader(numbers[chain[-1]], ratio, offset)

@@ -6,6 +6,7 @@ import json
 import os
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import networkx as nx
 
@@ -58,20 +59,18 @@ def plain_mechanism_graph(mechanism: Mechanism) -> nx.MultiGraph:
 
 def _tables(mechanism: Mechanism, variables: list[Variable]) -> Mapping[str, str]:
     """What holds the variables of a pair, as JSON tables by their names."""
-    locked = {}
-    limits = {}
-    coupled = {}
+    tables: dict[str, dict[str, Any]] = {"locked": {}, "limits": {}, "coupled": {}}
     for variable in variables:
-        if variable.locked is not None:
-            locked[variable.label] = variable.locked
-        if variable.limits is not None:
-            limits[variable.label] = list(variable.limits)
-        leader = mechanism.variables[variable.leader.number]
+        number, ratio, offset = variable.leader
+        leader = mechanism.variables[number]
+        tables["locked"][variable.label] = variable.locked
+        tables["limits"][variable.label] = variable.limits
         if leader is not variable:
-            coupled[variable.label] = {
-                "to": leader.label,
-                "ratio": variable.leader.ratio,
-                "offset": variable.leader.offset,
-            }
-    tables = {"locked": locked, "limits": limits, "coupled": coupled}
-    return {key: json.dumps(table) for key, table in tables.items() if table}
+            values = {"to": leader.label, "ratio": ratio, "offset": offset}
+            tables["coupled"][variable.label] = values
+    texts = {}
+    for key, table in tables.items():
+        given = {label: value for label, value in table.items() if value is not None}
+        if given:
+            texts[key] = json.dumps(given)
+    return texts

@@ -8,7 +8,7 @@ in radians.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum, StrEnum
 from typing import Any, NamedTuple, TypeAlias
@@ -24,6 +24,7 @@ from linkages.values import (
     check_number,
     checked_vector,
     quoted,
+    require,
 )
 
 Vector: TypeAlias = tuple[float, float, float]
@@ -46,7 +47,7 @@ class JointKind(StrEnum):
     @property
     def facets(self) -> KindFacets:
         """All that the kind is."""
-        return _FACETS[self]
+        return FACETS[self]
 
 
 class Place(Enum):
@@ -58,6 +59,36 @@ class Place(Enum):
     ALONG = "along"
     # Anywhere.
     ANYWHERE = "anywhere"
+
+
+class Move(Enum):
+    """What a variable of a joint does in a frame whose third axis is its direction."""
+
+    # Turns about the third axis, and goes on along it where the joint has a pitch.
+    TURN = "turn"
+    # Turns about the second direction of the joint.
+    SECOND_TURN = "second turn"
+    # Slides along the axis of this number.
+    X = 0
+    Y = 1
+    Z = 2
+
+
+class Fit(Enum):
+    """What the frames of two bodies have in common at a joint."""
+
+    # Their origins.
+    POINT = "point"
+    # The line along the third axis of the first one.
+    LINE = "line"
+    # The plane across the third axis of the first one.
+    PLANE = "plane"
+    # The angle between their third axes.
+    ANGLE = "angle"
+    # Their third axes.
+    AXIS = "axis"
+    # Their first axes.
+    TURN = "turn"
 
 
 class Shape(Enum):
@@ -109,7 +140,10 @@ class Joint:
     coupled: tuple[Coupling | None, ...] = ()
 
     def __post_init__(self) -> None:
-        _check_name(self.name)
+        if not isinstance(self.name, str) or not self.name.strip():
+            raise GeometryError(
+                "name of a joint", quoted(self.name), "a text in quotes"
+            )
         object.__setattr__(self, "kind", _checked_kind(self))
         object.__setattr__(self, "bodies", _checked_bodies(self))
         for key in ("point", "direction", "second_direction"):
@@ -117,16 +151,9 @@ class Joint:
             if value is not None:
                 vector = checked_vector(f"{key} of joint {self.name}", value)
                 object.__setattr__(self, key, vector)
-        _check_size(self)
-        _check_needs(self)
-        for key in ("direction", "second_direction"):
-            _check_direction(self, key)
-        if self.pitch is not None:
-            check_number(f"pitch of joint {self.name}", self.pitch)
-        _check_second_direction(self)
-        limits = _checked_limits(self)
-        object.__setattr__(self, "limits", limits)
-        object.__setattr__(self, "locked", _checked_locks(self, limits))
+        _check_geometry(self)
+        object.__setattr__(self, "limits", _checked_limits(self))
+        object.__setattr__(self, "locked", _checked_locks(self))
         object.__setattr__(self, "coupled", _checked_couplings(self))
 
     @property
@@ -138,7 +165,7 @@ class Joint:
     def motions(self) -> tuple[Motion, ...]:
         """The elementary motions of one body with respect to the first one, in their
         order; those of a spherical joint are its own, and none stand here."""
-        return self.kind.facets.motions(self)
+        return tuple(_motion(self, move) for move in self.kind.facets.moves)
 
     @property
     def parts(self) -> tuple[str, ...]:
@@ -180,69 +207,41 @@ class Joint:
 # --- motions --------------------------------------------------------------------------
 
 
-def _unit(vector: Sequence[float] | None) -> np.ndarray:
+def unit_vector(vector: Sequence[float] | np.ndarray | None) -> np.ndarray:
+    """The unit vector (3,) along a vector that is not 0, of whatever length."""
     array = np.array(vector, dtype=float)
-    largest = np.abs(array).max()
-    scaled = array / largest
+    scaled = array / np.abs(array).max()
     unit: np.ndarray = scaled / np.linalg.norm(scaled)
     return unit
 
 
-def _turn(joint: Joint) -> tuple[Motion, ...]:
-    return (Motion(True, _unit(joint.direction), joint.place),)
-
-
-def _slide(joint: Joint) -> tuple[Motion, ...]:
-    return (Motion(False, _unit(joint.direction), joint.place, 1.0),)
-
-
-def _turn_and_slide(joint: Joint) -> tuple[Motion, ...]:
-    return _turn(joint) + _slide(joint)
-
-
-def _screw(joint: Joint) -> tuple[Motion, ...]:
-    assert joint.pitch is not None
-    advance = joint.pitch / (2 * math.pi)
-    return (Motion(True, _unit(joint.direction), joint.place, advance),)
-
-
-def _two_turns(joint: Joint) -> tuple[Motion, ...]:
-    second = _unit(joint.second_direction)
-    return (
-        Motion(True, _unit(joint.direction), joint.place),
-        Motion(True, second, joint.place),
-    )
-
-
-def _plane(joint: Joint) -> tuple[Motion, ...]:
-    """Two slides and a turn: any motion in the plane, without a singular place."""
-    normal = _unit(joint.direction)
-    along = joint.second_direction
-    if along is None:
-        along = tuple(np.eye(3)[np.argmin(np.abs(normal))])
-    inside = np.array(along) - (np.array(along) @ normal) * normal
-    first = _unit(inside.tolist())
-    second = np.cross(normal, first)
-    return (
-        Motion(False, first, joint.place, 1.0),
-        Motion(False, second, joint.place, 1.0),
-        Motion(True, normal, joint.place),
-    )
-
-
-def _nothing(joint: Joint) -> tuple[Motion, ...]:
-    return ()
+def _motion(joint: Joint, move: Move) -> Motion:
+    """What a variable of a joint does; two slides and a turn are any motion in a plane,
+    without a singular place."""
+    third = unit_vector(joint.direction)
+    if move is Move.TURN:
+        advance = 0.0 if joint.pitch is None else joint.pitch / (2 * math.pi)
+        return Motion(True, third, joint.place, advance)
+    if move is Move.SECOND_TURN:
+        return Motion(True, unit_vector(joint.second_direction), joint.place)
+    along = np.array(joint.second_direction or np.eye(3)[np.argmin(np.abs(third))])
+    first = unit_vector((along - (along @ third) * third).tolist())
+    axes = (first, np.cross(third, first), third)
+    return Motion(False, axes[move.value], joint.place, 1.0)
 
 
 class KindFacets(NamedTuple):
-    """All that a kind of joint is: the ``motions`` of one body with respect to another,
-    and the ``parts`` that variables are called after; which keys it needs, and may
-    have besides (``optional``); where its ``place`` may be, and whether its point is
-    for drawing alone. It is drawn as a ``shape``, on a rail where it slides along its
-    axis, one for all its bodies where they share it."""
+    """All that a kind of joint is: the ``moves`` of one body with respect to another,
+    and the ``parts`` that variables are called after; how the frames of both bodies
+    ``fit``; which keys it needs, and may have besides (``optional``); where its
+    ``place`` may be, and whether its point is for drawing alone. It is drawn as a
+    ``shape``, on a rail where it slides along its axis, one for all its bodies where
+    they share it. ``mjcf`` is what MJCF calls it, and ``sdf`` what SDF does, empty
+    where they have no word."""
 
-    motions: Callable[[Joint], tuple[Motion, ...]]
+    moves: tuple[Move, ...]
     parts: tuple[str, ...]
+    fit: tuple[Fit, ...]
     required: tuple[str, ...]
     optional: tuple[str, ...] = ()
     place: Place = Place.FIXED
@@ -250,122 +249,156 @@ class KindFacets(NamedTuple):
     shape: Shape = Shape.CYLINDER
     has_rail: bool = False
     is_shared: bool = False
+    mjcf: str = ""
+    sdf: tuple[str, ...] = ()
 
 
 _AXIS = ("point", "direction")
-_FACETS = {
+FACETS = {
     JointKind.REVOLUTE: KindFacets(
-        _turn, ("",), _AXIS, place=Place.ALONG, is_shared=True
+        (Move.TURN,),
+        ("",),
+        (Fit.POINT, Fit.AXIS),
+        _AXIS,
+        place=Place.ALONG,
+        is_shared=True,
+        mjcf="hinge",
+        sdf=("revolute", "continuous"),
     ),
     JointKind.PRISMATIC: KindFacets(
-        _slide,
+        (Move.Z,),
         ("",),
+        (Fit.LINE, Fit.AXIS, Fit.TURN),
         ("direction",),
         ("point",),
         Place.ANYWHERE,
         is_point_drawn_only=True,
         shape=Shape.BOX,
         has_rail=True,
+        mjcf="slide",
+        sdf=("prismatic",),
     ),
     JointKind.CYLINDRICAL: KindFacets(
-        _turn_and_slide, ("turn", "slide"), _AXIS, place=Place.ALONG, has_rail=True
-    ),
-    JointKind.HELICAL: KindFacets(
-        _screw, ("",), (*_AXIS, "pitch"), place=Place.ALONG, has_rail=True
-    ),
-    JointKind.UNIVERSAL: KindFacets(
-        _two_turns, ("first", "second"), (*_AXIS, "second_direction")
+        (Move.TURN, Move.Z),
+        ("turn", "slide"),
+        (Fit.LINE, Fit.AXIS),
+        _AXIS,
+        place=Place.ALONG,
+        has_rail=True,
     ),
     JointKind.SPHERICAL: KindFacets(
-        _nothing, (), ("point",), shape=Shape.BALL, is_shared=True
+        (),
+        (),
+        (Fit.POINT,),
+        ("point",),
+        shape=Shape.BALL,
+        is_shared=True,
+        mjcf="ball",
+        sdf=("ball",),
+    ),
+    JointKind.UNIVERSAL: KindFacets(
+        (Move.TURN, Move.SECOND_TURN),
+        ("first", "second"),
+        (Fit.POINT, Fit.ANGLE),
+        (*_AXIS, "second_direction"),
+        sdf=("universal",),
+    ),
+    JointKind.HELICAL: KindFacets(
+        (Move.TURN,),
+        ("",),
+        (Fit.POINT, Fit.AXIS, Fit.TURN),
+        (*_AXIS, "pitch"),
+        place=Place.ALONG,
+        has_rail=True,
+        sdf=("screw",),
     ),
     JointKind.PLANAR: KindFacets(
-        _plane,
+        (Move.X, Move.Y, Move.TURN),
         ("x", "y", "turn"),
+        (Fit.PLANE, Fit.AXIS),
         ("direction",),
         ("point", "second_direction"),
         Place.ANYWHERE,
         shape=Shape.PLATE,
     ),
     JointKind.RIGID: KindFacets(
-        _nothing, (), (), ("point",), Place.ANYWHERE, is_point_drawn_only=True
+        (),
+        (),
+        (Fit.POINT, Fit.AXIS, Fit.TURN),
+        (),
+        ("point",),
+        Place.ANYWHERE,
+        is_point_drawn_only=True,
+        sdf=("fixed",),
     ),
 }
 # kinds whose point is for drawing alone
-DRAWN_ONLY = [kind for kind, facets in _FACETS.items() if facets.is_point_drawn_only]
+DRAWN_ONLY = [kind for kind, facets in FACETS.items() if facets.is_point_drawn_only]
 
 
 # --- checks ---------------------------------------------------------------------------
-
-
-def _check_name(name: object) -> None:
-    if not isinstance(name, str) or not name.strip():
-        raise GeometryError("name of a joint", quoted(name), "a text in quotes")
 
 
 def _checked_kind(joint: Joint) -> JointKind:
     try:
         return JointKind(joint.kind)
     except ValueError:
-        kinds = ", ".join(JointKind)
+        allowed = f"one of {', '.join(JointKind)}"
         what = f"kind of joint {joint.name}"
-        raise GeometryError(what, quoted(joint.kind), f"one of {kinds}") from None
+        raise GeometryError(what, quoted(joint.kind), allowed) from None
 
 
 def _checked_bodies(joint: Joint) -> tuple[str, ...]:
     what = f"bodies of joint {joint.name}"
-    given = joint.bodies
-    if isinstance(given, str) or not isinstance(given, Iterable):
-        raise GeometryError(what, quoted(given), "a list of two names or more")
-    bodies = tuple(given)
+    bodies = _listed(what, joint.bodies, "a list of two names or more")
     for body in bodies:
         if not isinstance(body, str) or not body.strip():
             raise GeometryError(what, quoted(body), "names, texts in quotes")
-    if len(bodies) < 2:
-        raise GeometryError(what, list(bodies), "two names or more")
+    require(len(bodies) >= 2, what, list(bodies), "two names or more")
     for body in bodies:
-        if bodies.count(body) > 1:
-            raise GeometryError(what, list(bodies), f"different; {body} stands twice")
+        is_once = bodies.count(body) == 1
+        require(is_once, what, list(bodies), f"different; {body} stands twice")
     return bodies
 
 
-def _check_size(joint: Joint) -> None:
-    """Refuse coordinates whose squares are beyond all numbers."""
-    if joint.point is not None and np.abs(joint.point).max() > LARGEST:
-        allowed = f"of coordinates up to {LARGEST:.0e}"
-        raise GeometryError(f"point of joint {joint.name}", list(joint.point), allowed)
+def _listed(what: str, given: object, allowed: str) -> tuple[Any, ...]:
+    """What is given as a tuple; raises `GeometryError` where it is no list."""
+    if isinstance(given, str) or not isinstance(given, Iterable):
+        raise GeometryError(what, quoted(given), allowed)
+    return tuple(given)
 
 
-def _check_needs(joint: Joint) -> None:
+def _check_geometry(joint: Joint) -> None:
+    """Raise `GeometryError` for coordinates whose squares are beyond all numbers, for
+    keys that are missing or too many, and for directions that are none."""
     facets = joint.kind.facets
-    required, optional = facets.required, facets.optional
-    for key in required:
-        if getattr(joint, key) is None:
-            allowed = f"given, as joint {joint.name} is {joint.kind}"
-            raise GeometryError(
-                f"{key} of joint {joint.name}", "a missing key", allowed
-            )
+    owner = f"of joint {joint.name}"
+    if joint.point is not None:
+        allowed = f"of coordinates up to {LARGEST:.0e}"
+        is_small = bool(np.abs(joint.point).max() <= LARGEST)
+        require(is_small, f"point {owner}", list(joint.point), allowed)
+    for key in facets.required:
+        allowed = f"given, as joint {joint.name} is {joint.kind}"
+        is_given = getattr(joint, key) is not None
+        require(is_given, f"{key} {owner}", "a missing key", allowed)
     for key in GEOMETRY:
         value = getattr(joint, key)
-        if value is not None and key not in required + optional:
-            allowed = f"left out, as joint {joint.name} is {joint.kind}"
-            raise GeometryError(f"{key} of joint {joint.name}", value, allowed)
-
-
-def _check_direction(joint: Joint, key: str) -> None:
-    direction = getattr(joint, key)
-    if direction is not None:
-        check_direction(f"{key} of joint {joint.name}", direction)
-
-
-def _check_second_direction(joint: Joint) -> None:
-    if joint.direction is None or joint.second_direction is None:
-        return
-    across = np.cross(_unit(joint.direction), _unit(joint.second_direction))
-    if is_one_direction(float(np.linalg.norm(across))):
-        what = f"second_direction of joint {joint.name}"
+        allowed = f"left out, as joint {joint.name} is {joint.kind}"
+        is_left_out = value is None or key in facets.required + facets.optional
+        require(is_left_out, f"{key} {owner}", value, allowed)
+    for key in ("direction", "second_direction"):
+        if getattr(joint, key) is not None:
+            check_direction(f"{key} {owner}", getattr(joint, key))
+    if joint.pitch is not None:
+        check_number(f"pitch {owner}", joint.pitch)
+    if joint.direction is not None and joint.second_direction is not None:
+        across = np.cross(
+            unit_vector(joint.direction), unit_vector(joint.second_direction)
+        )
+        is_along = is_one_direction(float(np.linalg.norm(across)))
         value = list(joint.second_direction)
-        raise GeometryError(what, value, "not parallel to its direction")
+        allowed = "not parallel to its direction"
+        require(not is_along, f"second_direction {owner}", value, allowed)
 
 
 def _checked_limits(joint: Joint) -> tuple[Limits | None, ...]:
@@ -378,18 +411,20 @@ def _checked_limits(joint: Joint) -> tuple[Limits | None, ...]:
             limits.append(None)
             continue
         ends = _listed(what, pair, allowed)
-        if len(ends) != 2:
-            raise GeometryError(what, list(ends), allowed)
+        require(len(ends) == 2, what, list(ends), allowed)
         for value in ends:
-            _check_value(what, value, motion)
-        low, high = ends
-        if not low < high:
-            allowed = "a smaller number and a larger one"
-            if low == high:
-                allowed += f"; a joint that stands still has locked = {low}"
-            raise GeometryError(what, list(ends), allowed)
-        limits.append((low, high))
+            check_value(what, value, motion)
+        check_order(what, list(ends))
+        limits.append((ends[0], ends[1]))
     return tuple(limits)
+
+
+def check_order(what: str, ends: list[Any]) -> None:
+    """Raise `GeometryError` unless the first one of limits is smaller than the other."""
+    allowed = "a smaller number and a larger one"
+    if ends[0] == ends[1]:
+        allowed += f"; a joint that stands still has locked = {ends[0]}"
+    require(bool(ends[0] < ends[1]), what, ends, allowed)
 
 
 def _by_variable(
@@ -399,33 +434,25 @@ def _by_variable(
     given, and what the variable does; raises `GeometryError` for another ``number``."""
     motions = joint.motions * (len(joint.bodies) - 1)
     given = tuple(getattr(joint, key)) or (None,) * len(motions)
-    if len(given) != len(motions):
-        raise GeometryError(number, len(given), f"{len(motions)}{what_for}")
+    is_whole = len(given) == len(motions)
+    require(is_whole, number, len(given), f"{len(motions)}{what_for}")
     return list(zip(given, motions, strict=True))
 
 
-def _listed(what: str, given: object, allowed: str) -> tuple[Any, ...]:
-    """What is given as a tuple; raises `GeometryError` where it is no list."""
-    if isinstance(given, str) or not isinstance(given, Iterable):
-        raise GeometryError(what, quoted(given), allowed)
-    return tuple(given)
-
-
-def _checked_locks(
-    joint: Joint, limits: tuple[Limits | None, ...]
-) -> tuple[float | None, ...]:
+def _checked_locks(joint: Joint) -> tuple[float | None, ...]:
     what = f"locked of joint {joint.name}"
     rows = _by_variable(joint, "locked", f"number of values of {what}")
-    for (value, motion), pair in zip(rows, limits, strict=True):
-        if value is None:
-            continue
-        _check_value(what, value, motion)
-        if pair is not None and not pair[0] <= value <= pair[1]:
-            raise GeometryError(what, value, f"within the limits {list(pair)}")
+    for (value, motion), pair in zip(rows, joint.limits, strict=True):
+        if value is not None:
+            check_value(what, value, motion)
+            low, high = pair or (-math.inf, math.inf)
+            is_within = bool(low <= value <= high)
+            require(is_within, what, value, f"within the limits {[low, high]}")
     return tuple(value for value, _ in rows)
 
 
-def _check_value(what: str, value: object, motion: Motion) -> None:
+def check_value(what: str, value: object, motion: Motion) -> None:
+    """Raise `GeometryError` for what is no value of a variable with this motion."""
     check = check_angle if motion.is_turn else check_number
     check(what, value)
 
@@ -438,7 +465,6 @@ def _checked_couplings(joint: Joint) -> tuple[Coupling | None, ...]:
             continue
         if not isinstance(coupling, Coupling):
             raise GeometryError(what, quoted(coupling), "a `Coupling`")
-        if value is not None:
-            allowed = f"left out, as the variable is coupled to {coupling.to}"
-            raise GeometryError(f"locked of joint {joint.name}", value, allowed)
+        allowed = f"left out, as the variable is coupled to {coupling.to}"
+        require(value is None, f"locked of joint {joint.name}", value, allowed)
     return tuple(coupling for coupling, _ in rows)

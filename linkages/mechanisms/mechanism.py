@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from linkages.mechanisms.joint import (
     Motion,
     Vector,
 )
-from linkages.values import GeometryError, check_number, quoted
+from linkages.values import GeometryError, check_number, quoted, require
 
 if TYPE_CHECKING:
     # networkx takes long to import
@@ -54,6 +55,30 @@ class Pair(NamedTuple):
     center: np.ndarray | None = None
 
 
+class Lock(NamedTuple):
+    """What is locked by its name, at which ``value`` (rad, the unit of length)."""
+
+    name: str
+    value: float
+    is_angle: bool
+
+
+class OuterJoint(NamedTuple):
+    """A joint of the outer loop of a network: its ``name``, the ``label`` of its
+    variable, its Denavit-Hartenberg angle (rad) in the ``reference`` configuration, and
+    whether it is locked there."""
+
+    name: str
+    label: str
+    reference: float
+    is_locked: bool
+
+    def angle(self, value: float) -> float:
+        """The Denavit-Hartenberg angle at a value of the variable, rad."""
+        turned = self.reference + value
+        return float(np.remainder(turned + np.pi, 2 * np.pi) - np.pi)
+
+
 class Panel(NamedTuple):
     """A flat polygon of a body, by its ``corners`` in order."""
 
@@ -80,6 +105,8 @@ class Mechanism:
     origin: Vector = field(default=(0.0, 0.0, 0.0), compare=False)
     rounding: float = field(default=0.0, compare=False)
     panels: tuple[Panel, ...] = field(default=(), compare=False)
+    # what to do where a single loop is asked for, unless there is nothing to do
+    way_to_loop: ClassVar[str] = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "joints", _checked_joints(self.joints))
@@ -239,6 +266,35 @@ class Mechanism:
         JSON holds; nothing, unless a class is made of more."""
         return {}
 
+    def document_values(self) -> dict[str, Any]:
+        """The same for the JSON document of an atlas."""
+        return {}
+
+    @property
+    def outer_joints(self) -> tuple[OuterJoint, ...]:
+        """The joints of an outer loop, whose angles are shown as well; none, unless a
+        class has one."""
+        return ()
+
+    def holds_angle(self, name: str) -> bool:
+        """Whether a lock of this name holds an angle."""
+        return any(one.label == name and one.motion.is_turn for one in self.variables)
+
+    def held(self, values: Mapping[str, float]) -> Mechanism:
+        """The mechanism with what locks hold, by name, at ``values``: variables, unless
+        a class has other names for them."""
+        return self.with_locks(values)
+
+    @property
+    def locks(self) -> list[Lock]:
+        """What is locked by itself."""
+        locks = []
+        for joint in self.joints:
+            for label, value in zip(joint.labels, joint.locked, strict=True):
+                if value is not None:
+                    locks.append(Lock(label, value, self.holds_angle(label)))
+        return locks
+
     # --- other mechanisms -------------------------------------------------------------
 
     def with_locks(self, values: Mapping[str, float]) -> Mechanism:
@@ -247,60 +303,61 @@ class Mechanism:
         for a label that it does not have, and for two locks of coupled variables."""
         labels = [variable.label for variable in self.variables]
         for label in values:
-            if label not in labels:
-                raise GeometryError(
-                    "lock", quoted(label), f"one of {', '.join(labels)}"
-                )
-        of_leaders = self._locks_of_leaders(values)
-        joints = [_locked(joint, of_leaders) for joint in self.joints]
-        return replace(self, joints=tuple(joints))
-
-    def _locks_of_leaders(self, values: Mapping[str, float]) -> dict[str, float]:
-        """The locks by label of the variables that those with these locks follow."""
-        locks: dict[str, float] = {}
+            allowed = f"one of {', '.join(labels)}"
+            require(label in labels, "lock", quoted(label), allowed)
+        locks: dict[str, float] = {}  # of the variables that those follow
         for variable in self.variables:
             if variable.label not in values:
                 continue
-            value = values[variable.label]
             leader = self.variables[variable.leader.number].label
-            if leader in locks:
-                allowed = f"given once for {leader} and all that is coupled to it"
-                raise GeometryError("lock", quoted(variable.label), allowed)
-            locks[leader] = variable.leader.value_of_leader(value)
-        return locks
+            allowed = f"given once for {leader} and all that is coupled to it"
+            require(leader not in locks, "lock", quoted(variable.label), allowed)
+            locks[leader] = variable.leader.value_of_leader(values[variable.label])
+        joints = []
+        for joint in self.joints:
+            pairs = zip(joint.labels, joint.locked, strict=True)
+            locked = tuple(locks.get(label, value) for label, value in pairs)
+            joints.append(replace(joint, locked=locked))
+        return replace(self, joints=tuple(joints))
 
     def scaled(self, factor: float) -> Mechanism:
         """The mechanism with all lengths times ``factor``."""
         check_number("factor", factor)
-        if not factor > 0:
-            raise GeometryError("factor", factor, "positive")
-        joints = [_scaled(joint, factor) for joint in self.joints]
+        require(factor > 0, "factor", factor, "positive")
+        sizes = np.full(3, factor)
+        joints = [_image(joint, sizes, np.ones(3), factor) for joint in self.joints]
         factors = {
             variable.label: 1.0 if variable.motion.is_turn else factor
             for variable in self.variables
         }
-        x, y, z = self.origin
-        origin = (factor * x, factor * y, factor * z)
-        scaled = self.with_values_times(joints, factors)
-        return replace(
-            scaled,
-            origin=origin,
-            rounding=factor * self.rounding,
-            panels=_panels_times(self.panels, np.full(3, factor)),
-        )
+        scaled = self._image(joints, factors, sizes)
+        return replace(scaled, rounding=factor * self.rounding)
 
     def mirrored(self) -> Mechanism:
         """The mirror image in the plane z = 0; turns change their sign."""
-        joints = [_mirrored(joint) for joint in self.joints]
+        joints = []
         signs: dict[str, float] = {}
-        for joint, image in zip(self.joints, joints, strict=True):
+        for joint in self.joints:
+            # a turn about the mirrored direction has the other sense, so that the
+            # direction is turned round as well; its values are those of the joint
+            slides = bool(joint.motions) and not joint.motions[0].is_turn
+            image = _image(joint, MIRROR, MIRROR if slides else -MIRROR, -1.0)
             signs |= zip(joint.labels, _signs_in_mirror(joint, image), strict=True)
-        x, y, z = self.origin
-        return replace(
-            self.with_values_times(joints, signs),
-            origin=(x, y, -z),
-            panels=_panels_times(self.panels, MIRROR),
-        )
+            joints.append(image)
+        return self._image(joints, signs, MIRROR)
+
+    def _image(
+        self, joints: Iterable[Joint], factors: Mapping[str, float], sizes: np.ndarray
+    ) -> Mechanism:
+        """The mechanism of other ``joints``, all else times ``sizes`` (3,) and the
+        values of variables times ``factors``, by label."""
+        x, y, z = (sizes * self.origin).tolist()
+        panels = []
+        for panel in self.panels:
+            corners = map(tuple, (sizes * np.array(panel.corners)).tolist())
+            panels.append(Panel(panel.body, tuple(corners)))
+        image = self.with_values_times(joints, factors)
+        return replace(image, origin=(x, y, z), panels=tuple(panels))
 
     def with_values_times(
         self, joints: Iterable[Joint], factors: Mapping[str, float]
@@ -324,28 +381,19 @@ class Mechanism:
 # --- other mechanisms -----------------------------------------------------------------
 
 
-def _locked(joint: Joint, values: Mapping[str, float]) -> Joint:
-    pairs = zip(joint.labels, joint.locked, strict=True)
-    locked = tuple(values.get(label, value) for label, value in pairs)
-    return replace(joint, locked=locked)
-
-
-def _scaled(joint: Joint, factor: float) -> Joint:
-    point = joint.point
-    return replace(
-        joint,
-        point=None if point is None else tuple(factor * np.array(point)),
-        pitch=None if joint.pitch is None else factor * joint.pitch,
-    )
-
-
-def _panels_times(panels: Iterable[Panel], factors: np.ndarray) -> tuple[Panel, ...]:
-    """The panels with their coordinates times ``factors`` (3,)."""
-    changed = []
-    for panel in panels:
-        corners = tuple(map(tuple, (factors * np.array(panel.corners)).tolist()))
-        changed.append(Panel(panel.body, corners))
-    return tuple(changed)
+def _image(
+    joint: Joint, sizes: np.ndarray, directions: np.ndarray, of_pitch: float
+) -> Joint:
+    """The joint with its point times ``sizes`` (3,), its directions times
+    ``directions`` (3,), and its pitch times ``of_pitch``."""
+    factors = {"point": sizes, "direction": directions, "second_direction": directions}
+    vectors: dict[str, Any] = {
+        key: tuple((factor * np.array(getattr(joint, key))).tolist())
+        for key, factor in factors.items()
+        if getattr(joint, key) is not None
+    }
+    pitch = None if joint.pitch is None else of_pitch * joint.pitch
+    return replace(joint, pitch=pitch, **vectors)
 
 
 def _with_values_times(joint: Joint, factors: Mapping[str, float]) -> Joint:
@@ -358,40 +406,14 @@ def _with_values_times(joint: Joint, factors: Mapping[str, float]) -> Joint:
         None if value is None else factor * value
         for factor, value in zip(own, joint.locked, strict=True)
     ]
-    coupled = [
-        None if coupling is None else _coupling_times(coupling, factor, factors)
-        for factor, coupling in zip(own, joint.coupled, strict=True)
-    ]
+    coupled: list[Coupling | None] = []
+    for factor, one in zip(own, joint.coupled, strict=True):
+        if one is not None:
+            ratio = one.ratio * factor / factors[one.to]
+            one = Coupling(one.to, ratio, one.offset * factor)
+        coupled.append(one)
     return replace(
         joint, limits=tuple(limits), locked=tuple(locked), coupled=tuple(coupled)
-    )
-
-
-def _coupling_times(
-    coupling: Coupling, factor: float, factors: Mapping[str, float]
-) -> Coupling:
-    ratio = coupling.ratio * factor / factors[coupling.to]
-    return Coupling(coupling.to, ratio, coupling.offset * factor)
-
-
-def _mirrored(joint: Joint) -> Joint:
-    """A joint in the mirror: a turn about the mirrored direction has the other sense,
-    so that the direction is turned round as well; its values are those of the joint."""
-    x, y, z = joint.place
-    slides = joint.motions and not joint.motions[0].is_turn
-    sign = 1.0 if slides else -1.0
-
-    def reflected(vector: Vector | None) -> Vector | None:
-        if vector is None:
-            return None
-        return (sign * vector[0], sign * vector[1], -sign * vector[2])
-
-    return replace(
-        joint,
-        point=None if joint.point is None else (x, y, -z),
-        direction=reflected(joint.direction),
-        second_direction=reflected(joint.second_direction),
-        pitch=None if joint.pitch is None else -joint.pitch,
     )
 
 
@@ -415,35 +437,25 @@ def _checked_joints(joints: object) -> tuple[Joint, ...]:
         raise GeometryError("joints", quoted(joints), "a list of joints")
     checked = tuple(joints)
     for joint in checked:
-        if not isinstance(joint, Joint):
-            raise GeometryError("joints", repr(joint), "a list of joints")
-    names = [joint.name for joint in checked]
-    for name in names:
-        if names.count(name) > 1:
-            raise GeometryError("name of a joint", quoted(name), "given once")
-    if len(checked) < 2:
-        raise GeometryError("number of joints", len(checked), "two or more")
-    _check_names(checked)
-    return checked
-
-
-def _check_names(joints: Iterable[Joint]) -> None:
-    """No joint is called as a variable of another one, and no two variables alike."""
+        require(isinstance(joint, Joint), "joints", repr(joint), "a list of joints")
+    for name, count in Counter(joint.name for joint in checked).items():
+        require(count == 1, "name of a joint", quoted(name), "given once")
+    require(len(checked) >= 2, "number of joints", len(checked), "two or more")
+    # no joint is called as a variable of another one, and no two variables alike
     owners: dict[str, Joint] = {}
-    for joint in joints:
+    for joint in checked:
         for name in joint.names:
             other = owners.setdefault(name, joint)
-            if other is not joint:
-                what = f"names of joints {other.name} and {joint.name}"
-                allowed = "such that every joint and every variable has its own"
-                raise GeometryError(what, f"{quoted(name)} in both", allowed)
+            what = f"names of joints {other.name} and {joint.name}"
+            allowed = "such that every joint and every variable has its own"
+            require(other is joint, what, f"{quoted(name)} in both", allowed)
+    return checked
 
 
 def _check_graph(mechanism: Mechanism) -> None:
     import networkx as nx
 
-    graph = mechanism.graph()
-    parts = [sorted(part) for part in nx.connected_components(graph)]
+    parts = [sorted(part) for part in nx.connected_components(mechanism.graph())]
     if len(parts) > 1:
         order = mechanism.bodies.index
         frame = mechanism.frame
@@ -454,10 +466,9 @@ def _check_graph(mechanism: Mechanism) -> None:
     for body in mechanism.bodies:
         # a joint of several bodies is one, from whichever its angles are measured
         joints = [joint.name for joint in mechanism.joints if body in joint.bodies]
-        if len(joints) < 2:
-            allowed = "two joints or more on every body"
-            value = f"one joint only, {joints[0]},"
-            raise GeometryError(f"body {body}", value, allowed)
+        value = f"one joint only, {joints[0]},"
+        allowed = "two joints or more on every body"
+        require(len(joints) >= 2, f"body {body}", value, allowed)
 
 
 def _check_followers(mechanism: Mechanism) -> None:
@@ -467,7 +478,7 @@ def _check_followers(mechanism: Mechanism) -> None:
             continue
         low, high = variable.limits
         leader = mechanism.variables[variable.leader.number]
-        if not low <= variable.locked <= high:
-            what = f"{variable.label}, which follows {leader.label},"
-            allowed = f"within its limits {[low, high]}"
-            raise GeometryError(what, variable.locked, allowed)
+        what = f"{variable.label}, which follows {leader.label},"
+        is_within = low <= variable.locked <= high
+        allowed = f"within its limits {[low, high]}"
+        require(is_within, what, variable.locked, allowed)

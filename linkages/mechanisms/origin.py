@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, TypeAlias, TypeGuard
 import numpy as np
 
 from linkages.coordinates import are_near_origin
-from linkages.values import GeometryError, check_number, quoted
+from linkages.values import checked_list, checked_vector
 
 Place: TypeAlias = tuple[float, float, float]
 
@@ -64,7 +64,12 @@ def counted_from_near(
     if are_near_origin(places):
         return unchanged
     first = [exact_number(number) for number in given[0]]
-    shifted = [_minus(row, first) if _is_row(row) else None for row in rows]
+    shifted = [
+        [float(exact_number(x) - start) for x, start in zip(row, first, strict=True)]
+        if _is_row(row)
+        else None
+        for row in rows
+    ]
     x, y, z = [float(number) for number in first] + [0.0] * (3 - len(first))
     rounding = max(rounding_of_number(number) for row in given for number in row)
     return Coordinates(shifted, (x, y, z), rounding)
@@ -74,11 +79,8 @@ def origin_of(content: Mapping[str, Any], near: Place | None) -> Place:
     """The point from which the points of a file are counted: its ``origin``, and
     besides it the one that is ``near`` them. Raises `GeometryError`."""
     given = content.get("origin", [0.0, 0.0, 0.0])
-    if not isinstance(given, list) or len(given) != 3:
-        raise GeometryError("origin", quoted(given), "a vector [x, y, z]")
-    for k, coordinate in enumerate(given, start=1):
-        check_number(f"origin[{k}]", coordinate)
-    x, y, z = (float(coordinate) for coordinate in given)
+    checked_list("origin", given, "a vector [x, y, z]", (3,))
+    x, y, z = checked_vector("origin", given)
     if near is None:
         return (x, y, z)
     return (x + near[0], y + near[1], z + near[2])
@@ -124,10 +126,3 @@ def rounding_of_number(number: float) -> float:
     if isinstance(number, WrittenNumber) and len(_digits(number)) < DIGITS_OF_DOUBLES:
         return 0.0
     return float(np.spacing(abs(number))) / 2
-
-
-def _minus(row: Any, first: Sequence[Fraction]) -> list[float]:
-    return [
-        float(exact_number(value) - start)
-        for value, start in zip(row, first, strict=True)
-    ]

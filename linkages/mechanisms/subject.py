@@ -13,7 +13,7 @@ from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism, Panel
 from linkages.mechanisms.origin import origin_of
-from linkages.values import GeometryError
+from linkages.values import GeometryError, require
 
 
 def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
@@ -96,8 +96,8 @@ def mechanism_from(given: object, name: str) -> Mechanism:
     origin = origin_of(given, None)
     rounding = float(given.get("rounding", 0.0))
     outlines = given.get("panels", [])
-    if not isinstance(outlines, list):
-        raise GeometryError("panels", repr(outlines), "a list of panels")
+    is_list = isinstance(outlines, list)
+    require(is_list, "panels", repr(outlines), "a list of panels")
     bodies = {body for joint in joints for body in joint.bodies}
     panels = tuple(_panel(value, bodies) for value in outlines)
     return Mechanism(tuple(joints), name, is_planar, origin, rounding, panels)
@@ -110,6 +110,6 @@ def _panel(value: Any, bodies: Collection[str]) -> Panel:
         body = value["body"]
     except (KeyError, TypeError, ValueError):
         raise GeometryError("panel", repr(value), "a body and its corners") from None
-    if body not in bodies:
-        raise GeometryError("body of a panel", repr(body), "a body of the mechanism")
+    is_body = body in bodies
+    require(is_body, "body of a panel", repr(body), "a body of the mechanism")
     return Panel(body, corners)

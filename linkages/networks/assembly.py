@@ -68,7 +68,15 @@ def assemble(network: Network, locks: Mapping[str, float]) -> np.ndarray:
     On a motion of one freedom the grid is that of one cell, with every state of the
     others at it. Empty where there is no real configuration.
     """
-    order = _order(len(network.plan.cells), constraints_of(network, locks))
+    equations = constraints_of(network, locks)
+    cells = range(len(network.plan.cells))
+    orders = (
+        _order_from(given, equations)
+        for count in range(len(cells) + 1)
+        for given in combinations(cells, count)
+    )
+    # with all cells given none is open
+    order = next(one for one in orders if len(one.given + one.steps) == len(cells))
     assembly = _Assembly(network, order)
     is_scanned = bool(order.check and order.given)
     gridded = len(order.given) - is_scanned
@@ -81,16 +89,6 @@ def assemble(network: Network, locks: Mapping[str, float]) -> np.ndarray:
 
 
 # --- order ----------------------------------------------------------------------------
-
-
-def _order(cells: int, equations: Sequence[Equation]) -> Order:
-    """The first order of assembly with the fewest cells given."""
-    for count in range(cells + 1):
-        for given in combinations(range(cells), count):
-            order = _order_from(given, equations)
-            if len(order.given) + len(order.steps) == cells:
-                return order
-    raise AssertionError("all cells given leave none open")
 
 
 def _order_from(given: tuple[int, ...], equations: Sequence[Equation]) -> Order:
@@ -125,7 +123,10 @@ class _Assembly:
             (corner,) = (number for of, number in total.corners if of == cell)
             others = tuple(place for place in total.corners if place[0] != cell)
             rest = value - network.sums(Sum(total.constant, others), states)
-            states[:, cell] = _state_of(network.factors[cell], corner, rest)
+            turned = rest if corner < 2 else -rest
+            if corner % 2 == 0:
+                turned = other_angle(network.factors[cell], turned)
+            states[:, cell] = turned
         return states
 
     def scan(self, given: np.ndarray) -> np.ndarray:
@@ -170,12 +171,6 @@ class _Assembly:
             high = np.where(is_below, high, middle)
         roots: np.ndarray = 0.5 * (low + high)
         return roots
-
-
-def _state_of(factor: float, corner: int, angle: np.ndarray) -> np.ndarray:
-    """The states (k,) of a cell with these angles (k,) at a corner."""
-    turned = angle if corner < 2 else -angle
-    return other_angle(factor, turned) if corner % 2 == 0 else turned
 
 
 def _circle(factor: float) -> np.ndarray:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -12,9 +11,8 @@ from linkages.construction.numbers import Number
 from linkages.entry import Condition, Parameter, UnknownParameterError
 from linkages.entry_table import read_records
 from linkages.networks.network import Network, build_network
-from linkages.networks.plan import FOUR_BENNETT, L_SHAPE, SERIAL, Plan
+from linkages.networks.plan import PLANS, Plan
 
-PLANS = (FOUR_BENNETT, L_SHAPE, SERIAL)
 LENGTHS = ("b", "c", "d")  # that follow from the other parameters
 
 
@@ -64,12 +62,7 @@ class NetworkEntry:
         return build_network(self.plan, **{**defaults, **values})
 
 
-def _entry(name: str, **fields: Any) -> NetworkEntry:
-    (plan,) = (plan for plan in PLANS if plan.name == name)
-    return NetworkEntry(plan, **fields)
-
-
 NETWORKS: Mapping[str, NetworkEntry] = {
-    fields["name"]: _entry(**fields)
+    fields["name"]: NetworkEntry(PLANS[fields.pop("name")], **fields)
     for fields in read_records("linkages.networks", "entries", "network")
 }

@@ -12,7 +12,7 @@ are finite in number; the closed form gives all of them.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import combinations, count, pairwise
 from math import degrees
@@ -28,7 +28,7 @@ from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.mechanism import NetworkMechanism, lock_network
 from linkages.networks.network import Network, wrap_angles
 from linkages.networks.placement import PlacedNetwork
-from linkages.values import GeometryError
+from linkages.values import require
 
 # Joints with the D-H angles (rad) at which they are locked.
 Locks: TypeAlias = frozenset[tuple[str, float]]
@@ -149,9 +149,10 @@ class _Search:
         self._places: list[np.ndarray] = []
         self.before = frozenset(start.locks.items())
         self.after = frozenset(goal.locks.items())
-        if len(self.before) != len(self.after):
-            allowed = f"{len(self.before)}, as many as at the start"
-            raise GeometryError("number of locks at the goal", len(self.after), allowed)
+        count = len(self.after)
+        is_same = count == len(self.before)
+        allowed = f"{len(self.before)}, as many as at the start"
+        require(is_same, "number of locks at the goal", count, allowed)
         self._starts = self._places_of(start, "start")
         self._goals = self._places_of(goal, "goal")
 
@@ -161,25 +162,22 @@ class _Search:
         """The numbers of the places that are asked for; None for any with the locks."""
         states = lock_network(self.network, place.locks).placed.reference
         mobility = motion_at(self.network, list(place.locks), states).mobility
-        if mobility != 1:
-            name = f"locks at the {what}"
-            allowed = f"such that mobility 1 is left; they leave {mobility}"
-            raise GeometryError(name, show_locks(place.locks.items()), allowed)
+        allowed = f"such that mobility 1 is left; they leave {mobility}"
+        shown = show_locks(place.locks.items())
+        require(mobility == 1, f"locks at the {what}", shown, allowed)
         if not place.at:
             return None
         for joint in place.at:
-            if joint in place.locks:
-                name = f"angle of joint {joint} at the {what}"
-                value = show_locks([(joint, place.at[joint])])
-                raise GeometryError(name, value, "left out, as the joint is locked")
+            name = f"angle of joint {joint} at the {what}"
+            value = show_locks([(joint, place.at[joint])])
+            is_free = joint not in place.locks
+            require(is_free, name, value, "left out, as the joint is locked")
             self.network.require_axis(joint, f"joint at the {what}")
         (joint, angle), *hints = place.at.items()
         numbers = self._isolated({**place.locks, joint: angle})
-        if not numbers:
-            angles = show_locks({**place.locks, **place.at}.items())
-            allowed = "angles that the network has at one place at least, and not all "
-            allowed += "along a form"
-            raise GeometryError(f"{what} of the route", angles, allowed)
+        angles = show_locks({**place.locks, **place.at}.items())
+        allowed = "angles that the network has at one place at least, and not all along a form"
+        require(len(numbers) > 0, f"{what} of the route", angles, allowed)
         # of routes as long as each other the first is taken: that nearest to the
         # reference configuration; rounded, so that it does not hang on the last bits
         ordered = sorted(numbers, key=lambda number: self._distance(number, states))
@@ -269,31 +267,23 @@ class _Search:
             if node in origins:
                 continue
             origins[node] = origin
-            if self._is_goal(node):
+            is_place = self._goals is None or node.place in self._goals
+            if node.locks == self.after and is_place:
                 return self._route(_chain(origins, node), len(starts))
             places = exchanges.get(node.locks, {})
             for other in places.get(node.place, ()):
                 there = _Node(node.place, other)
                 heapq.heappush(queue, (switches + 1, length, next(order), there, node))
-            for target in self._targets(node, places):
+            goals = self._goals or [] if node.locks == self.after else []
+            for target in dict.fromkeys([*places, *goals]):
+                if target == node.place:
+                    continue
                 route = self._way(node.locks, node.place, target)
                 if route is not None:
                     there = _Node(target, node.locks)
                     cost = length + route.length
                     heapq.heappush(queue, (switches, cost, next(order), there, node))
         return None
-
-    def _is_goal(self, node: _Node) -> bool:
-        if node.locks != self.after:
-            return False
-        return self._goals is None or node.place in self._goals
-
-    def _targets(self, node: _Node, places: Iterable[int]) -> Iterator[int]:
-        """The other places that may be gone to with the locks of a node."""
-        goals = self._goals or [] if node.locks == self.after else []
-        for place in dict.fromkeys([*places, *goals]):
-            if place != node.place:
-                yield place
 
     def _way(self, locks: Locks, first: int, last: int) -> Route | None:
         """The route between two places with the same locks; None where there is

@@ -12,13 +12,13 @@ import numpy as np
 from bifurc.atlas import Atlas
 from linkages.construction.constructions import lock, locked_angles
 from linkages.loop import Loop
-from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.mechanism import Lock, Mechanism, OuterJoint
 from linkages.mechanisms.subject import mechanism_of
 from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.entries import NETWORKS
 from linkages.networks.network import Network, wrap_angles
 from linkages.networks.placement import PlacedNetwork
-from linkages.values import GeometryError
+from linkages.values import require
 
 # What every cell turns by at its second axis in the reference configuration, rad, where
 # nothing is locked: in no special place.
@@ -32,20 +32,42 @@ class NetworkMechanism(Mechanism):
     configuration of ``placed``."""
 
     placed: PlacedNetwork = field(kw_only=True, compare=False, repr=False)
+    way_to_loop = "; --without-centre takes the single loop that its outer bars leave under --lock"
 
     @property
     def kinks(self) -> dict[str, float]:
         """The D-H angles (rad) of the locked outer joints."""
         return self.placed.kinks
 
-    def with_kinks(self, values: Mapping[str, float]) -> NetworkMechanism:
+    def holds_angle(self, name: str) -> bool:
+        """Always: locks hold outer joints."""
+        return True
+
+    def held(self, values: Mapping[str, float]) -> NetworkMechanism:
         """The network with outer joints, by name, locked at D-H angles (rad) besides
         those that are locked. Raises as `lock_network`."""
         kinks = self.kinks
         for axis in values:
-            if axis in kinks:
-                raise GeometryError("lock", axis, "a joint that is not locked yet")
+            is_free = axis not in kinks
+            require(is_free, "lock", axis, "a joint that is not locked yet")
         return lock_network(self.placed.network, {**kinks, **values})
+
+    @property
+    def locks(self) -> list[Lock]:
+        """Those of outer joints, where there are any."""
+        kinks = [Lock(axis, kink, True) for axis, kink in self.kinks.items()]
+        return kinks or super().locks
+
+    @property
+    def outer_joints(self) -> tuple[OuterJoint, ...]:
+        """Those of the ring."""
+        placed = self.placed
+        return tuple(
+            OuterJoint(
+                axis, placed.label(axis), placed.turns[axis], axis in placed.kinks
+            )
+            for axis in placed.network.plan.ring
+        )
 
     @property
     def still(self) -> tuple[str, ...]:
@@ -72,6 +94,12 @@ class NetworkMechanism(Mechanism):
             "kinks": dict(placed.kinks),
         }
         return {"network": network}
+
+    def document_values(self) -> dict[str, Any]:
+        """The same without the reference configuration."""
+        values = self.subject_values()
+        del values["network"]["reference"]
+        return values
 
     def without_centre(self) -> Loop:
         """The single loop that is left where the bars inside are taken away, and every
@@ -111,17 +139,13 @@ def lock_network(network: Network, kinks: Mapping[str, float]) -> NetworkMechani
     assembled.
     """
     states = assemble(network, kinks)
-    if not len(states):
-        shown = ", ".join(f"{axis}={degrees(kink):g}" for axis, kink in kinks.items())
-        allowed = "kinks at which the network can be assembled"
-        raise GeometryError(f"locks of {network.name}", shown, allowed)
+    shown = ", ".join(f"{axis}={degrees(kink):g}" for axis, kink in kinks.items())
+    allowed = "kinks at which the network can be assembled"
+    require(len(states) > 0, f"locks of {network.name}", shown, allowed)
     gaps = wrap_angles(states - np.array(PRESET[: states.shape[1]]))
     # rounded, so that of those as near as each other the first one is taken
     distances = np.round(np.linalg.norm(gaps, axis=1), 9)
-    return _mechanism(PlacedNetwork(network, states[np.argmin(distances)], kinks))
-
-
-def _mechanism(placed: PlacedNetwork) -> NetworkMechanism:
+    placed = PlacedNetwork(network, states[np.argmin(distances)], kinks)
     plain = placed.mechanism
     return NetworkMechanism(plain.joints, plain.name, placed=placed)
 
@@ -129,15 +153,15 @@ def _mechanism(placed: PlacedNetwork) -> NetworkMechanism:
 # --- what an atlas keeps --------------------------------------------------------------
 
 
-def network_of(atlas: Atlas) -> NetworkMechanism | None:
-    """The network that an atlas is of; None for anything else."""
+def mechanism_at(atlas: Atlas) -> Mechanism | None:
+    """The mechanism that an atlas is of, a network as such; None where it is of a loop
+    that was given as such. Raises `NoLinkageError` as `mechanism_of`."""
+    mechanism = mechanism_of(atlas)
     values = atlas.subject.get("network")
-    if not isinstance(values, Mapping):
-        return None
+    if mechanism is None or not isinstance(values, Mapping):
+        return mechanism
     network = NETWORKS[str(values["name"])].build(**values["parameters"])
     reference = np.array(values["reference"])
     placed = PlacedNetwork(network, reference, values["kinks"])
-    mechanism = mechanism_of(atlas)
-    assert mechanism is not None
     # its joints, of which more may be locked than the kinks of the network say
     return NetworkMechanism(mechanism.joints, mechanism.name, placed=placed)

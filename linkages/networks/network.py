@@ -25,10 +25,10 @@ from linkages.construction.link import (
     closed_chain,
     half_angle_ratio,
 )
-from linkages.construction.numbers import Number, atan, tan
+from linkages.construction.numbers import Number
 from linkages.loop import Loop
 from linkages.networks.plan import Plan
-from linkages.values import GeometryError, quoted
+from linkages.values import quoted, require
 
 TWISTS = ("alpha", "beta", "gamma", "delta")
 
@@ -83,22 +83,21 @@ class Network:
     @cached_property
     def turns(self) -> Mapping[str, Sum]:
         """What the ring turns by at each of its axes, by name."""
-        turns = {}
-        for axis in self.plan.ring:
-            corners = self.plan.corners(axis)
-            places = tuple((corner.cell, corner.number) for corner in corners)
-            turns[axis] = Sum(pi * (len(corners) - 1), places)
-        return MappingProxyType(turns)
+        return MappingProxyType(
+            {axis: self._sum_at(axis, less=1) for axis in self.plan.ring}
+        )
 
     @cached_property
     def closures(self) -> tuple[Sum, ...]:
         """The sums that are 0, modulo a full turn, for the network to close."""
-        closures = []
-        for axis in self.plan.inside:
-            corners = self.plan.corners(axis)
-            places = tuple((corner.cell, corner.number) for corner in corners)
-            closures.append(Sum(pi * len(corners), places))
-        return tuple(closures)
+        return tuple(self._sum_at(axis, less=0) for axis in self.plan.inside)
+
+    def _sum_at(self, axis: str, less: int) -> Sum:
+        """The sum over the cells at an axis, each with half a turn, but for as many as
+        ``less`` says."""
+        corners = self.plan.corners(axis)
+        places = tuple((corner.cell, corner.number) for corner in corners)
+        return Sum(pi * (len(corners) - less), places)
 
     def sums(self, total: Sum, states: np.ndarray) -> np.ndarray:
         """The values (...,) of a sum at states (..., c)."""
@@ -124,9 +123,9 @@ class Network:
 
     def require_axis(self, axis: str, what: str = "joint") -> None:
         """Raise `GeometryError` for what is no axis of the ring."""
-        if axis not in self.plan.ring:
-            allowed = f"one of the outer joints {', '.join(self.plan.ring)}"
-            raise GeometryError(f"{what} of {self.name}", quoted(axis), allowed)
+        is_axis = axis in self.plan.ring
+        allowed = f"one of the outer joints {', '.join(self.plan.ring)}"
+        require(is_axis, f"{what} of {self.name}", quoted(axis), allowed)
 
     # --- loops ------------------------------------------------------------------------
 
@@ -182,19 +181,3 @@ def build_network(
     network = Network(plan, named, parameters)
     assert len(network.factors) == len(plan.cells)  # computed, and so checked
     return network
-
-
-def bennett_gap(alpha: Number, beta: Number, gamma: Number, delta: Number) -> Number:
-    """tan(alpha/2) tan(beta/2) - tan(gamma/2) tan(delta/2), twists in rad: 0 where the
-    outer loop moves.
-
-    Equivalent to (5.4.1) of Song (2013), that the pairs a, b and c, d in line have one
-    Bennett ratio; it makes pairs that are folded fit as well, of which nothing is said
-    there.
-    """
-    return tan(alpha / 2) * tan(beta / 2) - tan(gamma / 2) * tan(delta / 2)
-
-
-def bennett_twist(alpha: Number, gamma: Number, delta: Number) -> Number:
-    """The twist beta (rad) for which the outer loop moves."""
-    return 2 * atan(tan(gamma / 2) * tan(delta / 2) / tan(alpha / 2))

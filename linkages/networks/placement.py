@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -48,40 +47,29 @@ class PlacedNetwork:
         turns = dict(zip(self.network.plan.ring, angles, strict=True))
         return turns | self.kinks
 
-    def ring_values(self, values: Mapping[str, float]) -> dict[str, float]:
-        """The D-H angles (rad) of the outer joints, by name, for ``values`` (rad) of the
-        variables by label."""
-        angles = {}
-        for axis in self.network.plan.ring:
-            turned = self.turns[axis] + values[self.label(axis)]
-            angles[axis] = float(np.remainder(turned + np.pi, 2 * np.pi) - np.pi)
-        return angles
-
     @cached_property
     def mechanism(self) -> Mechanism:
         """The mechanism, its locks at 0."""
         points, directions = self._axes()
         joints = []
         for axis in self.network.plan.axes:
+            bars = self.network.plan.bars_at(axis)
+            locked = (LOCKED_IN_PLACE, *[None] * (len(bars) - 2))
             joint = Joint(
                 axis,
                 JointKind.REVOLUTE,
-                self.network.plan.bars_at(axis),
+                bars,
                 point=tuple(points[axis].tolist()),
                 direction=tuple(directions[axis].tolist()),
+                locked=locked if axis in self.kinks else (),
             )
-            if axis in self.locks:
-                count = len(joint.parts)
-                joint = replace(joint, locked=(LOCKED_IN_PLACE, *[None] * (count - 1)))
             joints.append(joint)
         return Mechanism(tuple(joints), self.network.name)
 
     def label(self, axis: str) -> str:
         """What the variable of the mechanism is called that is the angle of the ring at
         an axis."""
-        joint = self.mechanism.joint(axis)
-        part = joint.parts[0]
-        return f"{axis}.{part}" if part else axis
+        return self.mechanism.joint(axis).labels[0]
 
     # --- places -----------------------------------------------------------------------
 
@@ -100,11 +88,10 @@ class PlacedNetwork:
     def _frames(self) -> list[np.ndarray]:
         """For every cell the frames (5, 4, 4) of its axes before they turn."""
         angles = self.network.corner_angles(self.reference)
-        frames = []
-        for number, of_cell in enumerate(angles):
-            loop = self.network.cell_loop(number)
-            frames.append(joint_frames(loop.arrays, of_cell))
-        return frames
+        return [
+            joint_frames(self.network.cell_loop(number).arrays, of_cell)
+            for number, of_cell in enumerate(angles)
+        ]
 
     def _bases(self) -> dict[int, np.ndarray]:
         """Where every cell stands (4, 4), the first one at the origin: cells meet in

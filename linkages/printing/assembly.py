@@ -19,7 +19,7 @@ import numpy as np
 
 from linkages.links.distances import distances_by_ends
 from linkages.loop import Loop
-from linkages.values import GeometryError, told_apart
+from linkages.values import require, told_apart
 
 RODS = 3  # of a link: an arm, the rod in between, an arm
 NO_JOINT = -1  # at which the rod between two arms is
@@ -52,12 +52,12 @@ class Dimensions:
     def __post_init__(self) -> None:
         for name in ("diameter", "play", "wall"):
             value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0):
-                raise GeometryError(name, value, "positive and finite, in mm")
-        if self.diameter < 2 * self.wall:
-            shown, least = told_apart(self.diameter, 2 * self.wall)
-            allowed = f"at least {least} mm, twice the wall"
-            raise GeometryError("diameter", f"{shown} mm", allowed)
+            is_length = math.isfinite(value) and value > 0
+            require(is_length, name, value, "positive and finite, in mm")
+        shown, least = told_apart(self.diameter, 2 * self.wall)
+        allowed = f"at least {least} mm, twice the wall"
+        is_thick = self.diameter >= 2 * self.wall
+        require(is_thick, "diameter", f"{shown} mm", allowed)
 
     @property
     def rod_radius(self) -> float:
@@ -105,14 +105,9 @@ class Dimensions:
         return -(self.eye_height + 1.5 * self.play)
 
     @property
-    def cap_height(self) -> float:
-        """That of the straight part of a cap."""
-        return GRIP * self.pin_radius
-
-    @property
     def top(self) -> float:
         """Where the straight part of a cap ends."""
-        return -self.bottom + self.cap_height
+        return -self.bottom + GRIP * self.pin_radius
 
     @property
     def arm(self) -> float:

@@ -9,7 +9,7 @@ configuration is looked at, too.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -164,11 +164,6 @@ class _Trial:
     configurations: np.ndarray
     enough: float
 
-    def with_configuration(self, theta: np.ndarray) -> _Trial:
-        """The same with one more configuration, which comes first."""
-        configurations = np.vstack([theta, self.configurations])
-        return _Trial(self.loop, self.dimensions, configurations, self.enough)
-
     def clearances(self, seats: Seats, keep: int, floor: float = -np.inf) -> np.ndarray:
         """The least clearance (c,) of candidates; -inf for those that fall below a
         ``floor``, and for those that were left out while ``keep`` better ones
@@ -205,36 +200,26 @@ def choose_seats(
     With ``offsets`` (n,), mm, the heights are these, and only sides are chosen.
     """
     gap = dimensions.play
-    turned = _configurations(forms, generator)
+    rows = [
+        form.branch(np.linspace(0.0, form.branch.length, MOMENTS)) for form in forms
+    ]
+    # in any order, so that the first ones are already far from each other
+    turned = generator.permutation(np.concatenate(rows))
     trial = _Trial(loop, dimensions, turned, SPARE * gap)
     size = loop.characteristic_length
     reaches = [reach * size for reach in REACHES] if offsets is None else [0.0]
     centre = np.zeros(loop.n) if offsets is None else offsets
-    best: Seating | None = None
+    seatings = []
     for reach in reaches:
         seating = _seating_within(trial, forms, centre, reach, gap, generator)
-        if best is None or _clearance(seating) > _clearance(best):
-            best = seating
+        seatings.append(seating)
         if seating.is_apart:
             return seating
-    assert best is not None
-    return best
+    return max(seatings, key=_clearance)
 
 
 def _clearance(seating: Seating) -> float:
     return seating.nearest.clearance
-
-
-def _configurations(
-    forms: Sequence[Form], generator: np.random.Generator
-) -> np.ndarray:
-    """Configurations (k, n) along all forms, in any order, so that the first ones are
-    already far from each other."""
-    rows = []
-    for form in forms:
-        rows.append(form.branch(np.linspace(0.0, form.branch.length, MOMENTS)))
-    shuffled: np.ndarray = generator.permutation(np.concatenate(rows))
-    return shuffled
 
 
 def _seating_within(
@@ -246,31 +231,22 @@ def _seating_within(
     generator: np.random.Generator,
 ) -> Seating:
     """The best seats with heights within a range of some ``centre`` (n,)."""
-    seats = _random_seats(centre, reach, generator)
-    best: Seating | None = None
+    shape = (CANDIDATES, len(centre))
+    heights = _rounded(centre + generator.uniform(-reach, reach, shape))
+    seats = Seats(heights, generator.choice([-1.0, 1.0], shape))
+    seatings = []
     for _ in range(CHECKS):
         seats = _improved(trial, seats, centre, reach, generator)
         assembly = Assembly(trial.loop, trial.dimensions, seats[0])
         approaches = [nearest_approach(assembly, form) for form in forms]
         nearest = min(approaches, key=lambda approach: approach.at_least)
-        seating = Seating(assembly, nearest, nearest.at_least >= gap, reach)
-        if best is None or nearest.clearance > _clearance(best):
-            best = seating
+        seatings.append(Seating(assembly, nearest, nearest.at_least >= gap, reach))
         seen = trial.clearances(seats[:1], 1)[0]
-        if seating.is_apart or seen < gap:
-            return best
-        trial = trial.with_configuration(nearest.theta)
-    assert best is not None
-    return best
-
-
-def _random_seats(
-    centre: np.ndarray, reach: float, generator: np.random.Generator
-) -> Seats:
-    """Candidates (c, n) at random."""
-    shape = (CANDIDATES, len(centre))
-    heights = _rounded(centre + generator.uniform(-reach, reach, shape))
-    return Seats(heights, generator.choice([-1.0, 1.0], shape))
+        if seatings[-1].is_apart or seen < gap:
+            break
+        configurations = np.vstack([nearest.theta, trial.configurations])
+        trial = replace(trial, configurations=configurations)
+    return max(seatings, key=_clearance)
 
 
 def _improved(

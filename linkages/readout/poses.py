@@ -153,6 +153,20 @@ def rotation_vectors(rotations: np.ndarray) -> np.ndarray:
     return vectors
 
 
+def quaternions_without_jumps(matrices: np.ndarray) -> np.ndarray:
+    """Unit quaternions (n, k, 4), x, y, z, w, of rotations (n, k, 3, 3) of n bodies at k
+    moments, each near the one before."""
+    from scipy.spatial.transform import Rotation
+
+    count, moments = matrices.shape[:2]
+    quaternions = Rotation.from_matrix(matrices.reshape(-1, 3, 3)).as_quat()
+    rotations: np.ndarray = quaternions.reshape(count, moments, 4)
+    turns = (rotations[:, 1:] * rotations[:, :-1]).sum(axis=-1)
+    signs = np.cumprod(np.where(turns < 0, -1.0, 1.0), axis=1)
+    rotations[:, 1:] *= signs[..., None]
+    return rotations
+
+
 def _shortest_rotations(start: np.ndarray, goals: np.ndarray) -> np.ndarray:
     """The smallest rotations (k, 3, 3) that turn a unit vector (3,) to ``goals``
     (k, 3)."""

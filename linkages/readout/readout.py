@@ -53,10 +53,6 @@ class Readout:
         spherical joint are not among them."""
         return [variable.label for variable in self.mechanism.variables]
 
-    def label_of_unknown(self, index: int) -> str:
-        """What the unknown of this index of the atlas is called."""
-        return self.structure.unknowns[index].label
-
     def values(self, points: np.ndarray) -> np.ndarray:
         """The values (k, v) of all variables at configurations (k, n) of an atlas, rad
         and the user's unit, as they stand, without regard to periods."""

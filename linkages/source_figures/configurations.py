@@ -8,6 +8,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Form
 from bifurc.branch import Branch
+from bifurc.numerics.roots import bracketed_roots
 from bifurc.settings import SearchSettings
 from bifurc.torus import wrap
 from linkages.catalogue import entry
@@ -68,36 +69,16 @@ def places_at(branch: Branch, joint: int, angle: float) -> np.ndarray:
     """Arclengths (k,) at which joint number ``joint`` stands at ``angle`` (rad), in
     their order along the branch."""
     s = np.linspace(0.0, branch.length, SAMPLES + 1)
-    gaps = branch(s)[:, joint - 1] - angle
-    levels = np.floor(gaps / TURN)
-    roots = []
-    for i in np.flatnonzero(np.diff(levels)):
-        level = TURN * max(levels[i], levels[i + 1])
-        roots.append(_root(branch, joint - 1, angle + level, s[i], s[i + 1]))
-    return np.array(roots)
+    turns = np.floor((branch(s)[:, joint - 1] - angle) / TURN)
+    passed = np.flatnonzero(np.diff(turns))
+    levels = angle + TURN * np.maximum(turns[passed], turns[passed + 1])
+    if not len(passed):
+        return np.empty(0)
 
+    def gaps(places: np.ndarray) -> np.ndarray:
+        return np.asarray(branch(places)[:, joint - 1] - levels)
 
-def _root(branch: Branch, index: int, angle: float, low: float, high: float) -> float:
-    """Where an unknown takes the value ``angle`` between two arclengths: Newton's
-    method, halving where it leaves the interval."""
-    start = float(branch(low)[index]) - angle
-    s = (low + high) / 2
-    for _ in range(64):
-        gap = float(branch(s)[index]) - angle
-        if gap == 0.0:
-            return s
-        if (gap > 0) == (start > 0):
-            low = s
-        else:
-            high = s
-        slope = float(branch(s, 1)[index])
-        following = s - gap / slope if slope else np.inf
-        if not low < following < high:
-            following = (low + high) / 2
-        if following == s or high - low < 1e-15 * max(high, 1.0):
-            return following
-        s = following
-    return s
+    return bracketed_roots(gaps, s[passed], s[passed + 1])
 
 
 def configuration(content: Content) -> np.ndarray:

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
 
 from bifurc.figures.style import Properties
+from linkages.families.tori import companion, torus_link
 from linkages.source_figures.assembly import UP, turn
 from linkages.source_figures.drawing import (
     LARGE,
@@ -66,47 +67,11 @@ class Torus:
 
 
 def companion_torus(torus: Torus) -> Torus:
-    """The other circle that makes the same surface, by the closed form of the catalogue
-    (`linkages.families.tori`): the two radii from the Bennett linkage, sine and cosine
-    of the angles from the conditions, and of the four signs those of one surface."""
-    r, s = _companion_radii(torus)
-    chi = float(np.arcsin(torus.s * np.sin(torus.chi) / s))
-    theta = float(np.arccos(torus.r * torus.s * np.cos(torus.theta) / (r * s)))
-    signs = ((chi, theta), (chi, -theta), (np.pi - chi, theta), (np.pi - chi, -theta))
-    candidates = [Torus(r, s, *angles) for angles in signs]
-    phi = np.array([POINT_ANGLE, -0.4])
-    gaps = [shared_turn(torus, other, phi)[1] for other in candidates]
-    return candidates[int(np.argmin(gaps))]
-
-
-def _companion_radii(torus: Torus) -> tuple[float, float]:
-    """The radii r and s of the companion: those of the Bennett linkage on the torus,
-    with the shift of its pins."""
-    cosine = np.cos(torus.chi) * np.cos(torus.theta)
-    sine = np.sqrt(1 - cosine**2)
-    length = torus.r * abs(np.sin(torus.chi) * np.cos(torus.theta)) / sine
-    k = length / sine
-    shift = torus.r * np.sin(torus.theta) / sine**2
-    p = k**2 + shift**2 - torus.s**2
-    square = 2 * torus.s**2 / (p + np.sqrt(p**2 + 4 * shift**2 * torus.s**2))
-    beta = np.arctan(np.sqrt(square))
-    t = shift / np.cos(beta)
-    r = float(np.hypot(k * np.sin(beta), t * cosine * np.sin(beta)))
-    return r, float(np.hypot(length, t * sine))
-
-
-def shared_turn(torus: Torus, other: Torus, phi: np.ndarray) -> tuple[float, float]:
-    """The angle (rad) by which the circle of the ``other`` torus stands further about
-    the axis at the first of the angles phi (k,), and the largest distance of the
-    surfaces there, when each point has an angle of its own."""
-    ours = torus.points(0.0, phi)
-    theirs = other.points(0.0, phi)
-    turns = np.arctan2(ours[:, 1], ours[:, 0]) - np.arctan2(theirs[:, 1], theirs[:, 0])
-    gap = np.hypot(
-        np.hypot(ours[:, 0], ours[:, 1]) - np.hypot(theirs[:, 0], theirs[:, 1]),
-        ours[:, 2] - theirs[:, 2],
-    )
-    return float(turns[0]), float(gap.max())
+    """The other circle that makes the same surface."""
+    link = torus_link(torus.r, torus.chi, torus.theta)
+    _, other, other_pin = companion(link, torus.s)
+    numbers = (other.radius, other_pin.radius, other.chi, other.theta)
+    return Torus(*(float(number) for number in numbers))
 
 
 # --- drawings -------------------------------------------------------------------------

@@ -41,7 +41,12 @@ def cycle_basis(bodies: int, pairs: dict[int, Ends]) -> list[Chain]:
     longest = FIRST_LIMIT * max(weights.values(), default=0)
     while True:
         # as many as a basis has are one, and lighter than any with a longer cycle
-        cycles = _independent(_short_cycles(graph, bodies, pairs, weights, longest))
+        rows: dict[int, int] = {}
+        cycles = [
+            cycle
+            for cycle in _short_cycles(graph, bodies, pairs, weights, longest)
+            if _adds_to(rows, sum(1 << pair for pair in cycle))
+        ]
         if len(cycles) == count:
             return [_oriented(cycle, pairs) for cycle in cycles]
         longest *= 2
@@ -79,14 +84,6 @@ def _short_cycles(
                 candidates.append((weight, cycle))
     candidates.sort(key=lambda candidate: candidate[0])
     return [cycle for _, cycle in candidates]
-
-
-def _independent(cycles: list[list[int]]) -> list[list[int]]:
-    """Those of the cycles that are no sum of those before them."""
-    rows: dict[int, int] = {}
-    return [
-        cycle for cycle in cycles if _adds_to(rows, sum(1 << pair for pair in cycle))
-    ]
 
 
 def chain_between(

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkages.mechanisms.joint import Motion
 from linkages.structure.cycles import Step
 from linkages.structure.placement import Placement
 from linkages.structure.rod_reach import RodReach
@@ -120,23 +119,13 @@ class Elements:
         largest = self.structure.largest_value(number)
         block = None if share is None else int(self.blocks.of_column[share.column])
         rate = 0.0 if share is None else abs(share.rate)
-        return _of_motion(placement, motion, block, rate, largest)
-
-
-def _of_motion(
-    placement: Placement,
-    motion: Motion,
-    block: int | None,
-    rate: float,
-    largest: float,
-) -> Element:
-    direction = placement.direction(motion)
-    if not motion.is_turn:
-        return Element(block, rate, False, direction, ORIGIN, 0.0, largest)
-    advance = motion.advance / placement.unit
-    shift = abs(advance) * largest if advance else 0.0
-    point = placement.point_on_axis(motion)
-    return Element(block, rate, True, direction, point, advance, shift)
+        direction = placement.direction(motion)
+        if not motion.is_turn:
+            return Element(block, rate, False, direction, ORIGIN, 0.0, largest)
+        advance = motion.advance / placement.unit
+        shift = abs(advance) * largest if advance else 0.0
+        point = placement.point_on_axis(motion)
+        return Element(block, rate, True, direction, point, advance, shift)
 
 
 def extent(elements: Sequence[Element], start: np.ndarray, end: np.ndarray) -> float:

@@ -178,7 +178,10 @@ def find_idle_turn(groups: Groups) -> str | None:
         is_moved = ends[pair].moved in group.bodies
         neighbour = groups.of_body[ends[pair].base if is_moved else ends[pair].moved]
         is_door = group.points[0] in neighbour.points
-        if is_door or _holds_locks(mechanism, group):
+        # with a lock elsewhere than at 0 inside, the spherical joint is not where it
+        # was given
+        inside = [v for k in group.inner for v in mechanism.pairs[k].variables]
+        if is_door or any(mechanism.variables[v].locked != 0.0 for v in inside):
             continue
         center = groups.points[group.points[0]].center
         for number in _turns_beside(mechanism, pair, is_moved):
@@ -187,13 +190,6 @@ def find_idle_turn(groups: Groups) -> str | None:
             if meets_in_one_point(float(np.linalg.norm(arm)), groups.unit):
                 return mechanism.variables[number].label
     return None
-
-
-def _holds_locks(mechanism: Mechanism, group: Group) -> bool:
-    """Whether a pair inside is locked elsewhere than at 0: the spherical joint is then
-    not where it was given."""
-    numbers = [v for k in group.inner for v in mechanism.pairs[k].variables]
-    return any(mechanism.variables[number].locked != 0.0 for number in numbers)
 
 
 def _turns_beside(mechanism: Mechanism, pair: int, is_moved: bool) -> list[int]:

@@ -41,7 +41,9 @@ def loose_chains(structure: Structure) -> tuple[LooseChain, ...]:
     import networkx as nx
 
     graph = _links(structure)
-    of_body = _freedoms_of_body(structure)
+    mechanism = structure.mechanism
+    is_flat = mechanism.is_planar or normal_of_plane(mechanism) is not None
+    of_body = 3 if is_flat or is_on_sphere(mechanism) else 6
     inner = [node for node in graph if graph.degree(node) == 2]
     chains = []
     for nodes in nx.connected_components(graph.subgraph(inner)):
@@ -50,16 +52,11 @@ def loose_chains(structure: Structure) -> tuple[LooseChain, ...]:
             continue  # a loop by itself: nothing is beside it
         freedoms = _own_freedoms(structure, graph, nodes) - of_body
         if freedoms > 0:
-            bodies = _names(structure, _bodies(structure, graph, nodes))
+            numbers = _bodies(structure, graph, nodes)
+            bodies = tuple(mechanism.bodies[number] for number in numbers)
             between = tuple(_name(structure, end) for end in sorted({*ends}))
             chains.append(LooseChain(bodies, between, freedoms))
     return tuple(sorted(chains, key=lambda chain: chain.bodies))
-
-
-def _freedoms_of_body(structure: Structure) -> int:
-    mechanism = structure.mechanism
-    is_flat = mechanism.is_planar or normal_of_plane(mechanism) is not None
-    return 3 if is_flat or is_on_sphere(mechanism) else 6
 
 
 def _links(structure: Structure) -> nx.MultiGraph:
@@ -122,10 +119,6 @@ def _bodies(structure: Structure, graph: nx.MultiGraph, nodes: set[int]) -> list
         bodies |= set(of_edge)
     count = len(structure.mechanism.bodies)
     return sorted(body for body in bodies if body < count)
-
-
-def _names(structure: Structure, bodies: list[int]) -> tuple[str, ...]:
-    return tuple(structure.mechanism.bodies[body] for body in bodies)
 
 
 def _name(structure: Structure, node: int) -> str:

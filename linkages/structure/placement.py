@@ -40,8 +40,9 @@ class Placement:
         points = np.array([motion.point for motion in turns])
         directions = np.array([motion.direction for motion in turns])
         origin = points.mean(axis=0)
-        if np.all(is_parallel_axis(_sines(directions))):
-            return Placement(origin, _axes_along(directions[0]), unit, is_planar=True)
+        sines = np.linalg.norm(np.cross(directions[0], directions), axis=1)
+        if np.all(is_parallel_axis(sines)):
+            return Placement(origin, axes_along(directions[0]), unit, is_planar=True)
         center = _nearest_point(points, directions)
         distances = np.linalg.norm(np.cross(center - points, directions), axis=1)
         if np.all(meets_in_one_point(distances, unit)):
@@ -75,13 +76,7 @@ class Placement:
         return point
 
 
-def _sines(directions: np.ndarray) -> np.ndarray:
-    """The sines (k,) of the angles between the first direction and all (k, 3)."""
-    sines: np.ndarray = np.linalg.norm(np.cross(directions[0], directions), axis=1)
-    return sines
-
-
-def _axes_along(direction: np.ndarray) -> np.ndarray:
+def axes_along(direction: np.ndarray) -> np.ndarray:
     """Right-handed unit vectors (3, 3), the third one along ``direction`` (3,)."""
     other = np.eye(3)[np.argmin(np.abs(direction))]
     first = np.cross(other, direction)

@@ -18,8 +18,14 @@ def normal_of_plane(mechanism: Mechanism) -> np.ndarray | None:
         return None
     motions = [one.motion for one in mechanism.variables if one.locked != 0.0]
     normal = _normal(motions)
-    if normal is None or not all(_is_in_plane(one, normal) for one in motions):
+    if normal is None:
         return None
+    for motion in motions:
+        beside = abs(float(motion.direction @ normal))
+        if motion.is_turn:
+            beside = float(np.linalg.norm(np.cross(motion.direction, normal)))
+        if not is_parallel_axis(beside) or (motion.is_turn and motion.advance):
+            return None
     return normal
 
 
@@ -46,10 +52,3 @@ def _normal(motions: list[Motion]) -> np.ndarray | None:
             unit: np.ndarray = across / length
             return unit
     return None
-
-
-def _is_in_plane(motion: Motion, normal: np.ndarray) -> bool:
-    if not motion.is_turn:
-        return is_parallel_axis(abs(float(motion.direction @ normal)))
-    sine = float(np.linalg.norm(np.cross(motion.direction, normal)))
-    return motion.advance == 0.0 and is_parallel_axis(sine)

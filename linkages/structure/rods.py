@@ -15,7 +15,7 @@ import numpy as np
 
 from linkages.decisions import is_parallel_axis
 from linkages.structure.groups import Group, Groups
-from linkages.values import GeometryError
+from linkages.values import require
 
 
 class Leg(NamedTuple):
@@ -109,13 +109,9 @@ def _check_held(groups: Groups, group: Group) -> None:
     if group.outer or len(group.points) != 1:
         return
     joints = groups.points[group.points[0]].joints
-    if len(joints) > 1:
-        body = groups.mechanism.bodies[group.bodies[0]]
-        raise GeometryError(
-            f"joints {' and '.join(joints)} of body {body}",
-            "at one point",
-            "at two points",
-        )
+    body = groups.mechanism.bodies[group.bodies[0]]
+    what = f"joints {' and '.join(joints)} of body {body}"
+    require(len(joints) < 2, what, "at one point", "at two points")
 
 
 def _with_a_body(

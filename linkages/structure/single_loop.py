@@ -11,7 +11,6 @@ from bifurc.isometry import Isometry
 from linkages.axes import loop_from_axes
 from linkages.construction.constructions import lock, locked_angles
 from linkages.loop import MAX_JOINTS, MIN_JOINTS, Loop
-from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.structure.structure import ClosureKind, Structure
 from linkages.values import GeometryError
@@ -100,22 +99,19 @@ def loop_geometry(mechanism: Mechanism) -> Loop:
     Raises `GeometryError`, which says why, for a mechanism that is no single loop of 4
     to 12 revolute joints.
     """
-    joints = tuple(_without_bounds(joint) for joint in mechanism.joints)
-    single = turns_as_loop(Structure(replace(mechanism, joints=joints)))
+    joints = []
+    for joint in mechanism.joints:
+        # without limits, and free where it is locked elsewhere than at 0
+        in_place = tuple(LOCKED_IN_PLACE if x == 0 else None for x in joint.locked)
+        limits = (None,) * len(joint.limits)
+        joints.append(replace(joint, limits=limits, locked=in_place))
+    single = turns_as_loop(Structure(replace(mechanism, joints=tuple(joints))))
     if single is None:
         allowed = f"a single loop of {MIN_JOINTS} to {MAX_JOINTS} revolute joints"
+        allowed += mechanism.way_to_loop
         value = f"a mechanism with {_obstacle(mechanism)}"
         raise GeometryError(mechanism.name, value, allowed)
     return _with_locks(mechanism, single)
-
-
-def _without_bounds(joint: Joint) -> Joint:
-    """A joint without limits, and free where it is locked elsewhere than at 0."""
-    in_place = tuple(
-        value if value == LOCKED_IN_PLACE else None for value in joint.locked
-    )
-    limits = (None,) * len(joint.limits)
-    return replace(joint, limits=limits, locked=in_place)
 
 
 def _with_locks(mechanism: Mechanism, single: SingleLoop) -> Loop:

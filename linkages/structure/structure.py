@@ -21,7 +21,6 @@ import numpy as np
 from networkx.utils import UnionFind
 
 from bifurc.torus import common_period
-from linkages.mechanisms.couplings import Leader
 from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.size import Size
@@ -36,7 +35,7 @@ from linkages.structure.free_points import FreePoint, free_points
 from linkages.structure.groups import SPHERICAL, Groups, JointPoint, find_idle_turn
 from linkages.structure.placement import Placement
 from linkages.structure.rods import Rod, RodNet, find_rods
-from linkages.values import GeometryError
+from linkages.values import require
 
 SLIDE_REACH = 2.0  # limits of a slide, over the lengths of the bodies around its cycle
 # limits, rad, of a turn that its coupling to others brings never back to where it was
@@ -106,12 +105,12 @@ class Unknown:
     matrix."""
 
     label: str
-    variable: int
-    period: float
-    low: float
-    high: float
-    is_angle: bool
-    is_length: bool
+    variable: int = -1
+    period: float = np.inf
+    low: float = -np.inf
+    high: float = np.inf
+    is_angle: bool = False
+    is_length: bool = False
 
     @property
     def unit(self) -> str:
@@ -133,25 +132,20 @@ class Structure:
         self.size = Size(mechanism)
         self.unit = self.size.characteristic_length
         self.idle_turns: tuple[str, ...] = ()
-        self._hold_idle_turns()
-        if not self.unknowns:
-            locked = "every one locked or rigid"
-            if self.idle_bodies:
-                idle = ", ".join(self.idle_bodies)
-                locked += f" but for {idle}, whose turning about its own line is idle,"
-            raise GeometryError("joints", locked, "such that one is left to move")
-
-    # --- bodies and pairs -------------------------------------------------------------
-
-    def _hold_idle_turns(self) -> None:
-        """Lock the turns that move nothing else at 0, one after the other."""
-        while True:
-            self.groups = Groups(self.mechanism, self.unit)
-            label = find_idle_turn(self.groups)
-            if label is None:
-                break
+        self.groups = Groups(mechanism, self.unit)
+        # the turns that move nothing else are locked at 0, one after the other
+        while (label := find_idle_turn(self.groups)) is not None:
             self.idle_turns += (label,)
             self.mechanism = self.mechanism.with_locks({label: 0.0})
+            self.groups = Groups(self.mechanism, self.unit)
+        locked = "every one locked or rigid"
+        if not self.unknowns and self.idle_bodies:
+            idle = ", ".join(self.idle_bodies)
+            locked += f" but for {idle}, whose turning about its own line is idle,"
+        can_move = bool(self.unknowns)
+        require(can_move, "joints", locked, "such that one is left to move")
+
+    # --- bodies and pairs -------------------------------------------------------------
 
     @property
     def points(self) -> tuple[JointPoint, ...]:
@@ -267,18 +261,16 @@ class Structure:
         first += len(self.free_points)
         free: dict[int, FreePair] = {}
         for rod in self.rods:
-            if parts[rod.ends[0]] != parts[rod.ends[1]]:
-                parts.union(*rod.ends)
-                free[first + len(free)] = self._free_pair(rod)
+            base, moved = rod.ends
+            if parts[base] == parts[moved]:
+                continue
+            parts.union(base, moved)
+            # what moves is a body: a point at which only rods meet has no rotation
+            is_point = moved >= len(self.mechanism.bodies)
+            ends = (moved, base) if is_point else (base, moved)
+            center = rod.centers[0 if is_point else 1]
+            free[first + len(free)] = FreePair(*ends, center)
         return free
-
-    def _free_pair(self, rod: Rod) -> FreePair:
-        """The free pair of the two bodies that a rod joins. What moves is a body: a
-        point at which only rods meet has no rotation."""
-        base, moved = rod.ends
-        if moved >= len(self.mechanism.bodies):
-            return FreePair(moved, base, rod.centers[0])
-        return FreePair(base, moved, rod.centers[1])
 
     @cached_property
     def closures(self) -> tuple[Closure, ...]:
@@ -291,8 +283,19 @@ class Structure:
         ]
         for number in self._spherical:
             if number not in self._kept_spherical:
-                closures.append(self._point_closure(number))
-        closures += [self._rod_closure(rod) for rod in self.rods]
+                chain = self._chain(*self.ends[number][:2])
+                center = self.center(number)
+                joints = (*self._joint_of(number), *self._joints(chain))
+                closures.append(
+                    Closure(ClosureKind.POINT, chain, joints, center, center)
+                )
+        for rod in self.rods:
+            chain = self._chain(*rod.ends)
+            inner = tuple(self.mechanism.pairs[number].joint for number in rod.inner)
+            joints = (rod.joints[0], *self._joints(chain), rod.joints[1], *inner)
+            first, second = rod.centers
+            rod_closure = Closure(ClosureKind.ROD, chain, joints, first, second, rod)
+            closures.append(rod_closure)
         return tuple(closures)
 
     def _begun_at_a_joint(self, cycle: Chain) -> Chain:
@@ -328,21 +331,11 @@ class Structure:
             numbers += self._net.remains
         return tuple(self.mechanism.bodies[number] for number in numbers)
 
-    def _point_closure(self, number: int) -> Closure:
-        base, moved, _ = self.ends[number]
-        chain = chain_between(self.body_count, self.tree_pairs, base, moved)
+    def _chain(self, start: int, goal: int) -> Chain:
+        """The shortest chain between two bodies, by number."""
+        chain = chain_between(self.body_count, self.tree_pairs, start, goal)
         assert chain is not None
-        center = self.center(number)
-        joints = (*self._joint_of(number), *self._joints(chain))
-        return Closure(ClosureKind.POINT, chain, joints, center, center)
-
-    def _rod_closure(self, rod: Rod) -> Closure:
-        chain = chain_between(self.body_count, self.tree_pairs, *rod.ends)
-        assert chain is not None
-        first, second = rod.centers
-        inner = tuple(self.mechanism.pairs[number].joint for number in rod.inner)
-        joints = (rod.joints[0], *self._joints(chain), rod.joints[1], *inner)
-        return Closure(ClosureKind.ROD, chain, joints, first, second, rod)
+        return chain
 
     def _joints(self, chain: Chain) -> tuple[str, ...]:
         return tuple(name for step in chain for name in self._joint_of(step.pair))
@@ -371,8 +364,7 @@ class Structure:
     def placement(self, closure: Closure) -> Placement:
         """The frame in which a closure is written; that of the file where the numbers
         of a rotation are unknowns."""
-        special = self.embedded | self.shifts
-        if any(step.pair in special for step in closure.chain):
+        if any(step.pair in self._columns for step in closure.chain):
             return Placement(closure.first, np.eye(3), self.unit)
         motions = [m for step in closure.chain for m in self.motions(step)]
         return Placement.of_chain(motions, self.unit)
@@ -386,31 +378,35 @@ class Structure:
         unknowns = [self._unknown(number) for number in self._leading]
         for pair in self._kept_spherical:
             joint = self._joint_of(pair)[0]
-            unknowns += [_entry_of_rotation(joint, part) for part in ROTATION]
+            unknowns += [Unknown(f"{joint}.{part}") for part in ROTATION]
         for free in self.free_pairs.values():
             body = self.mechanism.bodies[free.moved]
-            unknowns += [_entry_of_rotation(body, part) for part in ROTATION]
-            unknowns += [_length(f"{body}.{part}") for part in TRANSLATION]
+            unknowns += [Unknown(f"{body}.{part}") for part in ROTATION]
+            unknowns += [Unknown(f"{body}.{x}", is_length=True) for x in TRANSLATION]
         for point in self.free_points:
-            unknowns += self._numbers_of_point(point)
+            limits = (point.limits / self.unit).tolist()
+            for part, (low, high) in zip(TRANSLATION, limits, strict=False):
+                label = f"{point.name}.{part}"
+                unknowns.append(Unknown(label, low=low, high=high, is_length=True))
         return _each_called_once(unknowns)
 
-    def _numbers_of_point(self, point: FreePoint) -> list[Unknown]:
-        return [
-            _length(f"{point.name}.{part}", low / self.unit, high / self.unit)
-            for part, (low, high) in zip(TRANSLATION, point.limits, strict=False)
-        ]
-
     @cached_property
+    def _columns(self) -> dict[int, tuple[int, ...]]:
+        """The numbers of the unknowns of every pair that has others than variables."""
+        counts = dict.fromkeys(self._kept_spherical, len(ROTATION))
+        counts |= dict.fromkeys(self.free_pairs, len(ROTATION) + len(TRANSLATION))
+        counts |= {pair: len(one.directions) for pair, one in self.point_pairs.items()}
+        first = len(self._leading)
+        columns = {}
+        for pair, count in counts.items():
+            columns[pair] = tuple(range(first, first + count))
+            first += count
+        return columns
+
+    @property
     def shifts(self) -> dict[int, tuple[int, ...]]:
         """The numbers of the unknowns of every pair of a point, one a direction."""
-        first = len(self._leading) + sum(map(len, self.embedded.values()))
-        shifts = {}
-        for pair, point in self.point_pairs.items():
-            count = len(point.directions)
-            shifts[pair] = tuple(range(first, first + count))
-            first += count
-        return shifts
+        return {pair: self._columns[pair] for pair in self.point_pairs}
 
     @property
     def scales(self) -> np.ndarray:
@@ -500,15 +496,8 @@ class Structure:
     def embedded(self) -> dict[int, tuple[int, ...]]:
         """The numbers of the unknowns of every embedded spherical pair, six, and of
         every free one, nine."""
-        first = len(self._leading)
-        embedded = {}
-        for pair in (*self._kept_spherical, *self.free_pairs):
-            count = len(ROTATION)
-            if pair in self.free_pairs:
-                count += len(TRANSLATION)
-            embedded[pair] = tuple(range(first, first + count))
-            first += count
-        return embedded
+        pairs = (*self._kept_spherical, *self.free_pairs)
+        return {pair: self._columns[pair] for pair in pairs}
 
     def center(self, pair: int) -> np.ndarray:
         """The point (3,) about which an embedded spherical pair or a free one turns."""
@@ -532,19 +521,17 @@ class Structure:
             if other.leader.number != number:
                 continue
             ratios.append(other.leader.ratio)
-            start, end = _range_of_leader(other.leader, self._range(follower))
+            ends = (other.leader.value_of_leader(end) for end in self._range(follower))
+            start, end = sorted(ends)
             low, high = max(low, start), min(high, end)
-            if not low < high:
-                what = f"limits of {variable.label} and what is coupled to it"
-                raise GeometryError(what, [low, high], "such that they overlap")
+            what = f"limits of {variable.label} and what is coupled to it"
+            require(low < high, what, [low, high], "such that they overlap")
         if np.isfinite(high):
-            low, high = low / unit, high / unit
-            return Unknown(
-                variable.label, number, np.inf, low, high, is_angle, not is_angle
-            )
-        period = common_period(ratios)
-        if not np.isfinite(period):
-            low, high = -TURNS_REACH, TURNS_REACH
+            low, high, period = low / unit, high / unit, np.inf
+        else:
+            period = common_period(ratios)
+            if not np.isfinite(period):
+                low, high = -TURNS_REACH, TURNS_REACH
         return Unknown(
             variable.label, number, period, low, high, is_angle, not is_angle
         )
@@ -563,33 +550,21 @@ class Structure:
             reach /= abs(motion.advance)
         return -reach, reach
 
-    def _variables_around(self, closure: Closure) -> set[int]:
-        """The variables, by number, of the joints round a loop."""
-        numbers = {k for step in closure.chain for k in self.variables_of(step.pair)}
-        if closure.rod is not None and closure.rod.leg is not None:
-            numbers.add(closure.rod.leg.variable)
-        return numbers
-
     def _reach(self, number: int) -> float:
         """How far a slide is looked at from the reference configuration: farther than
         the bodies of its shortest cycle reach."""
         lengths = self.size.body_lengths
         sums = []
         for closure in self.closures:
-            if number in self._variables_around(closure):
+            around = {k for step in closure.chain for k in self.variables_of(step.pair)}
+            if closure.rod is not None and closure.rod.leg is not None:
+                around.add(closure.rod.leg.variable)
+            if number in around:
                 joints = [self.mechanism.joint(name) for name in closure.joints]
                 bodies = {body for joint in joints for body in joint.bodies}
                 sums.append(sum(lengths[body] for body in sorted(bodies)))
         total = min(sums, default=sum(lengths.values()))
         return SLIDE_REACH * (total or sum(lengths.values()))
-
-
-def _range_of_leader(
-    leader: Leader, limits: tuple[float, float]
-) -> tuple[float, float]:
-    """Between which values of its leader a variable is within its limits."""
-    low, high = sorted(leader.value_of_leader(value) for value in limits)
-    return low, high
 
 
 def _each_called_once(unknowns: Sequence[Unknown]) -> tuple[Unknown, ...]:
@@ -606,14 +581,3 @@ def _each_called_once(unknowns: Sequence[Unknown]) -> tuple[Unknown, ...]:
         labels.add(label)
         once.append(replace(unknown, label=label))
     return tuple(once)
-
-
-def _entry_of_rotation(name: str, part: str) -> Unknown:
-    """An unknown that is an entry of a rotation matrix."""
-    label = f"{name}.{part}"
-    return Unknown(label, -1, np.inf, -np.inf, np.inf, is_angle=False, is_length=False)
-
-
-def _length(label: str, low: float = -np.inf, high: float = np.inf) -> Unknown:
-    """An unknown that is a coordinate of a body or a point."""
-    return Unknown(label, -1, np.inf, low, high, is_angle=False, is_length=True)

@@ -72,14 +72,7 @@ def translates_of(atlas: Atlas) -> Translates | None:
     values = atlas.subject.get(KEY)
     if values is None:
         return None
-    return Translates(
-        tuple(values["joints"]),
-        int(values["forms"]),
-        int(values["assemblies"]),
-        int(values["listed_forms"]),
-        int(values["distinct_forms"]),
-        bool(values["are_all"]),
-    )
+    return Translates(**{**values, "joints": tuple(values["joints"])})
 
 
 def with_translates(atlas: Atlas, structure: Structure, lattice: TurnLattice) -> Atlas:

@@ -110,7 +110,7 @@ class WholeTurns:
         points, gaps = self.problem.project(np.concatenate(turned))
         # what is outside the limits may have a translate inside
         solutions = self.lattice.homes(points[is_start_solved(gaps)])
-        inside: np.ndarray = solutions[self.problem.are_inside(solutions)]
+        inside: np.ndarray = solutions[self.problem.domain.are_inside(solutions)]
         return inside
 
 
@@ -143,6 +143,6 @@ class TurnedEnds:
         that are at a limit everywhere are left out."""
         ends = branch(np.array([0.0, branch.length]))
         inmost = np.array([self.lattice.inmost(end) for end in ends])
-        is_inside = self.problem.excess(inmost) < -self.problem.slack
+        is_inside = self.problem.domain.excess(inmost) < -self.problem.domain.slack
         turned: np.ndarray = inmost[is_inside]
         return turned

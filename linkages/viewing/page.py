@@ -10,7 +10,7 @@ from importlib import resources
 from pathlib import Path
 
 from bifurc.files.atomic import replace_file
-from linkages.viewing.document import ViewDocument
+from linkages.viewing.document import Document
 
 log = logging.getLogger(__name__)
 
@@ -36,7 +36,7 @@ script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:">
 """
 
 
-def make_page(document: ViewDocument) -> str:
+def make_page(document: Document) -> str:
     """The page that shows a document, with the viewer's script inside.
 
     It opens from disk, and fetches nothing.
@@ -54,7 +54,7 @@ def viewer_script() -> str:
     return script.read_text(encoding="utf-8")
 
 
-def write_page(document: ViewDocument, path: str | os.PathLike[str]) -> Path:
+def write_page(document: Document, path: str | os.PathLike[str]) -> Path:
     """The path of the page just written, whole or not at all.
 
     Raises `OSError` that names ``path``.

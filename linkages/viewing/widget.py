@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import anywidget
 import traitlets
 
-from linkages.viewing.document import ViewDocument
+from linkages.viewing.document import Document
 from linkages.viewing.page import viewer_script
 
 START = 0.3  # of a form: seldom at a singular point, as its ends and its middle are
@@ -51,7 +51,7 @@ class LinkageWidget(anywidget.AnyWidget):
     form = traitlets.Unicode().tag(sync=True)
     position = traitlets.Float().tag(sync=True)
 
-    def __init__(self, document: ViewDocument, **options: Any):
+    def __init__(self, document: Document, **options: Any):
         self._tracks = _tracks_of(document)
         form, position = _start_of(document, self._tracks)
         super().__init__(
@@ -93,7 +93,7 @@ def _begins_with(full_name: str, name: str) -> bool:
     return full_name.lower().startswith(name.lower()) and not next_letter.isalnum()
 
 
-def _start_of(document: ViewDocument, names: Iterable[str]) -> tuple[str, float]:
+def _start_of(document: Document, names: Iterable[str]) -> tuple[str, float]:
     """What is shown at first, and where on it."""
     if not document["forms"]:
         return next(iter(names)), 0.0
@@ -101,7 +101,7 @@ def _start_of(document: ViewDocument, names: Iterable[str]) -> tuple[str, float]
     return first["name"], START * first["length"]
 
 
-def _tracks_of(document: ViewDocument) -> dict[str, Track]:
+def _tracks_of(document: Document) -> dict[str, Track]:
     """What the viewer can show, by the names that viewer/tracks.js gives it."""
     tracks = {
         form["name"]: Track(form["length"], form["closed"])

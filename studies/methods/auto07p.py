@@ -79,7 +79,7 @@ def auto_07p(case: Case, tolerance: float) -> Curve:
     program, _ = _program(case.fortran or NO_EQUATIONS)
     problem, n = case.problem, case.problem.n
     parameter = int(np.argmax(np.abs(case.tangent)))
-    h = LONGEST * turn_per_step(tolerance) * problem.scale
+    h = LONGEST * turn_per_step(tolerance) * problem.domain.scale
     enough = max(0.1 * tolerance, 1e-13)
     constants = CONSTANTS.format(
         ndim=n - 1,

@@ -15,6 +15,7 @@ from scipy.sparse import csc_array, diags_array, hstack, issparse
 from bifurc import Branch, FunctionProblem, Problem, TraceSettings, trace_branch
 from bifurc.curves.monitor import dead_points
 from bifurc.numerics.null_spaces import null_vector
+from bifurc.problem import jacobian_at
 from linkages import Loop, LoopClosure
 from linkages.catalogue import entry
 
@@ -51,7 +52,7 @@ class Case:
     def sparse(self) -> bool:
         """Whether the Jacobian is sparse, so that dense matrices of its size are out of
         the question."""
-        return bool(issparse(self.problem.jacobian(self.start)))
+        return bool(issparse(jacobian_at(self.problem, self.start)))
 
     @cached_property
     def reference(self) -> Branch:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from bifurc import March, MarchSettings, NumericalProblem, Problem
+from bifurc import Curvature, March, MarchSettings, NumericalProblem, Problem
 from studies.methods.curve import MethodFailure
 
 # evaluations of F and F' that a compiled Taylor piece costs: corrections, checks, and
@@ -23,9 +23,8 @@ class Counted(NumericalProblem):
         self._problem = problem
         self.evaluations = 0
         self.budget = budget
-        self.take_unknowns_of(problem)
-        self.curvature_residual = problem.curvature_residual
-        self.hessian_error = problem.hessian_error
+        self.domain, self.magnitude = problem.domain, problem.magnitude
+        self.accuracy = problem.accuracy
         # by collocation F and F' are evaluated through the methods below
         is_own = type(problem).march is not NumericalProblem.march
         self._compiled = is_own or getattr(problem, "scaled_tape", None) is not None
@@ -45,17 +44,14 @@ class Counted(NumericalProblem):
         if self.evaluations > self.budget:
             raise MethodFailure(f"it is not done after {self.budget} evaluations")
 
-    def hessian(self, point: np.ndarray) -> np.ndarray:
-        """F'' (m, n, n) at a point."""
-        return self._problem.hessian(point)
+    def hessians(self, points: np.ndarray) -> np.ndarray:
+        """F'' (k, m, n, n) at points (k, n)."""
+        return self._problem.hessians(points)
 
-    def curvature_bound(self) -> float | None:
+    @property
+    def curvature(self) -> Curvature | None:
         """As of the problem."""
-        return self._problem.curvature_bound()
-
-    def complex_curvature(self, reach: np.ndarray) -> np.ndarray | None:
-        """As of the problem."""
-        return self._problem.complex_curvature(reach)
+        return self._problem.curvature
 
     def march(
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings

@@ -10,6 +10,7 @@ from scipy.sparse import csc_array, issparse
 
 from bifurc import Problem
 from bifurc.numerics.bordered import SparseBordered
+from bifurc.problem import jacobian_at
 
 Jacobian: TypeAlias = np.ndarray | csc_array
 
@@ -17,7 +18,7 @@ Jacobian: TypeAlias = np.ndarray | csc_array
 def evaluate(problem: Problem, u: np.ndarray) -> tuple[np.ndarray, Jacobian]:
     """F (m,) and F' (m, n), dense or sparse, at one point."""
     residual = problem.residuals(u[None])[0]
-    return residual, problem.jacobian(u)
+    return residual, jacobian_at(problem, u)
 
 
 def solve_bordered(

@@ -44,7 +44,7 @@ def pseudo_arclength_tangent(
     unless given.
     """
     turn = turn_per_step(tolerance)
-    limit = (LONGEST * turn if longest is None else longest) * problem.scale
+    limit = (LONGEST * turn if longest is None else longest) * problem.domain.scale
     u, t, h = start, tangent, FIRST * turn
     points = [u]
     tangents = [t]
@@ -78,7 +78,7 @@ def pseudo_arclength_secant(
     """Pseudo-arclength continuation with the secant through the last two points as
     predictor, and a cubic spline."""
     turn = turn_per_step(tolerance)
-    limit = LONGEST * turn * problem.scale
+    limit = LONGEST * turn * problem.domain.scale
     u, t, h = start, tangent, FIRST * turn
     points = [u]
     travelled = 0.0
@@ -122,7 +122,7 @@ def _correct(
     """Newton's method on F = 0, t . (u - guess) = 0; None where it does not
     converge."""
     u = guess
-    enough = max(0.1 * tolerance, 1e-13) * problem.scale
+    enough = max(0.1 * tolerance, 1e-13) * problem.domain.scale
     last = np.inf
     for _ in range(NEWTON):
         residual, jacobian = evaluate(problem, u)

@@ -25,7 +25,7 @@ def trace(
     if order < lowest_order(tolerance):
         raise MethodFailure("the steps of this order are too short")
     settings = TraceSettings(
-        order=order, tolerance=tolerance, max_length=10 * length / problem.scale
+        order=order, tolerance=tolerance, max_length=10 * length / problem.domain.scale
     )
     branch: Branch = trace_branch(problem, start, tangent, settings)
     if branch.length < 0.999 * length:

@@ -99,7 +99,7 @@ def _places(
         assert atlas.diagram is not None
         return [point.u for point in atlas.diagram.hopf_points]
     if printed.kind is PointKind.START:
-        names = problem.problem.names
+        names = problem.problem.domain.names
         start = np.array([float(printed.values[name]) for name in names])
         nearest = [form.branch.nearest(start)[1] for form in atlas.forms]
         pairs = zip(atlas.forms, nearest, strict=True)

@@ -117,7 +117,7 @@ class TextbookProblem:
     def parameter(self) -> str:
         """The unknown along which it is looked at."""
         named = None if self.system is None else self.system.parameter
-        return named or self.problem.names[-1]
+        return named or self.problem.domain.names[-1]
 
     def explore(self, seed: int, budget: float) -> Atlas:
         """Its atlas, found from a random ``seed`` within a ``budget`` of seconds."""
@@ -137,7 +137,7 @@ class TextbookProblem:
         if not self.is_from_start:
             return None
         (start,) = [point for point in self.points if point.kind is PointKind.START]
-        values = [float(start.values[name]) for name in self.problem.names]
+        values = [float(start.values[name]) for name in self.problem.domain.names]
         return Seeds(
             points=np.array([values]),
             random=np.zeros(1, dtype=bool),
@@ -147,7 +147,7 @@ class TextbookProblem:
 
     def named(self, point: np.ndarray) -> dict[str, float]:
         """The unknowns (n,) of a point by their names."""
-        return dict(zip(self.problem.names, point.tolist(), strict=True))
+        return dict(zip(self.problem.domain.names, point.tolist(), strict=True))
 
 
 def load_problems() -> list[TextbookProblem]:

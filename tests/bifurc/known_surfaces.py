@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from bifurc.domain import Domain
 from bifurc.function_problem import NumericalProblem
 from bifurc.problem import Problem
 
@@ -12,10 +13,8 @@ class Level(NumericalProblem):
     """The surface, in a cube, where a function of three unknowns is zero."""
 
     def __init__(self, function: Callable, gradient: Callable, size: float):
-        self.names = ("x", "y", "z")
-        self.units = ("",) * 3
-        self.periods = np.full(3, np.inf)
-        self.bounds = np.full((3, 2), [-size, size])
+        bounds = np.full((3, 2), [-size, size])
+        self.domain = Domain(("x", "y", "z"), ("",) * 3, np.full(3, np.inf), bounds)
         self.function = function
         self.gradient = gradient
 
@@ -31,10 +30,8 @@ class Union(NumericalProblem):
     whose common zeros it is."""
 
     def __init__(self, *sets: Callable, size: float = 2.0):
-        self.names = ("x", "y", "z")
-        self.units = ("",) * 3
-        self.periods = np.full(3, np.inf)
-        self.bounds = np.full((3, 2), [-size, size])
+        bounds = np.full((3, 2), [-size, size])
+        self.domain = Domain(("x", "y", "z"), ("",) * 3, np.full(3, np.inf), bounds)
         self.sets = sets
 
     def residuals(self, points: np.ndarray) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from bifurc.domain import Domain
 from bifurc.function_problem import NumericalProblem
 
 
@@ -14,10 +15,8 @@ class CirclesBesideSphere(NumericalProblem):
     """
 
     def __init__(self, e: float):
-        self.names = ("x", "y", "z")
-        self.units = ("",) * 3
-        self.periods = np.full(3, np.inf)
-        self.bounds = np.full((3, 2), [-2.0, 2.0])
+        bounds = np.full((3, 2), [-2.0, 2.0])
+        self.domain = Domain(("x", "y", "z"), ("",) * 3, np.full(3, np.inf), bounds)
         self.e = e
 
     def residuals(self, points: np.ndarray) -> np.ndarray:

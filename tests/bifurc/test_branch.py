@@ -113,7 +113,9 @@ def test_an_angle_that_turns_twice_before_the_curve_closes_has_winding_two():
     # half way, where the last angle has turned once, the others are not where they
     # began
     assert (
-        np.linalg.norm(problem.difference(branch(0.5 * branch.length), branch(0.0)))
+        np.linalg.norm(
+            problem.domain.difference(branch(0.5 * branch.length), branch(0.0))
+        )
         > 0.1
     )
 

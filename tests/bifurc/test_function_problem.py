@@ -9,6 +9,7 @@ import pytest
 
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
+from bifurc.problem import hessian_at
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 
@@ -31,7 +32,7 @@ def silently_wrong(u):
 
 def test_derivatives_are_exact_by_complex_step_where_complex_numbers_pass():
     problem = FunctionProblem(circle, BOX, is_recorded=False)
-    assert problem.derivatives == "complex step"
+    assert problem.accuracy.derivatives == "complex step"
     assert problem.jacobians(np.array([[0.3, 0.7]]))[0] == pytest.approx(
         np.array([[0.6, 1.4]]), abs=1e-15
     )
@@ -42,7 +43,7 @@ def test_derivatives_are_central_differences_where_complex_numbers_do_not_pass(
     function,
 ):
     problem = FunctionProblem(function, BOX)
-    assert problem.derivatives == "central differences"
+    assert problem.accuracy.derivatives == "central differences"
     u = np.array([0.6, 0.8])
     expected = u if function is only_real else 2 * u
     # central differences with a step of 1e-5: 1e-10 from the third derivative, 1e-11
@@ -52,7 +53,7 @@ def test_derivatives_are_central_differences_where_complex_numbers_do_not_pass(
 
 def test_a_given_jacobian_is_used():
     problem = FunctionProblem(only_real, BOX, jacobian=lambda u: u[None] / np.hypot(*u))
-    assert problem.derivatives == "given"
+    assert problem.accuracy.derivatives == "given"
     assert problem.jacobians(np.array([[0.6, 0.8]]))[0, 0] == pytest.approx(
         [0.6, 0.8], abs=1e-15
     )
@@ -74,7 +75,7 @@ def test_the_hessian_is_symmetric_and_right(is_recorded, error):
         ]
     )
     # exact, or central differences of an exact Jacobian with steps of 1e-5: 1e-10
-    assert problem.hessian(u) == pytest.approx(expected, abs=error)
+    assert hessian_at(problem, u) == pytest.approx(expected, abs=error)
 
 
 def test_residuals_relative_to_the_magnitude_do_not_depend_on_the_scale_of_the_equations():

@@ -29,7 +29,7 @@ def test_noise_is_of_a_few_units_in_the_last_place_and_other_at_every_call():
     problem = curve("circle")
     noisy = with_rounding_noise(problem, 0)
     points = np.random.default_rng(1).uniform(-1, 1, (200, 2))
-    for method, size in (("residuals", problem.scale), ("jacobians", 1.0)):
+    for method, size in (("residuals", problem.domain.scale), ("jacobians", 1.0)):
         exact = getattr(problem, method)(points)
         first = getattr(noisy, method)(points)
         error = np.abs(first - exact).max() / (size * problem.magnitude)

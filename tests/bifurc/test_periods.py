@@ -46,7 +46,7 @@ def test_a_period_up_to_rounding_is_taken(name: str, period: float) -> None:
     problem = FunctionProblem(
         PERIODIC[name], BOUNDS, names=NAMES, periods=[period, math.inf]
     )
-    assert problem.periods[0] == period
+    assert problem.domain.periods[0] == period
 
 
 def test_an_expression_is_asked_too() -> None:

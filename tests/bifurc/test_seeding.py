@@ -97,27 +97,17 @@ class Counting(FunctionProblem):
 def test_no_start_is_projected_after_the_deadline_but_for_a_few():
     problem = Counting(lambda u: np.array([u @ u - 1.0]), [(-2.0, 2.0)] * 2)
     rng = np.random.default_rng(0)
-    late = problem.seeds_until(rng, 500, Deadline(1e-9))
+    late = problem.seeds(rng, 500, Deadline(1e-9))
     assert 0 < problem.starts < 50
     assert len(late.points) + len(late.missed) == problem.starts
 
 
 def test_seeds_before_a_deadline_are_those_without_one():
     problem = Counting(lambda u: np.array([u @ u - 1.0]), [(-2.0, 2.0)] * 2)
-    limited = problem.seeds_until(np.random.default_rng(0), 100, Deadline(1e3))
+    limited = problem.seeds(np.random.default_rng(0), 100, Deadline(1e3))
     free = problem.seeds(np.random.default_rng(0), 100)
     assert np.array_equal(limited.points, free.points)
     assert np.array_equal(limited.missed, free.missed)
-
-
-def test_seeds_that_a_class_has_in_a_way_of_its_own_are_asked_for_as_they_are():
-    class Own(Counting):
-        def seeds(self, rng, count):
-            return "its own"
-
-    problem = Own(lambda u: np.array([u @ u - 1.0]), [(-2.0, 2.0)] * 2)
-    rng = np.random.default_rng(0)
-    assert problem.seeds_until(rng, 10, Deadline()) == "its own"
 
 
 def test_a_search_whose_budget_is_over_projects_few_starts():

@@ -53,7 +53,7 @@ def test_every_file_and_every_discretised_problem_is_used():
 @pytest.mark.parametrize("name", [p.name for p in PROBLEMS.values() if p.file])
 def test_the_points_of_a_problem_are_of_its_unknowns(name):
     problem = PROBLEMS[name]
-    names = set(problem.problem.names)
+    names = set(problem.problem.domain.names)
     assert problem.source and problem.points
     for point in problem.points:
         assert set(point.at) <= names and set(point.misprints) <= names
@@ -87,7 +87,7 @@ def as_floats(values):
 
 
 def as_array(problem, values):
-    return np.array([[values[name] for name in problem.problem.names]])
+    return np.array([[values[name] for name in problem.problem.domain.names]])
 
 
 @pytest.mark.parametrize(

@@ -61,7 +61,7 @@ def assemble_atlas(
     Every point in it is wrapped: see `Atlas`. Past the ``deadline`` of the search a
     closure gap is measured at few points.
     """
-    periods = wrapped_periods(problem.periods, problem.bounds)
+    periods = wrapped_periods(problem.domain.periods, problem.domain.bounds)
     order = order_branches(problem, findings.branches)
     in_search = list(findings.traced.values())
     traced = [in_search[k] for k in order]
@@ -97,14 +97,14 @@ def assemble_atlas(
     elif not is_mobile:
         gap = closure_gap(problem, findings.book.seeds, findings.gaps, deadline)
     return Atlas(
-        names=problem.names,
-        units=problem.units,
-        periods=problem.periods,
+        names=problem.domain.names,
+        units=problem.domain.units,
+        periods=problem.domain.periods,
         forms=forms,
         points=points,
         near_misses=near_misses,
         dead_points=_dead_points(problem, traced, periods),
-        rigid=rigid[order_points(rigid, periods, problem.scale)],
+        rigid=rigid[order_points(rigid, periods, problem.domain.scale)],
         surfaces=surfaces,
         near_motions=near_motions,
         completeness=judge_completeness(findings, provenance, doubts),
@@ -264,9 +264,9 @@ def near_misses_of(
         arclengths = arclengths[is_near_miss]
         rank = branch.profile.rank
         places = wrap(branch.branch(arclengths), periods)
-        for k in order_points(places, periods, problem.scale):
+        for k in order_points(places, periods, problem.domain.scale):
             s = float(arclengths[k])
-            to_points = [problem.difference(places[k], p.u) for p in points]
+            to_points = [problem.domain.difference(places[k], p.u) for p in points]
             is_at_point = any(
                 float(np.linalg.norm(gap)) <= point.error
                 for gap, point in zip(to_points, points, strict=True)
@@ -291,11 +291,11 @@ def _dead_points(
     events = []
     for form, branch in enumerate(traced):
         by_rounding = change_by_blur(branch.blur)
-        roots = dead_points(branch.branch, by_rounding, problem.slack)
+        roots = dead_points(branch.branch, by_rounding, problem.domain.slack)
         unknowns = np.repeat(np.arange(problem.n), [len(each) for each in roots])
         arclengths = np.concatenate(roots)
         places = wrap(branch.branch(arclengths), periods)
-        for k in order_points(places, periods, problem.scale, groups=unknowns):
+        for k in order_points(places, periods, problem.domain.scale, groups=unknowns):
             s, index = float(arclengths[k]), int(unknowns[k])
             events.append(Event(form, s, places[k], index=index))
     return tuple(events)

@@ -32,7 +32,7 @@ from bifurc.numerics.blur import (
     rounding_unit,
 )
 from bifurc.numerics.null_spaces import null_spaces
-from bifurc.problem import Problem
+from bifurc.problem import Problem, relative_gaps
 from bifurc.search.answer.completeness import SearchDoubt
 from bifurc.search.findings import Findings, RigidAssembly, TracedBranch
 from bifurc.singular.dimension import misclosures_beside, project_slowly
@@ -91,7 +91,7 @@ def doubts_of_near_misses(problem: Problem, misses: Sequence[Event]) -> Iterator
     At the distance of a singular point the singular value vanishes; F changes on the
     way by half of their product.
     """
-    rounding = float(problem.data_rounding)
+    rounding = float(problem.accuracy.data_rounding)
     if rounding == 0.0:
         return
     hanging = []
@@ -110,8 +110,8 @@ def doubts_of_findings(
 ) -> Iterator[Doubt]:
     """What is open about the ``findings`` of a search besides forms, surfaces and the
     singular ``points`` listed."""
-    if problem.noise_share:
-        yield SearchDoubt.NOISE.doubt(amount=problem.noise_share)
+    if problem.accuracy.noise:
+        yield SearchDoubt.NOISE.doubt(amount=problem.accuracy.noise)
     others = _others(problem, findings, points)
     if others:
         yield SearchDoubt.HIDDEN_POINTS.doubt(count=others)
@@ -128,9 +128,9 @@ def doubts_of_findings(
     if traces or findings.near_surfaces:
         yield SearchDoubt.NEAR_ASSEMBLIES.doubt()
     hidden = np.array([assembly.hidden for assembly in findings.rigid.values()])
-    hidden = hidden[~is_known_assembly(hidden, problem.scale)]
+    hidden = hidden[~is_known_assembly(hidden, problem.domain.scale)]
     if len(hidden):
-        reach = hidden.max() / problem.scale
+        reach = hidden.max() / problem.domain.scale
         yield SearchDoubt.HIDDEN_ASSEMBLIES.doubt(amount=reach, count=len(hidden))
     on_rim = int(np.count_nonzero(are_on_rim(problem, findings.rigid.values())))
     if on_rim:
@@ -145,7 +145,7 @@ def doubts_of_findings(
 def are_on_rim(problem: Problem, assemblies: Collection[RigidAssembly]) -> np.ndarray:
     """Which of the assemblies (k,) lie on a rim of where the equations are defined: F'
     is not finite beside them, and does not tell whether they are isolated."""
-    reach = RIM * problem.scale
+    reach = RIM * problem.domain.scale
     rough = [not _is_smooth_within(problem, one.place, reach) for one in assemblies]
     return np.array(rough, dtype=bool)
 
@@ -159,8 +159,8 @@ def _others(
     for germ in findings.germs:
         for other in germ.others:
             places = np.array(known).reshape(-1, problem.n)
-            distances = np.linalg.norm(problem.difference(places, other), axis=1)
-            if not np.any(is_same_point(distances, problem.scale)):
+            distances = np.linalg.norm(problem.domain.difference(places, other), axis=1)
+            if not np.any(is_same_point(distances, problem.domain.scale)):
                 known.append(other)
     return len(known) - len(points)
 
@@ -183,7 +183,7 @@ def _misclosure(problem: Problem, surface: Surface) -> float:
     """
     seen = np.empty(0)
     if surface.charts is not None:
-        seen = problem.gaps(surface.charts.centers)
+        seen = relative_gaps(problem, surface.charts.centers)
     samples = surface.samples[:MOST_SAMPLES]
     sigma, right = null_spaces(problem, samples)
     is_regular = np.count_nonzero(may_be_null(sigma), axis=1) == surface.dimension
@@ -233,7 +233,7 @@ def _doubts_of_form(
             if s not in ends and not np.any(_are_at_bounds(problem, branch(s)))
         ]
         if loose:
-            reach = is_stub.threshold * problem.scale
+            reach = is_stub.threshold * problem.domain.scale
             rough = sum(not _is_smooth_within(problem, end, reach) for end in loose)
             if rough:
                 kind = SearchDoubt.STALLED_AT_RIM
@@ -264,8 +264,8 @@ def _name(index: int) -> str:
 
 def _are_at_bounds(problem: Problem, points: np.ndarray) -> np.ndarray:
     """Which unknowns of points (..., n) lie at the ends of their bounds (..., n, 2)."""
-    gaps = np.abs(points[..., None] - problem.bounds)
-    at_bounds: np.ndarray = is_same_point(gaps, problem.scale)
+    gaps = np.abs(points[..., None] - problem.domain.bounds)
+    at_bounds: np.ndarray = is_same_point(gaps, problem.domain.scale)
     return at_bounds
 
 
@@ -275,8 +275,9 @@ def _ended_at_assumed_bounds(problem: Problem, branch: Branch) -> list[str]:
     if branch.outcome is not Outcome.LEFT_REGION:
         return []
     ends = branch(np.array([0.0, branch.length]))
-    is_there = _are_at_bounds(problem, ends).any(axis=0) & problem.has_assumed_bounds
-    return [problem.names[k] for k in np.flatnonzero(is_there.any(axis=1))]
+    is_at_bounds = np.asarray(_are_at_bounds(problem, ends).any(axis=0))
+    is_there: np.ndarray = is_at_bounds & problem.domain.has_assumed_bounds
+    return [problem.domain.names[k] for k in np.flatnonzero(is_there.any(axis=1))]
 
 
 def _doubts_of_halves(
@@ -302,9 +303,9 @@ def _doubts_of_halves(
 def _doubts_of_point(problem: Problem, point: MeetingPoint) -> Iterator[Doubt]:
     """Whether a singular point is one, and of which kind."""
     place = point.point.u[None]
-    gap = float(problem.gaps(place)[0])
+    gap = float(relative_gaps(problem, place)[0])
     # beside the exact point F grows with the square of the distance
-    explained = (point.point.error / problem.scale) ** 2
+    explained = (point.point.error / problem.domain.scale) ** 2
     kind = point.kind.value
     missed = 0.0
     if not _is_rounding(problem, gap - explained, place):

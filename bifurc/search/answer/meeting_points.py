@@ -45,7 +45,7 @@ def meeting_points(
         of_kind = [point for point in meeting if point.kind is kind]
         places = np.array([point.point.u for point in of_kind])
         error = max(point.point.error for point in of_kind)
-        order = order_points(places, periods, problem.scale, error)
+        order = order_points(places, periods, problem.domain.scale, error)
         ordered += [of_kind[k] for k in order]
     named = []
     for number, point in enumerate(ordered, start=1):
@@ -140,14 +140,14 @@ def _stalled_at(
 ) -> bool:
     """Whether a branch stalled at a cusp with its end at the arclength ``end``, from
     which the sign ``inwards`` leads into the branch."""
-    last = problem.difference(branch(end), point.u)
+    last = problem.domain.difference(branch(end), point.u)
     gap = float(np.linalg.norm(last))
     if gap > max(FARTHEST_RADII * point.radius, FARTHEST_ERRORS * point.error):
         return False
     clear = max(CLEAR * gap, point.radius)
     longest = min(LONGEST_APPROACH * clear, branch.length)
     approach = end + inwards * np.linspace(0.0, longest, LOOKS)
-    offsets = problem.difference(branch(approach), point.u)
+    offsets = problem.domain.difference(branch(approach), point.u)
     is_clear = np.linalg.norm(offsets, axis=1) >= clear
     if not np.any(is_clear):
         return False
@@ -178,7 +178,7 @@ def _passes_at(
 ) -> list[float]:
     """Arclengths at which a branch passes a point, but for the ``ends`` that lie
     there."""
-    within = is_same_point.threshold * problem.scale + 2 * point.error
+    within = is_same_point.threshold * problem.domain.scale + 2 * point.error
     near = [float(s) for s in branch.passes(point.u, within)]
     passes = _distinct(
         [s for s in near if _may_pass(problem, branch(s), point)], 2 * within
@@ -186,9 +186,9 @@ def _passes_at(
     if branch.outcome is not Outcome.STALLED:
         return passes
     for end in (0.0, branch.length):
-        length = max(NEAR_END * problem.scale, 2 * within)
+        length = max(NEAR_END * problem.domain.scale, 2 * within)
         if end in ends:
-            offset = problem.difference(branch(end), point.u)
+            offset = problem.domain.difference(branch(end), point.u)
             gap = float(np.linalg.norm(offset))
             length = max(length, 2 * (gap + within))
         passes = [s for s in passes if abs(s - end) > length]
@@ -202,8 +202,8 @@ def _may_pass(problem: Problem, place: np.ndarray, point: SingularPoint) -> bool
     A point is known to a large error only where F' is singular to within rounding all
     about it; a branch along which F' is regular is another one.
     """
-    distance = float(np.linalg.norm(problem.difference(place, point.u)))
-    if is_same_point(distance, problem.scale):
+    distance = float(np.linalg.norm(problem.domain.difference(place, point.u)))
+    if is_same_point(distance, problem.domain.scale):
         return True
     values = singular_values(problem, place[None])[0]
     return bool(may_pass_beside(float(values[problem.n - 2])))

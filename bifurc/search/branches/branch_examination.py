@@ -158,9 +158,9 @@ class BranchExaminer:
                     sightings.missing.append(place)
                 continue
             sightings.located.append(place)
-            gap = self.problem.difference(branch(place), sighting.point.u)
+            gap = self.problem.domain.difference(branch(place), sighting.point.u)
             beside = float(np.linalg.norm(gap)) - sighting.point.error
-            if is_passed(beside, self.problem.scale):  # and not only near it
+            if is_passed(beside, self.problem.domain.scale):  # and not only near it
                 sightings.passes.append(place)
                 sighting = self.points.seen_on_curve(sighting)
             if sighting.is_new:
@@ -177,7 +177,7 @@ class BranchExaminer:
             jacobian = self.problem.jacobians(u[None])[0]
             _, _, right = np.linalg.svd(jacobian)
             null_space = right[self.problem.n - 2 :].T
-            error = DEFLATED_ERROR * self.problem.scale
+            error = DEFLATED_ERROR * self.problem.domain.scale
             sighting = self.points.sight(LocatedPoint(u, null_space, error))
             sightings.passes.append(place)
             if sighting.is_new:
@@ -190,7 +190,9 @@ class BranchExaminer:
         if branch.outcome is Outcome.STALLED:
             # It stalls before a cusp or beyond it: how far hangs on rounding, and so
             # does it whether the point is reached from one start.
-            offsets = np.minimum(self.problem.scale * BESIDE_END, 0.5 * branch.length)
+            offsets = np.minimum(
+                self.problem.domain.scale * BESIDE_END, 0.5 * branch.length
+            )
             stretches = (offsets, branch.length - offsets)
             return [
                 _Candidate(looks, 10 * may_be_crossed.threshold, CUSP_REACH)

@@ -18,7 +18,7 @@ import numpy as np
 from bifurc.branch import Branch, Outcome
 from bifurc.decisions import is_same_point, is_solution
 from bifurc.numerics.collocation import piece_through, reparametrised
-from bifurc.problem import Piece, Problem
+from bifurc.problem import Piece, Problem, relative_gaps
 from bifurc.singular.point import SingularPoint
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def with_piece_between(
     by it; None where that is no solution. Its order is 4 where theirs is lower."""
     order = max(before.pieces.shape[1] - 1, 4)
     begin, end = before(before.length), after(0.0)
-    shift = problem.difference(end, begin) - (end - begin)  # whole periods
+    shift = problem.domain.difference(end, begin) - (end - begin)  # whole periods
     chord = end + shift - begin
     half = 0.5 * float(np.linalg.norm(chord))
     slopes = half * before(before.length, 1), half * after(0.0, 1)
@@ -66,12 +66,12 @@ def with_piece_between(
     cubic[2] = 0.25 * (slopes[1] - slopes[0])
     cubic[3] = 0.25 * (slopes[0] + slopes[1]) - 0.25 * chord
     # (1 - t^2)^2 leaves ends and slopes, and the middle goes to the point
-    aside = problem.difference(point, cubic[0])
+    aside = problem.domain.difference(point, cubic[0])
     quartic = cubic.copy()
     quartic[[0, 2, 4]] += np.outer([1.0, -2.0, 1.0], aside)
     piece, length = reparametrised(quartic)
     powers = WITHIN[:, None] ** np.arange(order + 1)
-    residual = float(problem.gaps(powers @ piece).max())
+    residual = float(relative_gaps(problem, powers @ piece).max())
     if not is_solution(residual):
         return None
     closing = branch_of_pieces(
@@ -124,8 +124,8 @@ def _padded(pieces: np.ndarray, rows: int) -> np.ndarray:
 def joined_outcome(problem: Problem, before: Branch, after: Branch) -> Outcome:
     """How a branch ends that has the begin of one and the end of another."""
     ends = np.array([before(0.0), after(after.length)])
-    gaps = np.abs(ends[:, :, None] - problem.bounds).min(axis=(1, 2))
-    is_at_bounds = is_same_point(gaps, problem.scale)
+    gaps = np.abs(ends[:, :, None] - problem.domain.bounds).min(axis=(1, 2))
+    is_at_bounds = is_same_point(gaps, problem.domain.scale)
     return Outcome.LEFT_REGION if np.all(is_at_bounds) else Outcome.STALLED
 
 
@@ -146,7 +146,7 @@ def joined_through(
     before = one[0] if one[1] > 0.0 else one[0].reversed()
     after = other[0] if other[1] == 0.0 else other[0].reversed()
     ends = np.array([before(before.length), after(0.0)])
-    gaps = np.linalg.norm(problem.difference(ends, point.u), axis=1)
+    gaps = np.linalg.norm(problem.domain.difference(ends, point.u), axis=1)
     clear = max(BEYOND * float(gaps.max()), 2 * point.error)
     last = _clear_of(problem, point, before.reversed(), clear)
     first = _clear_of(problem, point, after, clear)
@@ -167,7 +167,7 @@ def _clear_of(
     """The arclength from the begin of a branch from which on it is farther than a
     ``distance`` from a point; None where it is too short."""
     places = np.linspace(0.0, min(10 * distance, branch.length), LOOKS)
-    gaps = problem.difference(branch(places), point.u)
+    gaps = problem.domain.difference(branch(places), point.u)
     is_clear = np.linalg.norm(gaps, axis=1) > distance
     return float(places[np.argmax(is_clear)]) if np.any(is_clear) else None
 
@@ -232,6 +232,6 @@ def _curve(
         # so short that places beside the point would be rounded off elsewhere
         piece = piece_through(points, order)
         piece.coefficients[0] += germ.u
-        residual = float(problem.gaps(powers @ piece.coefficients).max())
+        residual = float(relative_gaps(problem, powers @ piece.coefficients).max())
         pieces.append(replace(piece, residual=residual))
-    return branch_of_pieces(pieces, problem.periods, Outcome.STALLED)
+    return branch_of_pieces(pieces, problem.domain.periods, Outcome.STALLED)

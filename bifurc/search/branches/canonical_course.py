@@ -51,7 +51,7 @@ def canonical_course(problem: Problem, branch: Branch) -> Branch:
     elif _begins_at_the_lower_end(problem, branch):
         branch = branch.reversed()
     start = branch(0.0)
-    periods = wrapped_periods(problem.periods, problem.bounds)
+    periods = wrapped_periods(problem.domain.periods, problem.domain.bounds)
     wrapped = wrap(start, periods, within=SEAM)
     return branch.moved_by_periods(whole_turns(wrapped - start, periods))
 
@@ -99,11 +99,11 @@ class _Height:
         columns = np.arange(1, problem.n + 1) + number * problem.n
         weights = 0.5 + (columns * GOLDEN) % 1.0
         phases = 2 * np.pi * ((columns * np.sqrt(2.0)) % 1.0)
-        periodic = np.isfinite(problem.periods)
+        periodic = np.isfinite(problem.domain.periods)
         angular = np.zeros(problem.n)
-        angular[periodic] = 2 * np.pi / problem.periods[periodic]
+        angular[periodic] = 2 * np.pi / problem.domain.periods[periodic]
         signs = np.where(np.sin(phases) > 0, 1.0, -1.0)
-        linear = np.where(periodic, 0.0, signs / problem.scale)
+        linear = np.where(periodic, 0.0, signs / problem.domain.scale)
         return _Height(branch, np.array([weights, phases, angular, linear]))
 
     def at(self, points: np.ndarray) -> np.ndarray:
@@ -158,7 +158,7 @@ def _begins_at_the_lower_end(problem: Problem, branch: Branch) -> bool:
     """Whether an open curve ends where the first function that tells its ends apart is
     larger."""
     ends = branch(np.array([0.0, branch.length]))
-    margin = CLEAR_MARGIN * branch.length / problem.scale
+    margin = CLEAR_MARGIN * branch.length / problem.domain.scale
     for number in range(FUNCTIONS):
         begin, end = _Height.of(problem, number, branch).at(ends)
         if abs(end - begin) > margin:

@@ -16,7 +16,6 @@ from bifurc.curves.certificate import (
     Certificate,
     CertificateStatus,
     certify_branch,
-    is_certifiable,
 )
 from bifurc.curves.jumps import changes_of_course, kinks, repeats_itself
 from bifurc.curves.monitor import Profile
@@ -48,7 +47,7 @@ def certificate_of(
     certificate = certify_branch(problem, branch, profile, singular)
     if certificate.status is CertificateStatus.CERTIFIED:
         return certificate
-    is_possible = is_certifiable(problem)
+    is_possible = problem.curvature is not None
     cuts = np.array(singular)
     if is_possible:
         open_intervals = np.concatenate([certificate.gaps, certificate.blurred])
@@ -73,11 +72,11 @@ def _jumps(
         from_ends = 0.0
         if branch.outcome is Outcome.STALLED:
             # a curve that stalls at a cusp ends in what rounding leaves
-            from_ends = CUSP_REACH * problem.scale
+            from_ends = CUSP_REACH * problem.domain.scale
             to_end = np.minimum(changes, branch.length - changes)
             changes = changes[to_end > from_ends]
         jumps = np.union1d(changes, kinks(branch, from_ends))
-    handover = HANDOVER * problem.scale
+    handover = HANDOVER * problem.domain.scale
     return np.column_stack([jumps - handover, jumps + handover])
 
 
@@ -86,7 +85,7 @@ def may_be_mended(problem: Problem, traced: TracedBranch) -> bool:
     known so poorly that doubles do not follow one arc, but for a kink at a located
     singular point, which one march has and another has not."""
     certificate = traced.certificate
-    if certificate is None or not is_certifiable(problem):
+    if certificate is None or problem.curvature is None:
         return False
     gaps = certificate.gaps
     if not len(gaps):
@@ -113,8 +112,10 @@ def certify_atlas(problem: Problem, atlas: Atlas) -> Atlas:
     point."""
     check_type("problem", problem, Problem)
     check_type("atlas", atlas, Atlas)
-    if atlas.names != problem.names:
-        raise ProblemError("unknowns of the atlas", atlas.names, str(problem.names))
+    if atlas.names != problem.domain.names:
+        raise ProblemError(
+            "unknowns of the atlas", atlas.names, str(problem.domain.names)
+        )
     forms = []
     for number, form in enumerate(atlas.forms):
         stops = [s for p in atlas.points for index, s in p.passes if index == number]

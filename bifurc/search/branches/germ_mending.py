@@ -146,7 +146,7 @@ class _Tracer:
     ) -> tuple[float, HalfEnd]:
         """The arclength, before ``stop``, at which a curve comes to the end of a
         half-branch of a germ, and that end."""
-        within = is_same_point.threshold * self.problem.scale
+        within = is_same_point.threshold * self.problem.domain.scale
         leaving = LEAVING * self.germs[number].radius
         handovers = [
             (float(s), HalfEnd(number, half))
@@ -212,7 +212,7 @@ class _Tracer:
         branch = parts[0]
         for part in parts[1:]:
             last, first = branch(branch.length), part(0.0)
-            whole_periods = self.problem.difference(first, last) - (first - last)
+            whole_periods = self.problem.domain.difference(first, last) - (first - last)
             branch = followed_by(branch, part, whole_periods)
         outcome = Outcome.CLOSED
         if not is_closed:
@@ -318,7 +318,7 @@ class GermMender:
 
     def _passes(self, place: np.ndarray) -> list[_Pass]:
         """The passes of all branches at a place (n,)."""
-        within = is_same_point.threshold * self.problem.scale
+        within = is_same_point.threshold * self.problem.domain.scale
         return [
             _Pass(traced, float(s))
             for traced in self.findings.traced.values()
@@ -356,7 +356,7 @@ class GermMender:
         """
         shares = SHARES[SHARES > BEFORE_CUSP] if local.returns else SHARES
         distances, _ = at.branch.branch.nearest(germ.u + local(side * shares))
-        return bool(np.all(is_precise_enough(distances, self.problem.scale)))
+        return bool(np.all(is_precise_enough(distances, self.problem.domain.scale)))
 
     # --- what is put in whose place ---------------------------------------------------
 
@@ -385,7 +385,7 @@ class GermMender:
         on_any = np.zeros(len(places), dtype=bool)
         for branch in branches:
             distances, _ = branch.nearest(places)
-            on_any |= is_same_point(distances, self.problem.scale)
+            on_any |= is_same_point(distances, self.problem.domain.scale)
         return on_any
 
 

@@ -40,13 +40,13 @@ POWERS = np.array(
 def restated(atlas: Atlas, problem: Problem, units: Units) -> Atlas:
     """An atlas in ``units`` as one of the ``problem``, which is the user's."""
     unknowns = Unknowns(
-        names=problem.names,
-        units=problem.units,
-        periods=problem.periods,
+        names=problem.domain.names,
+        units=problem.domain.units,
+        periods=problem.domain.periods,
         points=units.outwards,
         directions=units.directions,
         bases=lambda bases: _restated_bases(bases, units),
-        course=lambda branch: restated_branch(branch, units, problem.periods),
+        course=lambda branch: restated_branch(branch, units, problem.domain.periods),
         index=lambda index: index,
         size=float(units.sizes.max()),
     )

@@ -26,15 +26,21 @@ from bifurc.decisions import (
     is_on_the_way,
     may_repeat_factors,
 )
+from bifurc.domain import Domain
 from bifurc.equations.differentiation import with_gradients
 from bifurc.equations.factors import Factors, polynomial_factors, written_factors
-from bifurc.equations.recording import Recording
+from bifurc.equations.rims import NO_RIMS, Rims
 from bifurc.equations.system import LARGEST_DENSE
 from bifurc.equations.tape import Tape
-from bifurc.function_problem import PROBES, EquationProblem, FunctionProblem
+from bifurc.function_problem import (
+    PROBES,
+    EquationProblem,
+    FunctionProblem,
+    accuracy_of,
+)
 from bifurc.limits import Deadline
 from bifurc.numerics.singular_values import values_of
-from bifurc.problem import PreciseResidual, Problem
+from bifurc.problem import Accuracy, Curvature, PreciseResidual, Problem
 from bifurc.search.own_units.restated import restated_branch
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Audit, Seeds
@@ -43,9 +49,6 @@ from bifurc.units import Units
 
 if TYPE_CHECKING:
     import mpmath
-
-    # SciPy takes longer to import than a small problem to solve
-    from scipy.sparse import sparray
 
     from bifurc.atlas import JsonObject
     from bifurc.branch import Branch
@@ -68,14 +71,13 @@ OF_CURVES = 1e-4  # the same: at points of higher order where starts stop it is 
 # What a class may answer in its own way: in its own units only, or in any one unit.
 OF_EQUATIONS = (
     "residuals",
-    "jacobian",
     "jacobians",
+    "shortcuts",
     "march",
     "project",
     "project_to_sphere",
-    "excess",
 )
-OF_ONE_UNIT = ("hessian", "seeds", "curvature_bound", "complex_curvature")
+OF_ONE_UNIT = ("hessians", "seeds", "curvature")
 CURVES = 3  # that are followed out of a region that has shrunk
 SAMPLES = 200  # of each of them
 WAY_OUT = 1e5  # scales that it is followed for
@@ -110,41 +112,92 @@ class UnitProblem(EquationProblem):
         region: np.ndarray | None = None,
         simplified: Simplified | None = None,
     ):
-        jacobian = None if problem._jacobian is None else self._restated_jacobian
-        recording = problem.recording
-        tape = recording.tape if simplified is None else simplified.tape
-        if tape is not None:
-            own = tape.in_units(units.origin, units.sizes, units.weights)
-            recording = Recording(own)
-        rows = len(units.weights)
-        super().__init__(self._restated_function, jacobian, recording, rows)
         self.problem = problem
         self.simplified = simplified
-        self.tape = tape
         self.own_units = units
-        self.names, self.units = problem.names, problem.units
-        self.derivatives, self.equations = problem.derivatives, problem.equations
-        self.has_assumed_bounds = problem.has_assumed_bounds
-        self.periods = problem.periods / units.sizes
-        self.bounds = units.inwards(problem.bounds.T).T
+        self.tape = problem.equations.tape if simplified is None else simplified.tape
+        self.equations = problem.equations.in_units(units, self.tape)
         own_region = _first_region(problem) if region is None else region
         self.region = units.inwards(own_region.T).T
-        if region is None:
-            size = float(units.sizes[0])
-            self.scale = problem.scale / size
-            self.curvature_residual = problem.curvature_residual / size
-            self._take_magnitude(size * problem.magnitude, self.region)
-        else:
-            self.scale = float(np.median(np.diff(self.region, axis=1))) / 4.0
-            self._take_magnitude(1.0, self.region)
+        size = float(units.sizes[0])
+        scale = problem.domain.scale / size
+        if region is not None:
+            scale = float(np.median(np.diff(self.region, axis=1))) / 4.0
+        self.domain = self._own_domain(scale)
+        self.accuracy = self._own_accuracy()
+        magnitude = size * problem.magnitude
+        if region is not None:
             sizes = [np.linalg.norm(matrix, ord=2) for matrix in self._matrices()]
             magnitude = float(np.median(sizes)) if sizes else 1.0
-            self._take_magnitude(magnitude or 1.0, self.region)
-        if np.any(problem.noise):
-            noise = units.weights * problem.noise
-            self._take_noise(noise, self.magnitude * self.scale)
-        if _has_own(problem, "hessian"):
-            self.hessian_error = problem.hessian_error
+        self._take_magnitude(magnitude or 1.0, self.region)
+
+    def _own_domain(self, scale: float) -> Domain:
+        """The domain of the problem in these units. Curves may go on far beyond the
+        region to which random starts lead: up to a quarter of the widest bounds."""
+        outer, units = self.problem.domain, self.own_units
+        bounds = units.inwards(outer.bounds.T).T
+        widths = np.diff(bounds, axis=1)[:, 0]
+        widest = float(widths[np.isfinite(widths)].max(initial=0.0))
+        return replace(
+            outer,
+            periods=outer.periods / units.sizes,
+            bounds=bounds,
+            scale=scale,
+            reach=max(1.0, widest / 4.0 / scale),
+            rim=self._beyond_rims if self._rims else None,
+        )
+
+    @property
+    def _rims(self) -> Rims:
+        """The rims of the user's equations that the simplified ones do not have."""
+        return NO_RIMS if self.simplified is None else self.simplified.factors.rims
+
+    def _depths(self, points: np.ndarray) -> np.ndarray:
+        """How far inside every rim (k, r) points (k, n) are."""
+        return self._rims.depths(self.own_units.outwards(points), self.own_units.sizes)
+
+    def _beyond_rims(self, points: np.ndarray) -> np.ndarray:
+        """How far beyond a rim (k,) points (k, n) are; some are not defined beyond
+        others."""
+        beyond: np.ndarray = -np.fmin.reduce(self._depths(points), axis=1)
+        return np.where(np.isnan(beyond), -np.inf, beyond)
+
+    def labels_along(self, branch: Branch) -> JsonObject:
+        """What is to be said of a ``branch`` in these units besides: the rims on which
+        it lies."""
+        if not self._rims:
+            return {}
+        depths = np.abs(self._depths(branch(branch.length * PLACES)))
+        distances = np.median(depths, axis=0).tolist()
+        texts = self._rims.texts(self.domain.names)
+        scale = self.domain.scale
+        on = [
+            text
+            for distance, text in zip(distances, texts, strict=True)
+            if is_factor_of_form(distance, scale)
+        ]
+        return {"rims": on} if on else {}
+
+    def _own_accuracy(self) -> Accuracy:
+        """What is known of the accuracy of these equations, from that of the problem."""
+        outer, units = self.problem.accuracy, self.own_units
+        own = accuracy_of(self.equations)
+        rounding = own.coefficient_rounding
+        outer_rounding = outer.coefficient_rounding
+        if self.simplified is None and outer_rounding is not None:
+
+            def rounding(point: np.ndarray) -> np.ndarray:
+                own: np.ndarray = units.weights * outer_rounding(units.outwards(point))
+                return own
+
+        has_own_hessian = _has_own(self.problem, "hessians")
+        return replace(
+            own,
+            derivatives=outer.derivatives,
+            equations=outer.equations,
+            coefficient_rounding=rounding,
+            hessian_error=outer.hessian_error if has_own_hessian else own.hessian_error,
+        )
 
     def multiplicity_along(self, branch: Branch) -> int:
         """How often the user's equations are solved all along a ``branch`` in these
@@ -160,39 +213,9 @@ class UnitProblem(EquationProblem):
         distances = np.median(values / (lengths + TINY), axis=0)  # (k,)
         powers: dict[int, int] = {}
         for number, row in enumerate(factors.rows):
-            if is_factor_of_form(float(distances[number]), self.scale):
+            if is_factor_of_form(float(distances[number]), self.domain.scale):
                 powers[row] = powers.get(row, 0) + factors.powers[number]
         return self.simplified.order * math.prod(powers.values())
-
-    def labels_along(self, branch: Branch) -> JsonObject:
-        """What is to be said of a ``branch`` in these units besides: nothing."""
-        return {}
-
-    @property
-    def reach(self) -> float:
-        """A quarter of the widest bounds, or the scale: curves may go on far beyond
-        the region to which random starts lead."""
-        widths = np.diff(self.bounds, axis=1)[:, 0]
-        finite = widths[np.isfinite(widths)]
-        return max(self.scale, float(finite.max(initial=0.0)) / 4.0)
-
-    def _restated_function(self, point: np.ndarray) -> np.ndarray:
-        """F (m,) of the user at a point (n,) in these units, weighted."""
-        value = self.problem._function(self.own_units.outwards(point))
-        weighted: np.ndarray = self.own_units.weights * np.asarray(value)
-        return weighted
-
-    def _restated_jacobian(self, point: np.ndarray) -> np.ndarray | sparray:
-        """F' (m, n) of the user at a point (n,) in these units, weighted."""
-        units = self.own_units
-        own = self.problem._given_jacobian(units.outwards(point))
-        if isinstance(own, np.ndarray):
-            matrix: np.ndarray = units.weights[:, None] * own * units.sizes
-            return matrix
-        from scipy.sparse import diags_array
-
-        sparse: sparray = diags_array(units.weights) @ own @ diags_array(units.sizes)
-        return sparse
 
     def _matrices(self) -> list[np.ndarray]:
         """F' (m, n) at random points of the region where it is finite."""
@@ -220,54 +243,44 @@ class UnitProblem(EquationProblem):
 
         return residual
 
-    def coefficient_rounding(self, point: np.ndarray) -> np.ndarray:
-        """How far off F (m,) at a point (n,) is, from that of the user's problem."""
-        if self.simplified is not None:
-            return super().coefficient_rounding(point)
-        units = self.own_units
-        own = self.problem.coefficient_rounding(units.outwards(point))
-        rounding: np.ndarray = units.weights * own
-        return rounding
-
-    def hessian(self, point: np.ndarray) -> np.ndarray:
-        """F'' (m, n, n) at a point (n,)."""
-        if not _has_own(self.problem, "hessian"):
-            return super().hessian(point)
+    def hessians(self, points: np.ndarray) -> np.ndarray:
+        """F'' (k, m, n, n) at points (k, n)."""
+        if not _has_own(self.problem, "hessians"):
+            return super().hessians(points)
         units = self.own_units
         by_sizes = units.sizes[:, None] * units.sizes
-        own = self.problem.hessian(units.outwards(point))
-        hessian: np.ndarray = units.weights[:, None, None] * by_sizes * own
-        return hessian
+        own = self.problem.hessians(units.outwards(points))
+        hessians: np.ndarray = units.weights[:, None, None] * by_sizes * own
+        return hessians
 
-    def curvature_bound(self) -> float | None:
-        """A constant of Lipschitz for F' over the magnitude, where the problem has
-        one."""
-        bound = self.problem.curvature_bound()
-        return None if bound is None else float(self.own_units.sizes[0]) * bound
-
-    def complex_curvature(self, reach: np.ndarray) -> np.ndarray | None:
-        """Bounds (k,) on |F''| over the magnitude, where the problem has them."""
+    @property
+    def curvature(self) -> Curvature | None:
+        """Bounds on F'', where the problem has them."""
+        outer = self.problem.curvature
+        if outer is None:
+            return None
         size = float(self.own_units.sizes[0])
-        bounds = self.problem.complex_curvature(size * reach)
-        return None if bounds is None else size * bounds
+        return Curvature(
+            bound=size * outer.bound,
+            at_complex_points=lambda reach: (
+                size * outer.at_complex_points(size * reach)
+            ),
+            residual=outer.residual / size,
+        )
 
     # --- seeds ------------------------------------------------------------------------
 
-    def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
-        """Solutions reached from ``count`` random starts, half of them from the region
-        where that is smaller than the bounds; or those that the problem has in a way of
-        its own."""
-        return self.seeds_until(rng, count, Deadline())
-
-    def seeds_until(
-        self, rng: np.random.Generator, count: int, deadline: Deadline
+    def seeds(
+        self, rng: np.random.Generator, count: int, deadline: Deadline | None = None
     ) -> Seeds:
-        """The same, from as many of the starts as there is time for before the
-        ``deadline``."""
+        """Solutions reached from ``count`` random starts, half of them from the region
+        where that is smaller than the bounds, as far as there is time for them before the
+        ``deadline``; or those that the problem has in a way of its own."""
         if _has_own(self.problem, "seeds"):
-            return self.seeds_inwards(self.problem.seeds_until(rng, count, deadline))
+            return self.seeds_inwards(self.problem.seeds(rng, count, deadline))
         # the bounds, and on a circle the region
-        box = np.where(np.isinf(self.bounds), self.region, self.bounds)
+        bounds = self.domain.bounds
+        box = np.where(np.isinf(bounds), self.region, bounds)
         if np.allclose(box, self.region):
             return random_seeds(self, rng, count, self.region, deadline)
         near = random_seeds(self, rng, count - count // 2, self.region, deadline)
@@ -281,7 +294,7 @@ class UnitProblem(EquationProblem):
 
         def audit(branches: Sequence[Branch], seconds: float) -> Audit:
             assert judge is not None
-            periods = self.problem.periods
+            periods = self.problem.domain.periods
             own = [restated_branch(one, units, periods).branch for one in branches]
             verdict = judge(own, seconds)
             return replace(verdict, starts=units.inwards(verdict.starts))
@@ -337,44 +350,6 @@ class UnitProblem(EquationProblem):
         return sharp
 
 
-class RimmedProblem(UnitProblem):
-    """The same where the ``simplified`` equations lack rims of the user's: what lies
-    beyond these is outside."""
-
-    def __init__(
-        self,
-        problem: FunctionProblem,
-        units: Units,
-        region: np.ndarray | None,
-        simplified: Simplified,
-    ):
-        super().__init__(problem, units, region, simplified)
-        self._rims_of_user = simplified.factors.rims
-        tape = self._rims_of_user.tape
-        assert tape is not None
-        ones = np.ones(tape.m)
-        own = tape.in_units(units.origin, units.sizes, ones)
-        self._rims = self._rims_of_user._replace(tape=own)
-
-    def labels_along(self, branch: Branch) -> JsonObject:
-        """The rims on which a ``branch`` in these units lies."""
-        depths = np.abs(self._rims.depths(branch(branch.length * PLACES)))
-        distances = np.median(depths, axis=0)
-        texts = self._rims_of_user.texts(self.names)
-        pairs = zip(distances.tolist(), texts, strict=True)
-        on = [
-            text for distance, text in pairs if is_factor_of_form(distance, self.scale)
-        ]
-        return {"rims": on} if on else {}
-
-    def excess(self, points: np.ndarray) -> np.ndarray:
-        """How far points (k, n) lie outside the bounds (k,), or beyond a rim."""
-        # some are not defined beyond others
-        beyond = -np.fmin.reduce(self._rims.depths(points), axis=1)
-        excess: np.ndarray = np.fmax(super().excess(points), beyond)
-        return excess
-
-
 def in_own_units(
     problem: Problem, deadline: Deadline | None = None
 ) -> UnitProblem | None:
@@ -383,12 +358,13 @@ def in_own_units(
     at the ``deadline`` does not count."""
     if not isinstance(problem, FunctionProblem):
         return None
-    if any(_has_own(problem, name) for name in OF_EQUATIONS):
+    has_own_equations = any(_has_own(problem, name) for name in OF_EQUATIONS)
+    if has_own_equations or problem.domain.rim is not None:
         return None
     has_own_answers = any(_has_own(problem, name) for name in OF_ONE_UNIT)
     if has_own_answers or problem.n > LARGEST_DENSE:
         sizes = np.full(problem.n, _unit_of(problem))
-        weights = np.ones(problem._rows)
+        weights = np.ones(problem.equations.m)
         own = UnitProblem(problem, Units(np.zeros(problem.n), sizes, weights))
     else:
         own = _in_units_of_solutions(problem, deadline or Deadline())
@@ -405,7 +381,7 @@ def _has_own(problem: FunctionProblem, name: str) -> bool:
 
 def _unit_of(problem: FunctionProblem) -> float:
     """The power of 2 next to the scale."""
-    return float(2.0 ** round(math.log2(problem.scale)))
+    return float(2.0 ** round(math.log2(problem.domain.scale)))
 
 
 def _in_units_of_solutions(problem: FunctionProblem, deadline: Deadline) -> UnitProblem:
@@ -438,25 +414,13 @@ def _in_units_of_solutions(problem: FunctionProblem, deadline: Deadline) -> Unit
     return own
 
 
-def _with_rims(
-    problem: FunctionProblem,
-    units: Units,
-    region: np.ndarray,
-    simplified: Simplified | None,
-) -> UnitProblem:
-    """The equations in units, within the rims that the simplified ones lack."""
-    if simplified is None or not simplified.factors.rims:
-        return UnitProblem(problem, units, region, simplified)
-    return RimmedProblem(problem, units, region, simplified)
-
-
 def in_one_size(own: UnitProblem) -> UnitProblem:
     """The same in units in which all unknowns have one size."""
     size = float(np.exp2(np.round(np.median(np.log2(own.own_units.sizes)))))
     sizes = np.full(own.n, size)
     units = replace(own.own_units, sizes=sizes)
     region = own.own_units.outwards(own.region.T).T
-    return _with_rims(own.problem, units, region, own.simplified)
+    return UnitProblem(own.problem, units, region, own.simplified)
 
 
 # --- where solutions are --------------------------------------------------------------
@@ -464,10 +428,10 @@ def in_one_size(own: UnitProblem) -> UnitProblem:
 
 def _first_region(problem: Problem) -> np.ndarray:
     """The bounds (n, 2), those of one period on a circle."""
-    is_circle = np.isinf(problem.bounds).all(axis=1)
-    low, high = np.where(is_circle[:, None], 0.0, problem.bounds).T
+    is_circle = np.isinf(problem.domain.bounds).all(axis=1)
+    low, high = np.where(is_circle[:, None], 0.0, problem.domain.bounds).T
     middles = 0.5 * (low + high)
-    half = 0.5 * np.where(is_circle, problem.periods, high - low)
+    half = 0.5 * np.where(is_circle, problem.domain.periods, high - low)
     return np.column_stack([middles - half, middles + half])
 
 
@@ -483,7 +447,7 @@ def _region_of(
     low, high = ends.min(axis=0), ends.max(axis=0)
     spans = high - low
     whole = np.diff(_first_region(problem), axis=1)[:, 0]
-    is_free = ~np.isfinite(problem.periods) & ~is_point
+    is_free = ~np.isfinite(problem.domain.periods) & ~is_point
     # what has shrunk already is fitted closely, or sizes would differ by the last round
     is_shrunk = widths < 0.5 * whole
     unit = np.where(is_shrunk, CLOSE / is_far_smaller.threshold, 1.0)
@@ -493,7 +457,7 @@ def _region_of(
         return None
     margins = MARGIN * spans
     closer = np.column_stack([low - margins, high + margins])
-    closer = np.clip(closer, problem.bounds[:, :1], problem.bounds[:, 1:])
+    closer = np.clip(closer, problem.domain.bounds[:, :1], problem.domain.bounds[:, 1:])
     return np.where(is_small[:, None], closer, region)
 
 
@@ -501,7 +465,7 @@ def _widened(own: UnitProblem, region: np.ndarray, is_point: np.ndarray) -> np.n
     """A ``region`` (n, 2) that has shrunk, or more of the bounds in the unknowns in
     which curves through it leave it: random starts may end on a small part of a long
     curve only. The unknowns that are a point (n,) are left as they are."""
-    finite = np.isfinite(own.problem.bounds).all(axis=1)
+    finite = np.isfinite(own.problem.domain.bounds).all(axis=1)
     settings = TraceSettings(max_length=WAY_OUT)
     for start in own.ends(STARTS)[:CURVES]:
         branch = trace_branch(own, own.own_units.inwards(start), settings=settings)
@@ -590,7 +554,7 @@ def _flatness(own: UnitProblem) -> np.ndarray:
     ends = own.all_ends(STARTS)
     typical = own._matrices()
     if len(ends) < FEWEST or not typical:
-        return np.empty((0, own._rows))
+        return np.empty((0, own.equations.m))
     usual = np.median(np.linalg.norm(typical, axis=2), axis=0)
     lengths = np.linalg.norm(own.jacobians(ends), axis=2)
     flatness: np.ndarray = lengths / (usual + TINY)
@@ -623,24 +587,26 @@ def _problem_on(
     sizes = np.exp2(np.round(np.log2(sizes)))
     middles = region.mean(axis=1)
     is_off = np.abs(middles) > OFF_CENTER * np.diff(region, axis=1)[:, 0]
-    is_arc = np.isfinite(problem.periods) & np.isfinite(problem.bounds).all(axis=1)
+    is_arc = np.isfinite(problem.domain.periods) & np.isfinite(
+        problem.domain.bounds
+    ).all(axis=1)
     origin = np.where(is_off | is_arc, middles, 0.0)
-    rows = problem._rows if simplified is None else simplified.tape.m
+    rows = problem.equations.m if simplified is None else simplified.tape.m
     units = Units(origin, sizes, np.ones(rows))
-    own = _with_rims(problem, units, region, simplified)
+    own = UnitProblem(problem, units, region, simplified)
     weights = _weights(own)
     if np.all(weights == 1.0):
         return own
     weighted = replace(units, weights=weights)
-    return _with_rims(problem, weighted, region, simplified)
+    return UnitProblem(problem, weighted, region, simplified)
 
 
 def _weights(own: UnitProblem) -> np.ndarray:
     """Powers of 2 (m,) that make the gradients of the equations about as long as each
     other; ones where they are."""
     matrices = own._matrices()
-    ones = np.ones(own._rows)
-    if not matrices or own._rows == 1:
+    ones = np.ones(own.equations.m)
+    if not matrices or own.equations.m == 1:
         return ones
     lengths = np.median(np.linalg.norm(matrices, axis=2), axis=0)
     is_counted = lengths > 0.0

@@ -16,8 +16,9 @@ from bifurc.completeness import completeness_document
 from bifurc.decisions import is_tied
 from bifurc.singular.point import Kind
 from linkages.app.answer.verdict import is_without_gaps
-from linkages.app.subject import numbers_at, subject_at
+from linkages.app.texts.configurations import numbers_at
 from linkages.labels import FormLabels
+from linkages.subject import subject_at
 
 # values that JSON can hold; docs/results.md says what each key does
 Document: TypeAlias = dict[str, Any]
@@ -28,7 +29,7 @@ def make_document(atlas: Atlas) -> Document:
     forms = [_form(atlas, i) for i in range(len(atlas.forms))]
     surfaces = [_surface(atlas, k) for k in range(len(atlas.surfaces))]
     return {
-        "linkage": _linkage(atlas),
+        "linkage": subject_at(atlas).table_values(),
         "mobility": atlas.mobility,
         "gruebler": subject_at(atlas).gruebler,
         "forms": forms + surfaces,
@@ -61,19 +62,6 @@ def _assembly(atlas: Atlas, theta: NDArray[np.float64]) -> list[float] | Documen
     """A rigid assembly: of a loop the joint angles alone."""
     place = _place(atlas, theta)
     return place if len(place) > 1 else numbers_at(atlas, theta)
-
-
-def _linkage(atlas: Atlas) -> Document:
-    subject = subject_at(atlas)
-    if subject.table is None:
-        return {"name": subject.name}
-    lengths, twists, offsets = subject.table.arrays
-    return {
-        "name": subject.table.name,
-        "lengths": lengths.tolist(),
-        "twists": twists.tolist(),
-        "offsets": offsets.tolist(),
-    }
 
 
 def _form(atlas: Atlas, index: int) -> Document:

@@ -17,14 +17,15 @@ from bifurc.singular.point import Kind
 from bifurc.systems.verdict import has_only_open_points
 from bifurc.tables import count_of
 from linkages.app.exit_codes import ExitCode
-from linkages.app.subject import ArclengthUnit, arclength_unit, subject_at
+from linkages.app.texts.configurations import ArclengthUnit, arclength_unit
 from linkages.app.texts.numbers import in_degrees, in_lengths
 from linkages.statements import has_all_assemblies
+from linkages.subject import subject_at
 from linkages.turns.translates import translates_of
 
 if TYPE_CHECKING:
-    from linkages.app.reports.beyond_limits import LimitedRange
     from linkages.mechanisms.joint import Limits
+    from linkages.readout.beyond_limits import LimitedRange
 
 
 @dataclass(frozen=True)
@@ -191,7 +192,9 @@ def kept_out_by_limits(atlas: Atlas) -> str:
     Where every variable alone is within its limits in some configurations, all that is
     known is that none was found.
     """
-    limited = subject_at(atlas).ranges_beyond_limits()
+    from linkages.mapping import map_linkage  # it imports the search
+
+    limited = subject_at(atlas).ranges_beyond_limits(map_linkage)
     if not limited:
         return ""
     unit = subject_at(atlas).size

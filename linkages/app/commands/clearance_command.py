@@ -4,46 +4,30 @@ from __future__ import annotations
 
 import click
 
+from linkages.app import options
 from linkages.app.exit_codes import exit_code_table
-from linkages.app.options import (
-    HoldOptions,
-    NumberRange,
-    SearchOptions,
-    form_option,
-    hold_options,
-    json_option,
-    number_option,
-    param_option,
-    search_options,
-    verbose_option,
-)
 
 LARGEST = 1e100  # diameter, as lengths of links
 
 
 @click.command("clearance", epilog=exit_code_table())
 @click.argument("source", metavar="NAME|FILE.toml|ATLAS.nc")
-@form_option
-@number_option(
+@options.form_option
+@options.number_option(
     "--diameter",
-    NumberRange(min=0, max=LARGEST),
+    options.NumberRange(min=0, max=LARGEST),
     0.0,
     "Diameter of the links, in the unit of the linkage; 0 is that of their middle "
     "lines.",
 )
-@json_option("; angles in radians")
-@hold_options
-@param_option
-@search_options
-@verbose_option
+@options.json_option("; angles in radians")
+@options.atlas_options
 def clearance_command(
     source: str,
     forms: tuple[str, ...],
     diameter: float,
     as_json: bool,
-    parameters: tuple[str, ...],
-    search: SearchOptions,
-    hold: HoldOptions,
+    choice: options.AtlasOptions,
 ) -> None:
     """Show how near links come to each other along forms, and where.
 
@@ -66,7 +50,7 @@ def clearance_command(
     )
     from linkages.app.texts.form_names import choose_forms, require_forms
 
-    atlas = atlas_of(source, parameters, search, hold)
+    atlas = atlas_of(source, choice)
     require_forms(atlas)
     chosen = choose_forms(atlas, forms)
     clearances = [clearance_of(atlas, form, diameter) for form in chosen]

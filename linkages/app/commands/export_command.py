@@ -9,24 +9,12 @@ from typing import TYPE_CHECKING
 import click
 from click.core import ParameterSource
 
+from linkages.app import options
 from linkages.app.exit_codes import CommandError, exit_code_table
-from linkages.app.options import (
-    FILE,
-    HoldOptions,
-    PrintOptions,
-    SearchOptions,
-    form_option,
-    hold_options,
-    number_option,
-    param_option,
-    print_options,
-    search_options,
-    verbose_option,
-)
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
-    from linkages.export.model import LinkageModel, Motion
+    from linkages.export.model import Motion
 
 TO = "--to"
 MODEL, TABLE = ".glb", ".csv"
@@ -50,7 +38,7 @@ TARGETS = {
 @click.option(
     TO,
     "out",
-    type=FILE,
+    type=options.FILE,
     required=True,
     metavar="FILE",
     help=(
@@ -59,7 +47,7 @@ TARGETS = {
         "and .sdf the linkage for simulators, where a form begins."
     ),
 )
-@form_option
+@options.form_option
 @click.option(
     "--route",
     "routes",
@@ -68,27 +56,22 @@ TARGETS = {
     metavar="FROM TO",
     help="A route between two forms; may be given several times.",
 )
-@number_option(
+@options.number_option(
     "--count",
     click.IntRange(FEWEST, MOST),
     361,
     "Configurations along each form or route, for .glb and .csv.",
 )
-@print_options
-@hold_options
-@param_option
-@search_options
-@verbose_option
+@options.print_options
+@options.atlas_options
 def export_command(
     source: str,
     out: Path,
     forms: tuple[str, ...],
     routes: tuple[tuple[str, str], ...],
     count: int,
-    parameters: tuple[str, ...],
-    search: SearchOptions,
-    hold: HoldOptions,
-    printing: PrintOptions,
+    choice: options.AtlasOptions,
+    printing: options.PrintOptions,
 ) -> None:
     """Write forms and routes of a linkage for other programs.
 
@@ -113,10 +96,10 @@ def export_command(
     check_options(out)
     check_count_of_forms(out, forms)
     require_writable(out, TO)
-    atlas = choose_atlas(source, out, parameters, search, hold)
+    atlas = choose_atlas(source, out, choice)
     require_forms(atlas)
     if is_one_of(out, PARTS):
-        export_parts(atlas, forms, printing, search.seed, out)
+        export_parts(atlas, forms, printing, choice.search.seed, out)
     elif is_one_of(out, MECHANISMS):
         export_mechanism(atlas, forms, out)
     else:
@@ -158,26 +141,25 @@ def check_count_of_forms(out: Path, forms: tuple[str, ...]) -> None:
         )
 
 
-def choose_atlas(
-    source: str,
-    out: Path,
-    parameters: tuple[str, ...],
-    search: SearchOptions,
-    hold: HoldOptions,
-) -> Atlas:
+def choose_atlas(source: str, out: Path, choice: options.AtlasOptions) -> Atlas:
     """The atlas that is exported; raises `CommandError` for a mechanism where the file
     takes single loops only."""
     from linkages.app.atlas_source import atlas_of, is_atlas_file, loop_atlas_of
 
     if is_one_of(out, PARTS) and is_atlas_file(source):
-        search = replace(search, seed=0)  # it is that of the seats of hinges
+        # it is that of the seats of hinges
+        choice = replace(choice, search=replace(choice.search, seed=0))
     if is_one_of(out, MOTIONS):
-        return atlas_of(source, parameters, search, hold)
-    return loop_atlas_of(source, parameters, search, hold)
+        return atlas_of(source, choice)
+    return loop_atlas_of(source, choice)
 
 
 def export_parts(
-    atlas: Atlas, texts: tuple[str, ...], printing: PrintOptions, seed: int, out: Path
+    atlas: Atlas,
+    texts: tuple[str, ...],
+    printing: options.PrintOptions,
+    seed: int,
+    out: Path,
 ) -> None:
     """Write printable parts; say where hinges sit and how near parts come.
 
@@ -269,8 +251,8 @@ def make_route_motion(atlas: Atlas, start: str, goal: str, count: int) -> Motion
     """
     from bifurc.errors import RouteError
     from linkages.app.atlas_source import route_between
-    from linkages.app.subject import subject_at
     from linkages.export.model import motion_of_route
+    from linkages.subject import subject_at
 
     option = f"--route {start!r} {goal!r}"
     try:
@@ -283,7 +265,7 @@ def make_route_motion(atlas: Atlas, start: str, goal: str, count: int) -> Motion
             f"{option}: it begins and ends in one configuration of {first!r}; name two "
             "different forms, or --form for all of one"
         )
-    problem = subject_at(atlas).equations()
+    problem = subject_at(atlas).closure
     return motion_of_route(atlas, route, f"{first} to {last}", count, problem)
 
 
@@ -299,31 +281,19 @@ def make_content(atlas: Atlas, motions: list[Motion], out: Path) -> bytes:
     from importlib.metadata import version
 
     from linkages.export.glb import make_glb
+    from linkages.export.model import model_of
+    from linkages.subject import subject_at
 
-    return make_glb(make_model(atlas, motions), f"bifurc {version('bifurc')}")
+    subject = subject_at(atlas)
+    model = model_of(subject.parts, subject.name, motions)
+    return make_glb(model, f"bifurc {version('bifurc')}")
 
 
 def make_table(atlas: Atlas, motion: Motion) -> str:
     """The joint variables along a motion: angles of a loop, or all variables of a
     mechanism and the unit quaternions of its spherical joints."""
-    from linkages.app.subject import subject_at
     from linkages.export.model import make_angle_table
+    from linkages.subject import subject_at
 
-    joints = subject_at(atlas).joint_values(motion.configurations)
-    return make_angle_table(motion.arclength, joints.values, joints.names)
-
-
-def make_model(atlas: Atlas, motions: list[Motion]) -> LinkageModel:
-    """The linkage of an atlas with its motions, to be animated."""
-    from linkages.app.subject import MechanismSubject, subject_at
-    from linkages.export.model import model_of_loop, model_of_mechanism
-
-    subject = subject_at(atlas)
-    if subject.table is None:
-        assert isinstance(subject, MechanismSubject)
-        return model_of_mechanism(subject.readout, motions)
-    of_loop = [
-        replace(motion, configurations=subject.to_angles.points(motion.configurations))
-        for motion in motions
-    ]
-    return model_of_loop(subject.table, of_loop)
+    names, values = subject_at(atlas).joint_values(motion.configurations)
+    return make_angle_table(motion.arclength, values, names)

@@ -4,36 +4,29 @@ from __future__ import annotations
 
 import click
 
+from linkages.app import options
 from linkages.app.exit_codes import ExitCode, exit_code_table
-from linkages.app.options import (
-    HoldOptions,
-    NumberRange,
-    hold_options,
-    json_option,
-    number_option,
-    param_option,
-)
 
 LARGEST_TOLERANCE = 1  # as large as the linkage itself
 
 
 @click.command("identify", epilog=exit_code_table())
 @click.argument("linkage", metavar="FILE.toml|NAME")
-@number_option(
+@options.number_option(
     "--tolerance",
-    NumberRange(min=0, max=LARGEST_TOLERANCE, min_open=True),
+    options.NumberRange(min=0, max=LARGEST_TOLERANCE, min_open=True),
     1e-8,
     "How far a table may be from the linkage it is.",
 )
-@json_option("; angles in radians")
-@hold_options
-@param_option
+@options.json_option("; angles in radians")
+@options.hold_options
+@options.param_option
 def identify_command(
     linkage: str,
     tolerance: float,
     as_json: bool,
     parameters: tuple[str, ...],
-    hold: HoldOptions,
+    hold: options.HoldOptions,
 ) -> None:
     """Name the linkages of the catalogue that a table, or a mechanism that is a single
     loop of revolute joints, is a case of, whichever way it is read.
@@ -52,8 +45,8 @@ def identify_command(
         describe_identification,
         make_identification_document,
     )
-    from linkages.app.subject import as_subject
     from linkages.identification.identify import identify
+    from linkages.subject import as_subject
 
     loop = as_subject(choose_held(linkage, parameters, hold)).as_loop()
     identification = identify(loop, tolerance)

@@ -9,19 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from bifurc.limits import HeldInterrupt
+from linkages.app import options
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
-from linkages.app.options import (
-    HoldOptions,
-    JointWords,
-    SearchOptions,
-    hold_options,
-    json_option,
-    no_certify_option,
-    out_option,
-    param_option,
-    search_options,
-    verbose_option,
-)
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
@@ -30,9 +19,9 @@ if TYPE_CHECKING:
 
 @click.command("map", epilog=exit_code_table())
 @click.argument("linkage", metavar="NAME|FILE.toml")
-@out_option("dataset, graph, summary, figures and the page map.html")
-@json_option("; angles in radians")
-@no_certify_option
+@options.out_option("dataset, graph, summary, figures and the page map.html")
+@options.json_option("; angles in radians")
+@options.no_certify_option
 @click.option(
     "--digits",
     type=click.IntRange(20, 1000),
@@ -43,7 +32,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--axes",
-    type=JointWords(2, 3),
+    type=options.JointWords(2, 3),
     metavar="I,J[,K]",
     help=(
         "Draw the transition map over these two or three joints, by their names or "
@@ -52,25 +41,20 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--against",
-    type=JointWords(1, 1),
+    type=options.JointWords(1, 1),
     metavar="I",
     help="Draw the singular values against this joint; needs --out.",
 )
-@hold_options
-@param_option
-@search_options
-@verbose_option
+@options.atlas_options
 def map_command(
     linkage: str,
-    parameters: tuple[str, ...],
     out: Path | None,
     as_json: bool,
     no_certify: bool,
     digits: int | None,
     axes: tuple[str, ...] | None,
     against: tuple[str, ...] | None,
-    search: SearchOptions,
-    hold: HoldOptions,
+    choice: options.AtlasOptions,
 ) -> None:
     """Map every motion form of a linkage, every bifurcation, and the graph between
     them.
@@ -97,14 +81,16 @@ def map_command(
             "--digits: it has no place in the JSON document; leave out --json"
         )
     require_out(out, axes=axes, against=against)
-    if hold.is_without_centre and digits:
+    if choice.hold.is_without_centre and digits:
         raise CommandError("--digits: it does not go with --without-centre")
     require_folder(out)
-    mechanism = choose_held(linkage, parameters, hold)
+    mechanism = choose_held(linkage, choice.parameters, choice.hold)
     over = figure_axes(mechanism, axes, against)
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
-        atlas = explore_linkage(mechanism, replace(search, certify=not no_certify))
+        atlas = explore_linkage(
+            mechanism, replace(choice.search, certify=not no_certify)
+        )
         try:
             report(atlas, as_json)
         finally:  # where nothing can be shown, there are still the files
@@ -112,11 +98,9 @@ def map_command(
     if digits:
         from linkages.app.reports.confirmation import describe_confirmation
 
-        say("\n" + describe_confirmation(atlas, linkage, parameters, digits))
+        say("\n" + describe_confirmation(atlas, linkage, choice.parameters, digits))
     if out is not None:
-        paths += draw_figures(atlas, out, over)
-        paths.append(write_map_page(atlas, out))
-        say_written(paths, out)
+        say_written([*paths, *write_pictures(atlas, out, over)], out)
     verdict = judge(atlas)
     if as_json and verdict.code is not ExitCode.DONE:
         click.echo(verdict.sentence, err=True)
@@ -142,8 +126,8 @@ def write_numbers(atlas: Atlas, out: Path | None) -> list[Path]:
         return []
     from linkages.app.files import write_data
     from linkages.app.output import writing_to
-    from linkages.app.subject import subject_at
     from linkages.app.texts.summary import make_summary
+    from linkages.subject import subject_at
 
     with writing_to(out):
         subject = subject_at(atlas)
@@ -151,29 +135,23 @@ def write_numbers(atlas: Atlas, out: Path | None) -> list[Path]:
         return write_data(atlas, out, make_summary(atlas), more, others)
 
 
-def write_map_page(atlas: Atlas, out: Path) -> Path:
-    """The path of the page that `bifurc view` makes, just written to ``out``."""
+def write_pictures(atlas: Atlas, out: Path, over: FigureAxes) -> list[Path]:
+    """The paths of the figures, and of the page that `bifurc view` makes, just written
+    to ``out``."""
     from linkages.app.answer.verdict import judge
+    from linkages.app.files import write_figures
     from linkages.app.output import writing_to
     from linkages.viewing.document import make_view_document
     from linkages.viewing.page import write_page
 
-    document = make_view_document(atlas, judge(atlas).sentence)
     with writing_to(out):
-        return write_page(document, out / "map.html")
+        figures = write_figures(atlas, out, over)
+        document = make_view_document(atlas, judge(atlas).sentence)
+        return [*figures, write_page(document, out / "map.html")]
 
 
-def require_out(out: Path | None, **options: tuple[str, ...] | None) -> None:
+def require_out(out: Path | None, **figures: tuple[str, ...] | None) -> None:
     """Raise `CommandError` for options of figures where no figure is written."""
-    for name, value in options.items():
+    for name, value in figures.items():
         if value is not None and out is None:
             raise CommandError(f"--{name}: figures are only drawn with --out DIR")
-
-
-def draw_figures(atlas: Atlas, out: Path, over: FigureAxes) -> list[Path]:
-    """The paths of the figures, just written to ``out``."""
-    from linkages.app.files import write_figures
-    from linkages.app.output import writing_to
-
-    with writing_to(out):
-        return write_figures(atlas, out, over)

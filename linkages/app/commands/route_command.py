@@ -7,15 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from linkages.app import options
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
-from linkages.app.options import (
-    HoldOptions,
-    SearchOptions,
-    hold_options,
-    param_option,
-    search_options,
-    verbose_option,
-)
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
@@ -37,19 +30,14 @@ if TYPE_CHECKING:
     metavar="LOCKS[@ANGLES]",
     help="The same at the goal.",
 )
-@hold_options
-@param_option
-@search_options
-@verbose_option
+@options.atlas_options
 def route_command(
     source: str,
     start: str | None,
     goal: str | None,
     start_locks: str | None,
     goal_locks: str | None,
-    parameters: tuple[str, ...],
-    search: SearchOptions,
-    hold: HoldOptions,
+    choice: options.AtlasOptions,
 ) -> None:
     """Show how to take a linkage from one form to another, over surfaces where that is
     the way.
@@ -73,16 +61,16 @@ def route_command(
     if start_locks is not None or goal_locks is not None:
         if start is not None:
             raise CommandError("--from, --to: they replace the names FROM and TO")
-        if hold != HoldOptions():
+        if choice.hold != options.HoldOptions():
             raise CommandError(
-                f"{hold.names}: --from and --to say which joints are locked"
+                f"{choice.hold.names}: --from and --to say which joints are locked"
             )
-        _route_over_locks(source, start_locks, goal_locks, parameters, search)
+        _route_over_locks(source, start_locks, goal_locks, choice)
         return
     if start is None or goal is None:
         missing = "FROM" if start is None else "TO"
         raise click.UsageError(f"Missing argument '{missing}'.")
-    atlas = atlas_of(source, parameters, search, hold)
+    atlas = atlas_of(source, choice)
     if not atlas.forms and not atlas.surfaces:
         verdict = judge(atlas)
         raise CommandError(verdict.sentence, verdict.code)
@@ -96,8 +84,7 @@ def _route_over_locks(
     source: str,
     start: str | None,
     goal: str | None,
-    parameters: tuple[str, ...],
-    search: SearchOptions,
+    choice: options.AtlasOptions,
 ) -> None:
     """Show the route of a network over its locks; raises `CommandError` where there is
     none, or the source is no network."""
@@ -115,13 +102,14 @@ def _route_over_locks(
         raise CommandError(refusal)
     if start is None or goal is None:
         raise CommandError("--from, --to: both must be given")
-    chosen = require_kind(choose_linkage(source, parameters), NetworkMechanism, refusal)
+    named = choose_linkage(source, choice.parameters)
+    chosen = require_kind(named, NetworkMechanism, refusal)
     network = chosen.placed.network
     places = [
         read_place(text, option, chosen)
         for option, text in (("--from", start), ("--to", goal))
     ]
-    uncertified = replace(search, certify=False)
+    uncertified = replace(choice.search, certify=False)
 
     def explore(mechanism: NetworkMechanism) -> Atlas:
         atlas = explore_linkage(mechanism, uncertified)
@@ -132,5 +120,5 @@ def _route_over_locks(
         route = find_lock_route(network, places[0], places[1], explore)
     except RouteError as error:
         raise CommandError(str(error), ExitCode.NO_ROUTE) from None
-    last = explore(lock_network(network, places[1].locks))
-    say(describe_lock_route(route, chosen, last))
+    locked = lock_network(network, places[1].locks)
+    say(describe_lock_route(route, locked, explore(locked)))

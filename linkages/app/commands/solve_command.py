@@ -9,15 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from bifurc.limits import HeldInterrupt
+from linkages.app import options
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
-from linkages.app.options import (
-    SearchOptions,
-    json_option,
-    no_certify_option,
-    out_option,
-    search_options,
-    verbose_option,
-)
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
@@ -26,9 +19,9 @@ if TYPE_CHECKING:
 
 @click.command("solve", epilog=exit_code_table())
 @click.argument("equations", metavar="FILE.toml")
-@out_option("dataset, graph, summary and figures")
-@json_option()
-@no_certify_option
+@options.out_option("dataset, graph, summary and figures")
+@options.json_option()
+@options.no_certify_option
 @click.option(
     "--param",
     "parameters",
@@ -44,8 +37,8 @@ if TYPE_CHECKING:
     help="Divide the bounds of two to four unknowns into so many boxes at most, to prove "
     "that nothing is missing; 0 for none.",
 )
-@search_options
-@verbose_option
+@options.search_options
+@options.verbose_option
 def solve_command(
     equations: str,
     parameters: tuple[str, ...],
@@ -53,7 +46,7 @@ def solve_command(
     as_json: bool,
     no_certify: bool,
     boxes: int,
-    search: SearchOptions,
+    search: options.SearchOptions,
 ) -> None:
     """Find all solution curves of the equations in a file, their bifurcations, and the
     bifurcation diagram along a parameter.
@@ -107,7 +100,7 @@ def solve_command(
     click.get_current_context().exit(code)
 
 
-def explore_system(system: EquationSystem, search: SearchOptions) -> Atlas:
+def explore_system(system: EquationSystem, search: options.SearchOptions) -> Atlas:
     """The atlas of a system; progress is shown on standard error."""
     from linkages.app.output import StatusLine
 

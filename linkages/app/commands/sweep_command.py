@@ -7,14 +7,8 @@ from pathlib import Path
 
 import click
 
+from linkages.app import options
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
-from linkages.app.options import (
-    FOLDER,
-    HOLD_OPTIONS,
-    NamedPath,
-    seed_option,
-    starts_option,
-)
 
 MOST_MEMBERS = 1_000_000_000
 MOST_WORKERS = 10_000
@@ -42,7 +36,7 @@ MOST_WORKERS = 10_000
         "JOINT=VALUE, or JOINT=LOW:HIGH with --random; in the units of `bifurc map`."
     ),
 )
-@HOLD_OPTIONS["is_without_centre"]
+@options.HOLD_OPTIONS["is_without_centre"]
 @click.option(
     "--random",
     type=click.IntRange(1, MOST_MEMBERS),
@@ -52,12 +46,12 @@ MOST_WORKERS = 10_000
     "--out",
     default="sweep.zarr",
     show_default=True,
-    type=NamedPath(),
+    type=options.NamedPath(),
     help="Zarr dataset to write.",
 )
 @click.option(
     "--atlases",
-    type=FOLDER,
+    type=options.FOLDER,
     help="Folder for every member's atlas.",
 )
 @click.option(
@@ -70,8 +64,8 @@ MOST_WORKERS = 10_000
     metavar="ADDRESS",
     help="Dask scheduler, for several machines: tcp://host:8786.",
 )
-@starts_option("Number of random starts of every member.")
-@seed_option("Seed of the random starts and members.")
+@options.starts_option("Number of random starts of every member.")
+@options.seed_option("Seed of the random starts and members.")
 def sweep_command(
     source: str,
     parameters: tuple[str, ...],

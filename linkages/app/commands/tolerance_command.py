@@ -7,17 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from linkages.app import options
 from linkages.app.exit_codes import exit_code_table
-from linkages.app.options import (
-    HoldOptions,
-    NumberRange,
-    SearchOptions,
-    hold_options,
-    number_option,
-    out_option,
-    param_option,
-    seed_option,
-)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -29,17 +20,19 @@ MOST_COPIES = 10_000
 
 @click.command("tolerance", epilog=exit_code_table())
 @click.argument("linkage", metavar="NAME|FILE.toml")
-@number_option(
+@options.number_option(
     "--error",
-    NumberRange(min=0, max=LARGEST_ERROR),
+    options.NumberRange(min=0, max=LARGEST_ERROR),
     1e-4,
     "Standard deviation of the errors.",
 )
-@number_option("--samples", click.IntRange(1, MOST_COPIES), 4, "Copies that are made.")
-@seed_option("Number of the first copy.")
-@hold_options
-@param_option
-@out_option("tolerance.txt and .png")
+@options.number_option(
+    "--samples", click.IntRange(1, MOST_COPIES), 4, "Copies that are made."
+)
+@options.seed_option("Number of the first copy.")
+@options.hold_options
+@options.param_option
+@options.out_option("tolerance.txt and .png")
 def tolerance_command(
     linkage: str,
     error: float,
@@ -47,7 +40,7 @@ def tolerance_command(
     seed: int,
     parameters: tuple[str, ...],
     out: Path | None,
-    hold: HoldOptions,
+    hold: options.HoldOptions,
 ) -> None:
     """Show what manufacturing errors make of the forms and bifurcations of a linkage.
 
@@ -64,20 +57,19 @@ def tolerance_command(
     from linkages.app.choice import choose_held
     from linkages.app.output import require_folder, say
     from linkages.app.reports.tolerance import climb, describe_tolerance, measure
-    from linkages.app.subject import as_subject
     from linkages.app.texts.form_names import require_forms
+    from linkages.subject import subject_at
 
     require_folder(out)
     chosen = choose_held(linkage, parameters, hold)
-    atlas = explore_linkage(chosen, SearchOptions())
+    atlas = explore_linkage(chosen, options.SearchOptions())
     require_uninterrupted(atlas)
     require_forms(atlas, " to measure.")
-    subject = as_subject(chosen)
     # in the unknowns of the equations of what is made with errors
-    nominal, atlas = subject.geometry, subject.in_loop_angles(atlas)
+    atlas = subject_at(atlas).in_loop_angles(atlas)
     seeds = range(seed, seed + samples)
-    copies = [measure(atlas, nominal, error, number) for number in seeds]
-    ladder = climb(atlas, nominal, seeds)
+    copies = [measure(atlas, error, number) for number in seeds]
+    ladder = climb(atlas, seeds)
     text = describe_tolerance(atlas, copies, ladder)
     try:
         say(text)

@@ -6,16 +6,8 @@ from pathlib import Path
 
 import click
 
+from linkages.app import options
 from linkages.app.exit_codes import exit_code_table
-from linkages.app.options import (
-    FILE,
-    HoldOptions,
-    SearchOptions,
-    hold_options,
-    param_option,
-    search_options,
-    verbose_option,
-)
 
 PAGE = ".html"
 
@@ -24,22 +16,17 @@ PAGE = ".html"
 @click.argument("source", metavar="NAME|FILE.toml|ATLAS.nc")
 @click.option(
     "--out",
-    type=FILE,
+    type=options.FILE,
     metavar="FILE.html",
     help="The page.  [default: NAME.html in this folder]",
 )
 @click.option("--no-open", is_flag=True, help="Write the page, but do not open it.")
-@hold_options
-@param_option
-@search_options
-@verbose_option
+@options.atlas_options
 def view_command(
     source: str,
-    parameters: tuple[str, ...],
     out: Path | None,
     no_open: bool,
-    search: SearchOptions,
-    hold: HoldOptions,
+    choice: options.AtlasOptions,
 ) -> None:
     """Show a linkage in motion beside its transition map: one page, which a browser
     opens without a network.
@@ -64,7 +51,7 @@ def view_command(
     path = out or Path(Path(source).stem + PAGE)
     require_ending("--out", path, PAGE)
     require_writable(path)
-    atlas = atlas_of(source, parameters, search, hold)
+    atlas = atlas_of(source, choice)
     verdict = judge(atlas)
     document = make_view_document(atlas, verdict.sentence)
     with writing_to(path):

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from bifurc.atlas import Atlas, Form
 from bifurc.tables import section_of
-from linkages.app.subject import (
+from linkages.app.texts.configurations import (
     arclength_unit,
     numbers_at,
     show_configuration,
-    subject_at,
 )
-from linkages.links.clearance import Approach
+from linkages.links.clearance import Approach, approaches_along
+from linkages.subject import subject_at
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,8 +25,8 @@ class FormClearance:
 
     form: Form
     diameter: float
-    names: tuple[str, ...]
-    approaches: tuple[Approach, ...]
+    names: Sequence[str]
+    approaches: Sequence[Approach]
 
     def gap(self, approach: Approach) -> float:
         """What is left between two links; below zero they meet."""
@@ -38,9 +39,9 @@ class FormClearance:
 
 def clearance_of(atlas: Atlas, form: Form, diameter: float) -> FormClearance:
     """The clearance of links of a diameter along a form."""
-    subject = subject_at(atlas)
-    approaches = subject.approaches(form.branch)
-    return FormClearance(form, diameter, subject.part_names, approaches)
+    parts = subject_at(atlas).parts
+    approaches = approaches_along(parts, form.branch)
+    return FormClearance(form, diameter, parts.names, approaches)
 
 
 def clearance_document(
@@ -73,7 +74,7 @@ SHOWN = 1e-9  # in characteristic lengths: what is less comes out as 0
 def describe_clearance(atlas: Atlas, clearances: list[FormClearance]) -> str:
     """A sentence and a table for every form."""
     parts = [_of_form(atlas, clearance) for clearance in clearances]
-    links = subject_at(atlas).parts
+    links = subject_at(atlas).parts.word
     explanation = (
         f"Lengths are in the unit of the linkage; {links} that share a joint are left "
         "out."
@@ -87,15 +88,16 @@ def _of_form(atlas: Atlas, clearance: FormClearance) -> str:
     if not clearance.approaches:
         return f"{clearance.form.name}: every two bodies share a joint"
     subject = subject_at(atlas)
-    word = subject.parts
+    word = subject.parts.word
     smallest = SHOWN * subject.size
     unit = arclength_unit(atlas)
     rows = []
     for approach in clearance.approaches:
+        gap = clearance.gap(approach)
         rows.append(
             {
                 word: " and ".join(clearance.links(approach)),
-                "clearance": _length(clearance.gap(approach), smallest),
+                "clearance": "0" if abs(gap) < smallest else f"{gap:.6g}",
                 "at most less by": f"{approach.error:.1g}",
                 f"arclength ({unit.name})": f"{unit.factor * approach.s:.3f}",
                 subject.heading(atlas): show_configuration(atlas, approach.theta),
@@ -103,8 +105,3 @@ def _of_form(atlas: Atlas, clearance: FormClearance) -> str:
         )
     least = f"{rows[0]['clearance']} ({word} {rows[0][word]})"
     return section_of(f"{clearance.form.name}: the least clearance is {least}", rows)
-
-
-def _length(length: float, smallest: float) -> str:
-    """A length to six digits; what is below the smallest one shown comes out as 0."""
-    return "0" if abs(length) < smallest else f"{length:.6g}"

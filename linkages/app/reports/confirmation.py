@@ -16,9 +16,9 @@ from bifurc.singular.confirm import (
 )
 from bifurc.tables import section_of
 from linkages.app.choice import choose_precisely
-from linkages.app.subject import LoopSubject, subject_at
 from linkages.closure.precise import precise_residual
 from linkages.linkage import is_linkage_file
+from linkages.subject import subject_at
 
 # where rounded numbers leave a gap: the word for how a point was refined
 ROUNDED = "rounded"
@@ -30,14 +30,14 @@ def confirm_points(
     """Every singular point of the map of a linkage with its `Confirmation`, the
     geometry at the same precision; that of a mechanism is taken from its doubles."""
     residual: PreciseResidual | None
-    if isinstance(subject_at(atlas), LoopSubject):
+    if subject_at(atlas).is_exact:
         with mpmath.workdps(3 * digits + 30):
             residual = precise_residual(choose_precisely(linkage, parameters))
     else:
         # the equations in which the points were located: others, as they are rounded,
         # have their singular points elsewhere
         atlas = subject_at(atlas).in_loop_angles(atlas)
-        residual = subject_at(atlas).equations().precise_residual()
+        residual = subject_at(atlas).closure.precise_residual()
     assert residual is not None
     for meeting in atlas.points:
         point = meeting.point
@@ -55,8 +55,7 @@ def describe_confirmation(
     rows = []
     endings = {}
     gap = 0.0
-    is_table = isinstance(subject_at(atlas), LoopSubject)
-    is_rounded = not is_table or is_linkage_file(linkage)
+    is_rounded = not subject_at(atlas).is_exact or is_linkage_file(linkage)
     for point, confirmation in confirm_points(atlas, linkage, parameters, digits):
         word = confirmation.convergence.name.lower().replace("_", " ")
         if is_rounded and confirmation.convergence is Convergence.INCONSISTENT:

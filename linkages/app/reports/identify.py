@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from bifurc.tables import count_of
-from linkages.app.texts.numbers import known_to, link_name
+from linkages.app.texts.numbers import known_to
 from linkages.entry import ParameterKind
+from linkages.geometry_table import link_name
 from linkages.identification.fitting import NEAR
 from linkages.identification.identify import Identification, LockedJoint, Match
 

@@ -13,11 +13,11 @@ from bifurc.atlas import Atlas, Form
 from bifurc.tables import table
 from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.options import PrintOptions
-from linkages.app.subject import show_configuration
-from linkages.app.texts.numbers import link_name
+from linkages.app.texts.configurations import show_configuration
+from linkages.geometry_table import link_name
 from linkages.labels import loop_of
 from linkages.loop import Loop
-from linkages.printing.assembly import Dimensions, Kind, Part
+from linkages.printing.assembly import Dimensions, Kind
 from linkages.printing.seating import (
     REACHES,
     PartApproach,
@@ -27,7 +27,7 @@ from linkages.printing.seating import (
 )
 from linkages.values import GeometryError, told_apart
 
-DIAMETER, PLAY, WALL, SIZE = 6.0, 0.3, 1.2, 100.0  # mm
+SIZE = 100.0  # mm
 SMALLEST_SIZE, LARGEST_SIZE = 1.0, 10_000.0  # mm
 FARTHEST = 10.0  # characteristic lengths: how far along its axis a hinge may sit
 MOST_MEETINGS = 12  # that are listed
@@ -44,15 +44,6 @@ def require_cad(out: Path) -> None:
         )
 
 
-def _dimensions_of(options: PrintOptions) -> Dimensions:
-    """The sizes of rods and hinges; raises `GeometryError`."""
-    return Dimensions(
-        options.diameter if options.diameter is not None else DIAMETER,
-        options.play if options.play is not None else PLAY,
-        options.wall if options.wall is not None else WALL,
-    )
-
-
 def seat_hinges(
     atlas: Atlas, forms: Sequence[Form], options: PrintOptions, seed: int
 ) -> Seating:
@@ -61,7 +52,7 @@ def seat_hinges(
 
     Raises `GeometryError` for sizes that do not fit the linkage.
     """
-    dimensions = _dimensions_of(options)
+    dimensions = Dimensions(options.diameter, options.play, options.wall)
     loop = _in_millimetres(loop_of(atlas), options)
     size = loop.characteristic_length
     if not dimensions.diameter < size:
@@ -214,11 +205,9 @@ def interference_error(seating: Seating, options: PrintOptions) -> CommandError:
 
 def _part_names(seating: Seating, approach: PartApproach) -> str:
     n = seating.assembly.loop.n
-    first, second = (_part_name(part, n) for part in approach.parts)
-    return f"{first} and {second}"
-
-
-def _part_name(part: Part, n: int) -> str:
-    if part.kind is Kind.LINK:
-        return f"link {link_name(part.joint, n)}"
-    return f"hinge {part.joint + 1}"
+    names = []
+    for part in approach.parts:
+        is_link = part.kind is Kind.LINK
+        number = link_name(part.joint, n) if is_link else f"{part.joint + 1}"
+        names.append(f"{part.kind.value} {number}")
+    return " and ".join(names)

@@ -21,10 +21,8 @@ from bifurc.atlas import Atlas, MeetingPoint
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.valley import Unfolding, correct_to_valley, unfold_crossing
 from bifurc.tables import count_of, section, section_of
-from linkages.app.subject import subject_at, unit_of_arclengths
-from linkages.loop import Loop
-from linkages.mechanisms.mechanism import Mechanism
-from linkages.tolerance import closure_with_errors
+from linkages.app.texts.configurations import unit_of_arclengths
+from linkages.subject import subject_at
 
 Floats = NDArray[np.float64]
 
@@ -84,13 +82,11 @@ def room_beside(branch: Branch, s: float, sign: int) -> float:
     return branch.length - s if sign > 0 else s
 
 
-def measure(
-    atlas: Atlas, linkage: Loop | Mechanism, error: float, seed: int
-) -> Tolerance:
-    """The copy number ``seed`` of a linkage, made with ``error``, against its nominal
-    atlas."""
+def measure(atlas: Atlas, error: float, seed: int) -> Tolerance:
+    """The copy number ``seed`` of the linkage of an atlas, made with ``error``, against
+    this atlas."""
     rng = np.random.default_rng(seed)
-    problem = closure_with_errors(linkage, error, rng)
+    problem = subject_at(atlas).closure_with_errors(error, rng)
     largest = []
     median = []
     for form in atlas.forms:
@@ -104,21 +100,16 @@ def measure(
     return Tolerance(error, np.array(largest), np.array(median), tuple(unfoldings))
 
 
-def climb(
-    atlas: Atlas,
-    linkage: Loop | Mechanism,
-    seeds: Sequence[int],
-    errors: Floats = ERRORS,
-) -> Ladder:
+def climb(atlas: Atlas, seeds: Sequence[int], errors: Floats = ERRORS) -> Ladder:
     """The copies ``seeds`` at every one of ``errors``."""
     gaps = []
     widths = []
     weakest = []
     for error in errors:
-        copies = [measure(atlas, linkage, float(error), seed) for seed in seeds]
+        copies = [measure(atlas, float(error), seed) for seed in seeds]
         gaps.append(np.array([copy.largest for copy in copies]))
-        widths.append(np.array([_widths(copy) for copy in copies]))
-        weakest.append(np.array([_smallest_values(copy) for copy in copies]))
+        widths.append(np.array([_of_whole(copy, "distance") for copy in copies]))
+        weakest.append(np.array([_of_whole(copy, "weakest") for copy in copies]))
     return Ladder(
         np.asarray(errors), np.array(gaps), np.array(widths), np.array(weakest)
     )
@@ -134,14 +125,9 @@ def is_joined(valley: Branch) -> bool:
     return valley.outcome is Outcome.LEFT_REGION
 
 
-def _widths(copy: Tolerance) -> list[float]:
-    """Width of the near miss that every bifurcation has become."""
-    return [u.distance if is_whole(u) else np.nan for u in copy.unfoldings]
-
-
-def _smallest_values(copy: Tolerance) -> list[float]:
-    """Smallest singular value at what every bifurcation has become."""
-    return [u.weakest if is_whole(u) else np.nan for u in copy.unfoldings]
+def _of_whole(copy: Tolerance, value: str) -> list[float]:
+    """A value of what every bifurcation has become."""
+    return [getattr(u, value) if is_whole(u) else np.nan for u in copy.unfoldings]
 
 
 def slope(errors: Floats, values: Floats) -> float:

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from bifurc.atlas import Atlas, MeetingPoint
 from bifurc.curves.valley import Unfolding
 from linkages.app.reports.tolerance import Ladder, Tolerance, half_branches, room_beside
-from linkages.app.subject import arclength_unit, unit_of_arclengths
+from linkages.app.texts.configurations import arclength_unit, unit_of_arclengths
 
 COLOURS = (
     "#0077bb",

@@ -145,7 +145,14 @@ def verify(name: str, members: int = 1, points: int = 6, seed: int = 0) -> Verif
     `UnknownLinkageError`."""
     family = entry(name)
     rng = np.random.default_rng(seed)
-    proofs = [_check_form(form, family, points, seed) for form in family.closed_forms]
+    proofs = []
+    for form in family.closed_forms:
+        proof = prove(form, family, points, seed)
+        proofs.append(
+            ClosedFormCheck(
+                form.form, form.source, proof.proved, proof.points, proof.doubt
+            )
+        )
     parameters = [family.defaults]
     parameters += [family.draw(rng) for _ in range(members - 1)]
     errata = [ErratumCheck(e.equation, *e.measure()) for e in errata_of(name)]
@@ -157,15 +164,6 @@ def verify(name: str, members: int = 1, points: int = 6, seed: int = 0) -> Verif
         members=tuple(checks),
         errata=tuple(errata),
         expected=family.facts.get("mobility", 1),
-    )
-
-
-def _check_form(
-    form: ClosedForm, family: Entry, points: int, seed: int
-) -> ClosedFormCheck:
-    proof = prove(form, family, points, seed)
-    return ClosedFormCheck(
-        form.form, form.source, proof.proved, proof.points, proof.doubt
     )
 
 
@@ -185,7 +183,9 @@ def check_member(family: Entry, values: Mapping[str, float], seed: int) -> Membe
         return MemberCheck(values, mobility=2 if has_surfaces else 0)
     problem = LoopClosure(loop)
     branches = [trace_branch(problem, start) for start in starts]
-    corank = min(_nullities(problem, starts))
+    # how many singular values vanish
+    is_zero = singular_values(problem, starts) < SINGULAR
+    corank = int(is_zero.sum(axis=1).min())
     distances = []
     if forms:
         distances = [compare(forms, values, problem, branch) for branch in branches]
@@ -220,14 +220,6 @@ def _surveyed_starts(loop: Loop, seed: int) -> tuple[Floats, bool]:
     atlas = survey(loop, seed=seed).atlas
     starts = np.array([form.branch(0.0) for form in atlas.forms])
     return starts.reshape(-1, loop.n), bool(atlas.surfaces)
-
-
-def _nullities(problem: LoopClosure, points: Floats) -> list[int]:
-    """How many singular values vanish at each of the points (k, n)."""
-    return [
-        int(np.count_nonzero(values < SINGULAR))
-        for values in singular_values(problem, points)
-    ]
 
 
 def _mobility(branches: Sequence[Branch], corank: int) -> int:

@@ -3,12 +3,14 @@ the dataset."""
 
 from __future__ import annotations
 
+import csv
 import logging
 import math
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from importlib.resources import files
 from pathlib import Path
 from typing import TypeAlias
 
@@ -19,10 +21,10 @@ from bifurc.atlas import Atlas
 from bifurc.graphs import arc_graph, transition_graph
 from bifurc.settings import SearchSettings
 from linkages.app.answer.verdict import is_without_gaps
-from linkages.app.subject import subject_at
 from linkages.app.sweep.subjects import JointName, Member, Subject
 from linkages.labels import FormLabels
 from linkages.mapping import map_linkage
+from linkages.subject import subject_at
 from linkages.values import GeometryError
 
 # values of `FIELDS` by name, and the message of a member that was refused or failed
@@ -54,54 +56,17 @@ class Field:
         return math.nan if self.dtype.startswith("f") else -1
 
 
-def _count(meaning: str) -> Field:
-    return Field("i2", "", f"number of {meaning}")
+def _read_fields() -> dict[str, Field]:
+    """All variables by their names, as ``fields.csv`` lists them."""
+    text = files("linkages.app.sweep").joinpath("fields.csv").read_text("utf-8")
+    fields = {}
+    for line in csv.DictReader(text.splitlines()):
+        name, is_per_joint = line.pop("name"), bool(line.pop("per_joint"))
+        fields[name] = Field(**line, per_joint=is_per_joint)
+    return fields
 
 
-def _flag(meaning: str) -> Field:
-    return Field("i1", "", meaning)
-
-
-def _ratio(meaning: str) -> Field:
-    return Field("f8", "1", meaning)
-
-
-def _way(meaning: str) -> Field:
-    return Field("f8", "rad", meaning)
-
-
-FIELDS: Mapping[str, Field] = {
-    "status": _flag("0 mapped, 1 refused, 2 failed, -1 not done"),
-    "mobility": Field("i2", "", "largest dimension of a component; 0 where rigid"),
-    "forms": _count("motion forms"),
-    "closed_forms": _count("closed forms"),
-    "bifurcations": _count("bifurcations"),
-    "components": _count("connected components made of forms"),
-    "one_cycle": _flag("1 where the graph of forms is one cycle through all of them"),
-    "rank_drops": _count("rank drops with a single branch"),
-    "surfaces": _count("components of mobility 2 or more"),
-    "rigid": _count("isolated rigid assemblies"),
-    "inactive_joints": Field(
-        "i2", "", "number of forms in which the joint does not turn", per_joint=True
-    ),
-    "smallest_gap": _ratio("smallest singular value at a near miss, relative"),
-    "total_length": _way("joint-space length of all forms"),
-    "longest_form": _way("joint-space length of the longest form"),
-    "longest_route": _way(
-        "largest of the shortest distances between two singular points"
-    ),
-    "mean_route": _way("mean of the shortest distances between two singular points"),
-    "closure": _ratio(
-        "largest closure error along any form, relative to the characteristic length"
-    ),
-    "closure_gap": _ratio("where there is no form: residual left along the valley"),
-    "missed_probability": _ratio(
-        "estimated probability that one more start finds something new"
-    ),
-    "complete": _flag("1 where every slice was complete"),
-    "seconds": Field("f8", "s", "processor time taken"),
-}
-
+FIELDS = _read_fields()
 
 log = logging.getLogger(__name__)
 
@@ -183,19 +148,13 @@ def _forms_without(
     atlas: Atlas, member: Member, joints: Sequence[JointName]
 ) -> list[int]:
     """For every one of the ``joints`` the number of forms in which it stands still."""
-    of_forms = _still_joints(atlas, member)
-    return [sum(joint in still for still in of_forms) for joint in joints]
-
-
-def _still_joints(atlas: Atlas, member: Member) -> list[set[JointName]]:
-    """For every form the joints that stand still along it."""
     subject = subject_at(atlas)
     names: dict[JointName, JointName] = dict(enumerate(member.joints, start=1))
-    still_joints = []
+    of_forms: list[set[JointName]] = []
     for form in range(len(atlas.forms)):
         still = subject.still_joints(atlas, form)
-        still_joints.append({names.get(one, one) for one in still} | {*member.replaced})
-    return still_joints
+        of_forms.append({names.get(one, one) for one in still} | {*member.replaced})
+    return [sum(joint in still for still in of_forms) for joint in joints]
 
 
 def _is_one_cycle(atlas: Atlas) -> bool:

@@ -187,7 +187,8 @@ def read_plan(
         elif len(numbers) == (2 if random else 3):
             spans[name] = numbers
         else:
-            allowed = _form(quantity.key, random)
+            values = "low:high with --random" if random else "first:last:count"
+            allowed = f"of the form {quantity.key}=... with value or {values}"
             raise GeometryError(f"{option} {quantity.key}", repr(text), allowed)
     if random:
         ranges = _ranges(subject, fixed, spans)
@@ -216,14 +217,6 @@ def _options(subject: Subject) -> str:
     """The options behind which the quantities of a subject stand."""
     options = dict.fromkeys(one.option for one in subject.quantities)
     return " or ".join(options)
-
-
-def _form(key: str, random: int) -> str:
-    """What the text of a quantity may look like."""
-    values = (
-        "value or low:high with --random" if random else "value or first:last:count"
-    )
-    return f"of the form {key}=... with {values}"
 
 
 def _ranges(

@@ -16,7 +16,7 @@ from linkages.app.choice import NO_NETWORK, check_limits, choose_linkage, requir
 from linkages.app.exit_codes import CommandError
 from linkages.catalogue import entry
 from linkages.entry import Parameter, ParameterKind
-from linkages.linkage import Linkage, is_linkage_file
+from linkages.linkage import Linkage, is_linkage_file, load
 from linkages.networks.entries import LENGTHS, NETWORKS
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ class Quantity:
 class Member:
     """A linkage or a mechanism that is mapped.
 
-    ``joints`` are what the joints of a loop are called, in their order; ``replaced``
+    ``joints`` are the names of the joints of a loop, where they have some; ``replaced``
     are joints of the subject that it does not have, since they stand still.
     """
 
@@ -134,11 +134,7 @@ class Family(Subject):
 
     def member(self, values: Mapping[str, float]) -> Member:
         """The member with the forms that its source names."""
-        source = entry(self.name)
-        complete = source.complete(values)
-        loop = source.build(**complete)
-        patterns = source.patterns(**complete) if source.patterns is not None else ()
-        return Member(Linkage(loop, patterns), tuple(range(1, loop.n + 1)))
+        return Member(load(self.name, **values))
 
 
 @dataclass(frozen=True)

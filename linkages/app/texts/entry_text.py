@@ -6,8 +6,9 @@ import math
 from collections.abc import Sequence
 
 from bifurc.tables import table
-from linkages.app.texts.numbers import in_degrees, known_to, link_name
+from linkages.app.texts.numbers import known_to
 from linkages.entry import Entry, Parameter, ParameterKind
+from linkages.geometry_table import geometry_rows, geometry_text
 from linkages.loop import Loop
 
 
@@ -33,20 +34,8 @@ def parameter_table(parameters: Sequence[Parameter]) -> str:
 
 def describe_geometry(loop: Loop) -> str:
     """The Denavit-Hartenberg table of a loop, twists in degrees."""
-    lengths, twists, offsets = loop.arrays
-    rows = []
-    for i in range(loop.n):
-        rows.append(
-            (
-                str(i + 1),
-                link_name(i, loop.n),
-                f"{lengths[i]:.10g}",
-                in_degrees(twists[i]),
-                f"{offsets[i]:.10g}",
-            )
-        )
-    heads = ("joint", "link", "length", "twist (deg)", "offset")
-    text = "Geometry\n" + table(heads, rows)
+    rows = geometry_rows(loop.lengths, loop.twists, loop.offsets)
+    text = f"Geometry\n{geometry_text(rows)}"
     if loop.rounding:
         text += "\n\n" + known_to(loop.rounding, loop.characteristic_length)
     return text

@@ -11,13 +11,13 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.tables import section, section_of
 from bifurc.torus import wrap
-from linkages.app.answer.mechanism_document import describe_mechanism
-from linkages.app.subject import SHOWN_SHARE
+from linkages.app.texts.configurations import SHOWN_SHARE
 from linkages.app.texts.form_names import listed_numbers
 from linkages.app.texts.numbers import in_degrees, in_lengths, known_to
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.readout.facts import form_facts
+from linkages.readout.mechanism_document import describe_mechanism
 from linkages.readout.ranges import VariableRange
 from linkages.readout.readout import Readout
 from linkages.structure.plane import is_on_sphere, normal_of_plane
@@ -213,7 +213,7 @@ def describe_dead_points(atlas: Atlas, readout: Readout) -> str:
     for event in sorted(
         atlas.dead_points, key=lambda one: (one.index, by_form[one.form])
     ):
-        label = readout.label_of_unknown(event.index)
+        label = atlas.names[event.index]
         if label not in labels:  # an entry of a rotation matrix, or a coordinate
             continue
         number = labels.index(label)
@@ -243,3 +243,39 @@ def _range(one: VariableRange, is_turn: bool, unit: float) -> str:
     if is_turn:
         return f"{one.label} {in_degrees(low, 2)} to {in_degrees(high, 2)}"
     return f"{one.label} {in_lengths(low, unit, 5)} to {in_lengths(high, unit, 5)}"
+
+
+# --- the outer loop of a network ------------------------------------------------------
+
+
+def describe_outer_joints(mechanism: Mechanism) -> str:
+    """At which D-H angles the outer joints are in the reference configuration, and
+    which of them are locked there; empty where there are none."""
+    rows = []
+    for joint in mechanism.outer_joints:
+        lock = "locked" if joint.is_locked else "-"
+        rows.append((joint.name, joint.label, in_degrees(joint.reference), lock))
+    heads = ("outer joint", "variable", "D-H angle where it is 0 (deg)", "lock")
+    return section("Outer loop", heads, rows)
+
+
+def describe_outer_motions(atlas: Atlas, readout: Readout) -> str:
+    """The range of the D-H angle of every outer joint along each form; empty where there
+    are none."""
+    outer = readout.mechanism.outer_joints
+    if not outer:
+        return ""
+    rows = []
+    for index in listed_numbers(atlas):
+        ranges = {one.label: one for one in form_facts(atlas, index, readout).ranges}
+        texts = [_outer_range(ranges[one.label], one.reference) for one in outer]
+        rows.append((atlas.forms[index].name, *texts))
+    heads = ("form", *(joint.name for joint in outer))
+    return section("Outer loop along the forms (D-H angles, deg)", heads, rows)
+
+
+def _outer_range(one: VariableRange, reference: float) -> str:
+    if one.turns:
+        return f"{one.turns:+d} turns" if abs(one.turns) > 1 else f"{one.turns:+d} turn"
+    low, high = in_degrees(one.low + reference, 2), in_degrees(one.high + reference, 2)
+    return low if low == high else f"{low} to {high}"

@@ -8,17 +8,12 @@ import io
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from bifurc.atlas import Atlas
-from bifurc.tables import section, table
+from bifurc.tables import section
 from linkages.app.texts.entry_text import list_below, parameter_table
-from linkages.app.texts.form_names import listed_numbers
 from linkages.app.texts.numbers import in_degrees
 from linkages.catalogue import entry
 from linkages.networks.entries import NetworkEntry
-from linkages.networks.mechanism import NetworkMechanism, lock_network
-from linkages.readout.facts import form_facts
-from linkages.readout.ranges import VariableRange
-from linkages.readout.readout import Readout
+from linkages.networks.mechanism import lock_network
 
 if TYPE_CHECKING:
     from linkages.identification.locked_networks import LockedState
@@ -56,42 +51,6 @@ def describe_network(entry: NetworkEntry) -> str:
         list_below("Misprints in the source", entry.errata),
     ]
     return "\n\n".join(part for part in parts if part)
-
-
-def describe_kinks(network: NetworkMechanism) -> str:
-    """At which D-H angles the outer joints are in the reference configuration, and
-    which of them are locked there."""
-    placed = network.placed
-    rows = []
-    for axis in placed.network.plan.ring:
-        locked = "locked" if axis in placed.kinks else "-"
-        angle = in_degrees(placed.turns[axis])
-        rows.append((axis, placed.label(axis), angle, locked))
-    heads = ("outer joint", "variable", "D-H angle where it is 0 (deg)", "lock")
-    return "Outer loop\n" + table(heads, rows)
-
-
-def describe_ring(atlas: Atlas, readout: Readout, network: NetworkMechanism) -> str:
-    """The range of the D-H angle of every outer joint along each form."""
-    placed = network.placed
-    ring = placed.network.plan.ring
-    rows = []
-    for index in listed_numbers(atlas):
-        ranges = {one.label: one for one in form_facts(atlas, index, readout).ranges}
-        texts = [
-            _range(ranges[placed.label(axis)], placed.turns[axis]) for axis in ring
-        ]
-        rows.append((atlas.forms[index].name, *texts))
-    return section(
-        "Outer loop along the forms (D-H angles, deg)", ("form", *ring), rows
-    )
-
-
-def _range(one: VariableRange, reference: float) -> str:
-    if one.turns:
-        return f"{one.turns:+d} turns" if abs(one.turns) > 1 else f"{one.turns:+d} turn"
-    low, high = in_degrees(one.low + reference, 2), in_degrees(one.high + reference, 2)
-    return low if low == high else f"{low} to {high}"
 
 
 HEADS = (

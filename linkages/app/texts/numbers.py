@@ -19,13 +19,6 @@ def in_lengths(length: float, unit: float, digits: int = 6) -> str:
     return f"{unit * round(length / unit, ROUNDING) + 0.0:.{digits}g}"
 
 
-def link_name(joint: int, joints: int) -> str:
-    """The link from ``joint`` (from 0) to the next one, both counted from 1: "12", or
-    "9-10" where numbers have two digits."""
-    dash = "-" if joints > 9 else ""
-    return f"{joint + 1}{dash}{(joint + 1) % joints + 1}"
-
-
 def known_to(rounding: float, unit: float) -> str:
     """The sentence on how far off coordinates of points are, in lengths and in shares of
     the characteristic length, the ``unit``."""

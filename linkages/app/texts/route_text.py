@@ -10,13 +10,12 @@ from bifurc.routes.route import Route
 from bifurc.tables import count_of, table
 from linkages.app.choice import read_kinks
 from linkages.app.exit_codes import CommandError
-from linkages.app.subject import (
+from linkages.app.texts.configurations import (
     arclength_unit,
     show_configuration,
     show_travel,
-    subject_at,
 )
-from linkages.app.texts.network_text import describe_ring
+from linkages.app.texts.mechanism_text import describe_outer_motions
 from linkages.app.texts.numbers import in_degrees
 from linkages.networks.lock_routes import (
     LockRoute,
@@ -25,8 +24,9 @@ from linkages.networks.lock_routes import (
     Travel,
     show_locks,
 )
-from linkages.networks.mechanism import NetworkMechanism, network_of
+from linkages.networks.mechanism import NetworkMechanism
 from linkages.readout.readout import Readout
+from linkages.subject import subject_at
 
 
 def describe_route(atlas: Atlas, route: Route, start: str, goal: str) -> str:
@@ -101,8 +101,8 @@ def _without_p(text: str, ring: tuple[str, ...]) -> str:
 def describe_lock_route(
     route: LockRoute, network: NetworkMechanism, last: Atlas
 ) -> str:
-    """A route over locks as a table, and what the network does at its end, of which
-    ``last`` is the map."""
+    """A route over locks as a table, and what the ``network`` with the last locks does,
+    of which ``last`` is the map."""
     ring = network.placed.network.plan.ring
     rows: list[tuple[str, ...]] = [("", "start", "", *_angles(route.start))]
     reached = route.start
@@ -130,9 +130,7 @@ def describe_lock_route(
             f"{route.starts} places are such as the start: the route leaves from that "
             "from which it is shortest; name more angles behind @ for another one."
         )
-    locked = network_of(last)
-    assert locked is not None
-    ranges = describe_ring(last, Readout(locked), locked)
+    ranges = describe_outer_motions(last, Readout(network))
     parts.append(f"With the last locks\n{ranges}")
     return "\n\n".join(parts)
 

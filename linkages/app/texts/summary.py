@@ -10,17 +10,16 @@ from bifurc.branch import Branch, Outcome
 from bifurc.singular.point import Kind
 from bifurc.tables import section, section_of
 from linkages.app.answer.verdict import judge
-from linkages.app.subject import (
-    MechanismSubject,
-    NetworkSubject,
+from linkages.app.texts.configurations import (
     arclength_unit,
     show_configuration,
-    subject_at,
     unit_of_arclengths,
 )
 from linkages.app.texts.entry_text import describe_geometry
 from linkages.app.texts.form_names import listed_forms
+from linkages.app.texts.numbers import in_degrees
 from linkages.labels import FormLabels, loop_of
+from linkages.subject import subject_at
 
 SHOWN = 12  # near misses and rigid assemblies beyond this number are only counted
 
@@ -50,26 +49,23 @@ def make_summary(atlas: Atlas) -> str:
 
 def _tables(atlas: Atlas) -> tuple[list[str], list[str]]:
     """Tables of what was mapped, and of what it does along its forms."""
-    subject = subject_at(atlas)
-    if not isinstance(subject, MechanismSubject):
+    readout = subject_at(atlas).readout
+    if readout is None:
         return [describe_geometry(loop_of(atlas))], []
-    from linkages.app.texts import mechanism_text, network_text
+    from linkages.app.texts import mechanism_text
 
-    readout = subject.readout
-    network = subject.network if isinstance(subject, NetworkSubject) else None
-    geometry = [mechanism_text.describe_joints(readout)]
-    if network is not None:
-        geometry.append(network_text.describe_kinks(network))
-    geometry.append(mechanism_text.describe_loops(atlas, readout))
+    geometry = [
+        mechanism_text.describe_joints(readout),
+        mechanism_text.describe_outer_joints(readout.mechanism),
+        mechanism_text.describe_loops(atlas, readout),
+    ]
     if not atlas.forms:
         return geometry, []
-    motions = [
+    return geometry, [
         mechanism_text.describe_motions(atlas, readout),
         mechanism_text.describe_dead_points(atlas, readout),
+        mechanism_text.describe_outer_motions(atlas, readout),
     ]
-    if network is not None:
-        motions.append(network_text.describe_ring(atlas, readout, network))
-    return geometry, motions
 
 
 def _forms(atlas: Atlas) -> str:
@@ -116,7 +112,8 @@ def _winding(atlas: Atlas, branch: Branch) -> str:
 def _inactive_joints(atlas: Atlas, labels: FormLabels) -> str:
     """The joints that stand still, those of a mechanism by name; where, of a loop."""
     pairs = zip(labels.inactive_joints, labels.inactive_angles, strict=True)
-    shown = [subject_at(atlas).still(joint - 1, angle) for joint, angle in pairs]
+    still = subject_at(atlas).still
+    shown = [still(joint - 1, in_degrees(angle)) for joint, angle in pairs]
     return ", ".join(shown) or "-"
 
 

@@ -16,21 +16,21 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.chebyshev import NODE_COUNT
+from bifurc.problem import Curvature
 
 
 class Hyperbola(FunctionProblem):
     """x y = gap in a box; the derivative of (y, x) is a rotation, so that K = 1
     exactly."""
 
-    def __init__(self, gap: float):
+    def __init__(self, gap: float, largest_residual: float = np.inf):
         super().__init__(lambda u: np.array([u[0] * u[1] - gap]), [[-1, 1], [-1, 1]])
         self.magnitude = 1.0
+        self.largest_residual = largest_residual
 
-    def curvature_bound(self) -> float:
-        return 1.0
-
-    def complex_curvature(self, reach: np.ndarray) -> np.ndarray:
-        return np.ones_like(reach)
+    @property
+    def curvature(self) -> Curvature:
+        return Curvature(1.0, np.ones_like, self.largest_residual)
 
 
 def straight_branch(problem: FunctionProblem) -> Branch:
@@ -43,7 +43,7 @@ def straight_branch(problem: FunctionProblem) -> Branch:
         np.array([0.9]),
         np.array([0.0, 1.8]),
         np.zeros(1),
-        problem.periods,
+        problem.domain.periods,
         Outcome.LEFT_REGION,
     )
 
@@ -72,8 +72,7 @@ def test_a_curve_that_runs_straight_across_a_near_miss_is_not_certified(gap):
 
 @pytest.mark.parametrize("largest", [1e-5, np.inf])
 def test_nothing_is_certified_where_the_residual_is_too_large_for_the_bound(largest):
-    problem = Hyperbola(1e-4)
-    problem.curvature_residual = largest
+    problem = Hyperbola(1e-4, largest)
     branch = straight_branch(problem)
     certificate = certify_branch(problem, branch, profile_branch(problem, branch))
     refused = certificate.refused_length / branch.length
@@ -115,11 +114,9 @@ class Sheets(FunctionProblem):
         )
         self.magnitude = 1.0
 
-    def curvature_bound(self) -> float:
-        return 2.0
-
-    def complex_curvature(self, reach: np.ndarray) -> np.ndarray:
-        return np.full_like(reach, 2.0)
+    @property
+    def curvature(self) -> Curvature:
+        return Curvature(2.0, lambda reach: np.full_like(reach, 2.0))
 
 
 def heights(problem: Sheets, *pieces) -> Branch:
@@ -138,7 +135,7 @@ def heights(problem: Sheets, *pieces) -> Branch:
         radii=np.full(count, 0.25),
         breaks=breaks,
         residuals=np.zeros(count),
-        periods=problem.periods,
+        periods=problem.domain.periods,
         outcome=Outcome.LEFT_REGION,
     )
 

@@ -1,5 +1,7 @@
 """Tracing: closing, leaving, stalling, and what it says of each."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -37,7 +39,7 @@ def test_a_circle_closes_after_its_length():
 @pytest.mark.parametrize(("p", "q"), [(1, 0), (1, 1), (2, 1), (5, 3)])
 def test_closing_is_recognised_on_the_torus_after_as_many_turns_as_it_takes(p, q):
     problem = torus_line(p, q)
-    problem.bounds[:] = [-np.inf, np.inf]
+    problem.domain.bounds[:] = [-np.inf, np.inf]
     branch = trace_branch(problem, np.array([0.0, 0.0]), np.array([1.0, 0.5]))
     assert branch.outcome is Outcome.CLOSED
     assert sorted(np.abs(branch.winding)) == sorted([p, q])
@@ -96,15 +98,11 @@ def test_a_curve_that_only_touches_a_bound_goes_on(height):
     assert np.sort(ends[:, 0]) == pytest.approx([-1.0, 1.0], abs=1e-9)
 
 
-class Disc(FunctionProblem):
-    """Curves are followed within the unit circle."""
-
-    def excess(self, points):
-        return np.linalg.norm(points, axis=1) - 1.0
-
-
 def test_a_region_that_is_no_box_is_followed_to_its_own_rim():
-    problem = Disc(lambda u: np.array([u[1] - u[0] ** 3]), [(-2.0, 2.0)] * 2)
+    problem = FunctionProblem(lambda u: np.array([u[1] - u[0] ** 3]), [(-2.0, 2.0)] * 2)
+    problem.domain = replace(
+        problem.domain, rim=lambda points: np.linalg.norm(points, axis=1) - 1.0
+    )
     branch = trace_branch(problem, [0.2, 0.008])
     assert branch.outcome is Outcome.LEFT_REGION
     ends = branch(np.array([0.0, branch.length]))
@@ -124,10 +122,10 @@ def test_a_start_that_is_no_solution_gives_no_curve_and_its_gap():
 
 def test_a_curve_longer_than_allowed_says_so():
     problem = torus_line(1, 40)
-    problem.bounds[:] = [-np.inf, np.inf]
+    problem.domain.bounds[:] = [-np.inf, np.inf]
     branch = trace_branch(problem, [0.0, 0.0], None, TraceSettings(max_length=3.0))
     assert branch.outcome is Outcome.STEP_LIMIT
-    assert branch.length > 3.0 * problem.scale
+    assert branch.length > 3.0 * problem.domain.scale
     assert np.linalg.norm(problem.residuals(branch.sample(300)), axis=1).max() < 1e-12
 
 

@@ -10,6 +10,7 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.near_motion import trace_near_motion
 from bifurc.decisions import nearly_closes
 from bifurc.function_problem import FunctionProblem
+from bifurc.problem import relative_gaps
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings, TraceSettings
 
@@ -146,7 +147,7 @@ def test_a_near_motion_ends_where_it_misses_too_much():
     near = trace_near_motion(problem, np.array([0.1, 0.0]), SETTINGS)
     ends = near.branch(np.array([0.0, near.branch.length]))
     missed = nearly_closes.threshold
-    assert problem.gaps(ends) == pytest.approx([missed, missed], rel=1e-6)
+    assert relative_gaps(problem, ends) == pytest.approx([missed, missed], rel=1e-6)
     assert near.misclosure == pytest.approx(missed, rel=1e-6)
     assert not near.has_loose_end
 

@@ -10,6 +10,7 @@ import sympy
 
 from bifurc.equations.symbolic import SymbolicProblem
 from bifurc.errors import ProblemError
+from bifurc.problem import jacobian_at
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from bifurc.singular.confirm import Convergence, confirm_singular_point
@@ -20,8 +21,8 @@ BOX = [(-2.0, 2.0)] * 2
 
 def test_a_pitchfork_from_expressions_is_that_of_a_callable():
     problem = SymbolicProblem([sympy.Eq(X**3, X * Y)], [X, Y], BOX)
-    assert problem.names == ("x", "y")
-    assert problem.equations == "recorded (4 operations)"
+    assert problem.domain.names == ("x", "y")
+    assert problem.accuracy.equations == "recorded (4 operations)"
     atlas = explore(problem, settings=SearchSettings(starts=30))
     assert len(atlas.forms) == 2
     assert len(atlas.bifurcations) == 1
@@ -45,7 +46,7 @@ def test_every_function_has_the_value_and_the_slope_that_sympy_gives():
     slopes = [[float(part.diff(s).subs(place)) for s in (X, Y)] for part in parts]
     point = np.array([0.3, 0.7])
     assert problem.residuals(point)[0] == pytest.approx(values, rel=1e-14)
-    assert problem.jacobian(point) == pytest.approx(np.array(slopes), rel=1e-13)
+    assert jacobian_at(problem, point) == pytest.approx(np.array(slopes), rel=1e-13)
 
 
 def test_common_parts_are_evaluated_once():
@@ -72,7 +73,7 @@ def test_a_symbolic_problem_is_copied_and_pickled():
     points = np.array([[0.1, 0.2]])
     for twin in (pickle.loads(pickle.dumps(problem)), copy.deepcopy(problem)):
         assert np.array_equal(twin.residuals(points), problem.residuals(points))
-        assert np.array_equal(twin.periods, problem.periods)
+        assert np.array_equal(twin.periods, problem.domain.periods)
 
 
 def test_the_sides_of_an_equation_are_not_cancelled_where_they_are_not_defined():

@@ -6,6 +6,7 @@ import pytest
 from bifurc.decisions import is_solution
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.singular_values import singular_values
+from bifurc.problem import relative_gaps
 from bifurc.search.solutions import polished, sharpened, with_weak_solutions
 from bifurc.seeds import Seeds
 from tests.bifurc.near_surfaces import CirclesBesideSphere
@@ -16,7 +17,7 @@ def test_a_solution_by_its_residual_moves_onto_its_curve():
     exact = problem.points(7)
     rough = exact + np.array([1e-5, 0, 0])
     rough /= np.linalg.norm(rough, axis=1)[:, None]
-    assert problem.gaps(rough).max() < 1e-12
+    assert relative_gaps(problem, rough).max() < 1e-12
     sharp = sharpened(problem, rough, singular_values(problem, rough))
     assert np.abs(sharp.points[:, 0]).max() < 1e-6
     assert sharp.moved.tolist() == list(range(7))
@@ -28,12 +29,12 @@ def test_solutions_are_reached_from_starts_that_missed_by_little():
     rng = np.random.default_rng(0)
     missed = rng.normal(size=(40, 3))
     missed /= np.linalg.norm(missed, axis=1)[:, None]
-    gaps = problem.gaps(missed)
+    gaps = relative_gaps(problem, missed)
     nowhere = np.empty((0, 3))
     seeds = Seeds(nowhere, np.empty(0, dtype=bool), gaps, missed)
     reached = with_weak_solutions(problem, seeds)
     assert len(reached.points) > 30
-    assert np.all(is_solution(problem.gaps(reached.points)))
+    assert np.all(is_solution(relative_gaps(problem, reached.points)))
     assert len(reached.points) + len(reached.missed) == 40
     assert len(reached.gaps) == len(reached.missed)
     assert reached.random.all()
@@ -42,7 +43,7 @@ def test_solutions_are_reached_from_starts_that_missed_by_little():
 def test_starts_that_missed_by_much_are_left_alone():
     problem = CirclesBesideSphere(1e-6)
     far = np.array([[1.5, 0.2, 0.1]])
-    seeds = Seeds(far[:0], np.empty(0, dtype=bool), problem.gaps(far), far)
+    seeds = Seeds(far[:0], np.empty(0, dtype=bool), relative_gaps(problem, far), far)
     assert with_weak_solutions(problem, seeds) is seeds
 
 

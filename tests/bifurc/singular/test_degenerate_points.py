@@ -82,7 +82,7 @@ def test_a_cusp_has_its_two_ends_wherever_before_or_beyond_it_the_branches_stall
         np.empty((0, 2)),
         1,
         0,
-        0.02 * problem.scale,
+        0.02 * problem.domain.scale,
     )
     branches = [stalled(gap * half, 0.9 * half) for half in halves]
     point = meeting_point(problem, cusp, branches)

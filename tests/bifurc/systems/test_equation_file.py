@@ -61,9 +61,9 @@ def test_a_file_says_what_is_solved(path) -> None:
     assert system.is_flow
     assert system.values == {"B": 14.0, "beta": 2.0}
     problem = system.problem
-    assert problem.names == ("x", "y", "p")
-    assert problem.units == ("", "K", "")
-    np.testing.assert_array_equal(problem.bounds, [[0, 1], [0, 8], [0, 0.16]])
+    assert problem.domain.names == ("x", "y", "p")
+    assert problem.domain.units == ("", "K", "")
+    np.testing.assert_array_equal(problem.domain.bounds, [[0, 1], [0, 8], [0, 0.16]])
     point = np.array([0.25, 1.0, 0.1])
     rate = 0.1 * 0.75 * math.e
     # the rates stand in the order of the unknowns, whatever their order in the file

@@ -11,11 +11,12 @@ from scipy.spatial.transform import Rotation
 from linkages.app.cli import main
 from linkages.app.commands.export_command import make_table
 from linkages.app.exit_codes import ExitCode
-from linkages.app.subject import subject_at
 from linkages.export.glb import make_glb
-from linkages.export.model import Shape, model_of_mechanism, motion_of_form
+from linkages.export.model import model_of, motion_of_form
 from linkages.linkage import load
 from linkages.mapping import map_linkage
+from linkages.mechanisms.joint import Shape
+from linkages.subject import subject_at
 from tests.linkages.export.test_glb import poses_of
 from tests.linkages.viewing.conftest import mapped
 
@@ -159,7 +160,7 @@ def test_a_mechanism_with_locks_is_a_model_whose_bodies_move_as_in_python(tmp_pa
     assert result.exit_code == ExitCode.DONE, result.stderr
     gltf = pygltflib.GLTF2.load(out)
     kinks = {"2": np.radians(40), "6": np.radians(-75)}
-    atlas = map_linkage(load(NET[0]).with_kinks(kinks))
+    atlas = map_linkage(load(NET[0]).held(kinks))
     readout = subject_at(atlas).readout
     forms = {form.name: form for form in atlas.forms}
     assert {one.name for one in gltf.animations} == set(forms)
@@ -177,7 +178,7 @@ def test_all_symbols_of_joints_are_closed_solids():
     trimesh = pytest.importorskip("trimesh", reason="it opens the model again")
     atlas = mapped("platform")
     motions = [motion_of_form(form, 5) for form in atlas.forms]
-    model = model_of_mechanism(subject_at(atlas).readout, motions)
+    model = model_of(subject_at(atlas).parts, "platform", motions)
     shapes = {symbol.shape for body in model.bodies for symbol in body.symbols}
     assert shapes == {Shape.BOX, Shape.BALL}
     content = make_glb(model, "a test")

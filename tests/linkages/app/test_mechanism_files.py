@@ -8,12 +8,12 @@ import xarray as xr
 
 from bifurc.files.dataset import load_atlas
 from linkages.app.files import write_data
-from linkages.app.subject import subject_at
 from linkages.mapping import map_linkage
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.graphml import write_mechanism_graph
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.subject import subject_at
 from tests.linkages.mechanisms.known_mechanisms import geared_five_bar
 from tests.linkages.mechanisms.spatial_mechanisms import one_of_each, rods
 

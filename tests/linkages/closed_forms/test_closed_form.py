@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from linkages.catalogue import catalogue, entry
-from linkages.closed_forms.closed_form import ZERO, joint, minus, plus
+from linkages.closed_forms.closed_form import HalfTangent, joint
 from linkages.values import GeometryError
 
 FORMS = [form for linkage in catalogue().values() for form in linkage.closed_forms]
@@ -87,9 +87,9 @@ def test_motion_of_the_mixed_linkage_loses_no_digits_beside_a_pole():
 
 
 def test_sum_of_two_angles_has_no_pole():
-    top, bottom = plus((1, 0), (1, 1))  # pi + pi/2
+    top, bottom = (HalfTangent(1, 0) + HalfTangent(1, 1)).pair  # pi + pi/2
     assert 2 * np.arctan2(top, bottom) % (2 * np.pi) == pytest.approx(3 * np.pi / 2)
-    assert minus(joint(1), ZERO) == joint(1)
+    assert (HalfTangent(*joint(1)) - HalfTangent(0, 1)).pair == joint(1)
 
 
 @pytest.mark.parametrize("form", FORMS, ids=IDS)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bifurc.problem import hessian_at, relative_gaps
 from linkages.closure.mechanism_closure import MechanismClosure
 from tests.linkages.mechanisms.frameworks import OCTAHEDRON, framework, places_of
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case
@@ -39,13 +40,13 @@ MECHANISMS += [ring_with_rods(np.random.default_rng(seed)) for seed in (1, 2, 3)
 def near_solutions(problem, rng):
     """Random points within the limits at which the equations are nearly solved."""
     points, gaps = problem.project(samples(problem, rng, 60))
-    points = points[(gaps < 1e-10) & (problem.excess(points) <= 0.0)]
+    points = points[(gaps < 1e-10) & (problem.domain.excess(points) <= 0.0)]
     sizes = np.array([0.0, 0.02, 0.1, 0.2])[:, None, None]
     near = points + sizes * rng.normal(size=(4, *points.shape))
     near = near.reshape(-1, problem.n)
     near = near[rng.permutation(len(near))]
-    is_near = problem.gaps(near) <= problem.curvature_residual
-    near = near[is_near & (problem.excess(near) <= 0.0)]
+    is_near = relative_gaps(problem, near) <= problem.curvature.residual
+    near = near[is_near & (problem.domain.excess(near) <= 0.0)]
     assert len(near) > 5
     return near
 
@@ -67,8 +68,8 @@ def test_the_bound_near_solutions_holds_and_is_of_the_right_size(mechanism):
     problem = MechanismClosure(mechanism)
     rng = np.random.default_rng(4)
     near = near_solutions(problem, rng)[:16]
-    bound = problem.curvature_bound()
-    seen = [largest_value(problem.hessian(point), rng) for point in near]
+    bound = problem.curvature.bound
+    seen = [largest_value(hessian_at(problem, point), rng) for point in near]
     assert max(seen) <= bound
     assert bound <= 400 * max(seen)
 
@@ -78,7 +79,7 @@ def test_the_bound_at_complex_points_holds(mechanism):
     problem = MechanismClosure(mechanism)
     rng = np.random.default_rng(5)
     for reach in (1e-3, 0.3):
-        bound = problem.complex_curvature(np.array([reach]))[0]
+        bound = problem.curvature.at_complex_points(np.array([reach]))[0]
         for point in near_solutions(problem, rng)[:6]:
             direction = rng.normal(size=problem.n)
             direction *= reach / np.linalg.norm(direction)
@@ -89,7 +90,7 @@ def test_the_bound_at_complex_points_holds(mechanism):
 def complex_hessian(problem, point, direction):
     """F'' at point + i direction: its interpolant along the direction, continued."""
     nodes = np.cos(np.pi * (np.arange(13) + 0.5) / 13)
-    values = np.array([problem.hessian(point + x * direction) for x in nodes])
+    values = np.array([hessian_at(problem, point + x * direction) for x in nodes])
     coefficients = np.polynomial.chebyshev.chebfit(nodes, values.reshape(13, -1), 12)
     continued = np.polynomial.chebyshev.chebval(1j, coefficients)
     return continued.reshape(values.shape[1:])

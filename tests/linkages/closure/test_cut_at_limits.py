@@ -102,7 +102,7 @@ def test_parts_that_are_not_listed_are_starts_and_take_the_level():
     audit = cut_of(mechanism)([], 60.0)
     problem = MechanismClosure(mechanism)
     assert len(audit.starts) >= 2
-    assert np.all(problem.are_inside(audit.starts))
+    assert np.all(problem.domain.are_inside(audit.starts))
     assert np.abs(problem.residuals(audit.starts)).max() < 1e-9
     assert audit.level is Level.ESTIMATED
     assert LinkageClaim.PARTS_NOT_LISTED.is_kind_of(audit.claims[0])

@@ -5,6 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from bifurc.curves.valley import correct_to_valley
+from bifurc.problem import relative_gaps
 from linkages.closure.errors import draw_errors, no_errors
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.displacements import transforms
@@ -119,7 +120,7 @@ def test_what_is_not_overconstrained_closes_with_errors_as_well(mechanism):
     points, gaps = nominal.project(starts)
     points = points[gaps < 1e-13]
     assert len(points)
-    before = problem.gaps(points)
+    before = relative_gaps(problem, points)
     valley, gaps = correct_to_valley(problem, points)
     assert before.min() > 1e-5
     assert gaps.max() < 1e-12

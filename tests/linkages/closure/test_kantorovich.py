@@ -115,7 +115,7 @@ def largest_component(nodes, which):
 def test_the_doubt_at_a_node_is_k_times_the_square_of_the_inverse_times_g(nodes):
     _, _, nodes = nodes
     gaps = largest_component(nodes, slice(None))
-    bound = nodes.problem.curvature_bound()
+    bound = nodes.problem.curvature.bound
     doubts = bound * Frames.of(nodes).all ** 2 * gaps
     assert doubts_of(nodes, None)[1] == pytest.approx(doubts.min(axis=1), rel=1e-6)
 
@@ -136,12 +136,12 @@ def test_the_doubt_of_a_narrow_box_is_half_the_lipschitz_constant_of_newtons_met
         optimize=True,
     )
     # what F'' may be off: by H^-1, by itself, and by what it changes in the box
-    bound = problem.curvature_bound()
+    bound = problem.curvature.bound
     product = frames.sizes * frames.all * frames.determinants
     of_inverse = 1e-14 * product.max(axis=1)[:, None] / frames.determinants
-    error = bound * (2 * of_inverse + problem.hessian_error)
-    reach = 0.5 * problem.scale
-    (largest,) = problem.complex_curvature(np.array([reach]))
+    error = bound * (2 * of_inverse + problem.accuracy.hessian_error)
+    reach = 0.5 * problem.domain.scale
+    (largest,) = problem.curvature.at_complex_points(np.array([reach]))
     strong_gap = largest_component(nodes, slice(None, -1))
     weak_gap = largest_component(nodes, slice(-1, None))
 
@@ -209,7 +209,7 @@ def closure(loop, theta):
 def test_the_bound_on_second_derivatives_holds_at_complex_points(name, reach):
     loop = entry(name).build()
     problem = LoopClosure(loop)
-    (bound,) = problem.complex_curvature(np.array([reach]))
+    (bound,) = problem.curvature.at_complex_points(np.array([reach]))
     rng = np.random.default_rng(0)
     step = 1e-4
     largest = 0.0

@@ -8,6 +8,7 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.jumps import changes_of_course, kinks
 from bifurc.curves.misclosure import largest_misclosure
 from bifurc.function_problem import NumericalProblem
+from bifurc.problem import relative_gaps
 from bifurc.search.branches.canonical_course import canonical_course
 from bifurc.search.explore import explore
 from bifurc.settings import TraceSettings
@@ -114,7 +115,7 @@ def test_a_curve_has_one_course_wherever_it_was_begun(begin, turn_round):
 def test_the_course_of_a_curve_takes_nothing_from_its_accuracy():
     problem = LoopClosure(entry("special-double-subtractive-goldberg").build())
     for form in explore(problem).forms:
-        gaps = problem.gaps(form.branch.sample(3000))
+        gaps = relative_gaps(problem, form.branch.sample(3000))
         assert gaps.max() < 1e-12
 
 

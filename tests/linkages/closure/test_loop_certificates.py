@@ -7,6 +7,7 @@ from bifurc import certify_atlas
 from bifurc.completeness import Level
 from bifurc.curves.certificate import CertificateStatus, certify_branch
 from bifurc.curves.monitor import profile_branch
+from bifurc.problem import hessian_at
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from linkages.catalogue import entry
@@ -29,14 +30,16 @@ def test_the_curvature_bound_exceeds_every_second_derivative_near_closed_configu
     name,
 ):
     problem = LoopClosure(entry(name).build())
-    bound, rng, worst = problem.curvature_bound(), np.random.default_rng(1), 0.0
+    bound, rng, worst = problem.curvature.bound, np.random.default_rng(1), 0.0
     for form in explore(problem, settings=SearchSettings(starts=20)).forms:
         for theta in form.branch.sample(40) + rng.normal(
             scale=1e-2, size=(40, problem.n)
         ):
             direction = rng.normal(size=problem.n)
             direction /= np.linalg.norm(direction)
-            worst = max(worst, np.linalg.norm(problem.hessian(theta) @ direction, 2))
+            worst = max(
+                worst, np.linalg.norm(hessian_at(problem, theta) @ direction, 2)
+            )
     assert 0.1 * bound < worst <= bound
 
 

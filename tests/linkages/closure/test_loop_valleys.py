@@ -1,5 +1,7 @@
 """The valley of a loop that nearly closes along a motion."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -21,7 +23,7 @@ class OneByOne(ValleyProblem):
 
     def __init__(self, of):
         super().__init__(of)
-        self.node_corrector = None
+        self.rules = replace(self.rules, corrector=None)
 
 
 def nearly_bennett():
@@ -52,7 +54,7 @@ def test_points_corrected_in_one_call_are_those_corrected_one_by_one(name):
         march_by_collocation(valley, point, tangent, settings)
         for valley in (ValleyProblem(problem), OneByOne(problem))
     ]
-    assert ValleyProblem(problem).node_corrector is not None
+    assert ValleyProblem(problem).rules.corrector is not None
     assert len(marches[0].pieces) == len(marches[1].pieces) == 1
     # points are known to rounding over the smallest regular singular value, about 0.1
     assert marches[0].radii == pytest.approx(marches[1].radii, abs=1e-13)
@@ -70,7 +72,7 @@ def nodes_from(point, heading, width, most=1e-6):
 def test_where_a_point_cannot_be_corrected_there_are_none():
     problem = nearly_bennett()
     point, tangent = on_the_valley(problem, [0.4, 2.4, -0.4, -2.4])
-    correct = problem.valley_corrector()
+    correct = problem.shortcuts.valley_corrector
     assert correct(nodes_from(point, tangent, 0.1)).shape == (5, 4)
     assert correct(nodes_from(point, tangent, 0.1, most=0.0)) is None
     assert correct(nodes_from(point * np.nan, tangent, 0.1)) is None
@@ -82,6 +84,6 @@ def test_points_of_a_noisy_problem_have_errors_too():
     problem = nearly_bennett()
     point, tangent = on_the_valley(problem, [0.4, 2.4, -0.4, -2.4])
     nodes = nodes_from(point, tangent, 0.1)
-    exact = problem.valley_corrector()(nodes)
-    noisy = with_rounding_noise(problem, 1).valley_corrector()(nodes)
+    exact = problem.shortcuts.valley_corrector(nodes)
+    noisy = with_rounding_noise(problem, 1).shortcuts.valley_corrector(nodes)
     assert 0.0 < np.abs(noisy - exact).max() < 1e-14

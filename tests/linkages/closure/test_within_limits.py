@@ -102,7 +102,7 @@ def test_what_is_brought_within_limits_is_closed_there():
     beyond = points[gaps < 1e-12]
     inside = brought_within_limits(problem, problem.scaled_tape.project, beyond, rng)
     assert len(inside) > 10
-    assert np.all(problem.are_inside(inside))
+    assert np.all(problem.domain.are_inside(inside))
     assert np.abs(problem.residuals(inside)).max() < 1e-9
 
 
@@ -125,12 +125,12 @@ def test_the_way_along_solutions_leads_within_many_limits(monkeypatch):
     starts = np.column_stack([rng.uniform(*pair, 40) for pair in limits.values()])
     starts = np.column_stack([starts, rng.uniform(-np.pi, np.pi, 40)])
     points, gaps = problem.project(starts)
-    beyond = points[(gaps < 1e-12) & ~problem.are_inside(points)]
+    beyond = points[(gaps < 1e-12) & ~problem.domain.are_inside(points)]
     inside = within_limits.brought_within_limits(
         problem, problem.scaled_tape.project, beyond, rng
     )
     assert len(inside) > 0.2 * len(beyond) > 2
-    assert np.all(problem.are_inside(inside))
+    assert np.all(problem.domain.are_inside(inside))
     assert np.abs(problem.residuals(inside)).max() < 1e-9
 
 

@@ -8,12 +8,10 @@ import pytest
 
 from linkages.dyads.geometry import (
     DegenerateDyadError,
-    Pin,
     Pivot,
     PlaneGeometry,
     PlanePose,
     Rail,
-    Slider,
 )
 
 KINDS = [kinds for kinds in product("RP", repeat=3) if "R" in kinds]
@@ -45,22 +43,22 @@ def end_at(kind, pose, rng):
 def middle_at(kind, first, second, rng):
     if kind == "R":
         local = random_place(rng)
-        return Pin(local, second.inverse()(first(local)))
+        return Pivot(local, second.inverse()(first(local)))
     relative = first.inverse().after(second)
     along = random_direction(rng)
     start = PlanePose(relative.turn, relative.shift - rng.normal() * along)
-    return Slider(start, along)
+    return Rail(start, along)
 
 
 def misfit_at_end(end, pose):
     if isinstance(end, Pivot):
-        return abs(pose(end.local) - end.place)
+        return abs(pose(end.second) - end.first)
     beside = ((pose.shift - end.start.shift) / end.along).imag
     return abs(pose.turn - end.start.turn) + abs(beside)
 
 
 def misfit_between(middle, first, second):
-    if isinstance(middle, Pin):
+    if isinstance(middle, Pivot):
         return abs(first(middle.first) - second(middle.second))
     relative = first.inverse().after(second)
     return misfit_at_end(Rail(middle.start, middle.along), relative)
@@ -110,15 +108,15 @@ def test_a_body_between_two_pivots_that_do_not_fit_is_nowhere():
 
 def test_circles_that_are_apart_do_not_meet():
     one, other = Pivot(0j, 0j), Pivot(3 + 0j, 0j)
-    assert PLANE.close_dyad(one, Pin(1 + 0j, 1 + 0j), other) == []
+    assert PLANE.close_dyad(one, Pivot(1 + 0j, 1 + 0j), other) == []
 
 
 def test_equal_circles_about_one_point_meet_all_along():
-    one, other, pin = Pivot(0j, 0j), Pivot(0j, 0j), Pin(1 + 0j, -1 + 0j)
+    one, other, pin = Pivot(0j, 0j), Pivot(0j, 0j), Pivot(1 + 0j, -1 + 0j)
     assert PLANE.may_be_degenerate(one, pin, other)
     with pytest.raises(DegenerateDyadError):
         PLANE.close_dyad(one, pin, other)
-    unequal = Pin(1 + 0j, -1.2 + 0j)
+    unequal = Pivot(1 + 0j, -1.2 + 0j)
     assert not PLANE.may_be_degenerate(one, unequal, other)
     assert PLANE.close_dyad(one, unequal, other) == []
 
@@ -126,7 +124,7 @@ def test_equal_circles_about_one_point_meet_all_along():
 def test_a_body_with_both_joints_on_one_axis_turns_freely():
     """In a dyad, on a slide, and alone, wherever the axis is."""
     one, other = Pivot(0j, 0j), Pivot(0.7 + 0.1j, 0j)
-    coaxial = Pin(1e-17 + 0j, 0.5 + 0j)
+    coaxial = Pivot(1e-17 + 0j, 0.5 + 0j)
     assert PLANE.may_be_degenerate(one, coaxial, other)
     assert PLANE.may_be_degenerate(one, coaxial, Rail(PlanePose(1j, 0.3 + 0j), 1j))
     with pytest.raises(DegenerateDyadError):

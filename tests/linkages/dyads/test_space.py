@@ -41,8 +41,8 @@ def test_a_dyad_on_a_sphere_closes_twice(seed):
     rng = np.random.default_rng(seed)
     first, second, third = (axis(rng) for _ in range(3))
     rest = GEOMETRY.rest
-    one, other = GEOMETRY.end(rest, rest, first), GEOMETRY.end(rest, rest, third)
-    pin = GEOMETRY.middle(rest, rest, second)
+    one, other = GEOMETRY.joint(rest, rest, first), GEOMETRY.joint(rest, rest, third)
+    pin = GEOMETRY.joint(rest, rest, second)
     found = GEOMETRY.close_dyad(one, pin, other)
     assert len(found) == 2
     assert min(max(gap(a, rest), gap(b, rest)) for a, b in found) < 1e-12
@@ -59,8 +59,8 @@ def test_a_dyad_in_general_position_closes_where_it_was_taken_from_alone():
     rng = np.random.default_rng(7)
     motions = [axis(rng, rng.normal(size=3)) for _ in range(3)]
     rest = GEOMETRY.rest
-    one, other = (GEOMETRY.end(rest, rest, motions[k]) for k in (0, 2))
-    pin = GEOMETRY.middle(rest, rest, motions[1])
+    one, other = (GEOMETRY.joint(rest, rest, motions[k]) for k in (0, 2))
+    pin = GEOMETRY.joint(rest, rest, motions[1])
     ((first, second),) = GEOMETRY.close_dyad(one, pin, other)
     assert max(gap(first, rest), gap(second, rest)) < 1e-12
 
@@ -71,14 +71,14 @@ def test_a_part_is_placed_by_two_axes_or_by_two_parallel_ones():
     one, other = axis(rng, (0, 0, 0)), axis(rng, (1, 0.5, -0.3))
     beside = other._replace(direction=one.direction)
     for second in (other, beside):
-        ends = [GEOMETRY.end(pose, GEOMETRY.rest, motion) for motion in (one, second)]
+        ends = [GEOMETRY.joint(pose, GEOMETRY.rest, motion) for motion in (one, second)]
         (found,) = GEOMETRY.close_monad(*ends)
         assert gap(found, pose) < 1e-12
     far = other._replace(point=other.point + 0.1)
     ends = [
-        GEOMETRY.end(pose, GEOMETRY.rest, one),
-        GEOMETRY.end(pose, GEOMETRY.rest, other)._replace(
-            own=GEOMETRY.end(pose, GEOMETRY.rest, far).own
+        GEOMETRY.joint(pose, GEOMETRY.rest, one),
+        GEOMETRY.joint(pose, GEOMETRY.rest, other)._replace(
+            second=GEOMETRY.joint(pose, GEOMETRY.rest, far).second
         ),
     ]
     assert GEOMETRY.close_monad(*ends) == []
@@ -88,8 +88,8 @@ def test_axes_in_one_line_leave_a_curve_of_configurations():
     rng = np.random.default_rng(9)
     first, second = axis(rng), axis(rng)
     rest = GEOMETRY.rest
-    one, other = GEOMETRY.end(rest, rest, first), GEOMETRY.end(rest, rest, first)
-    pin = GEOMETRY.middle(rest, rest, second)
+    one, other = GEOMETRY.joint(rest, rest, first), GEOMETRY.joint(rest, rest, first)
+    pin = GEOMETRY.joint(rest, rest, second)
     assert GEOMETRY.may_be_degenerate(one, pin, other)
     with pytest.raises(DegenerateDyadError):
         GEOMETRY.close_dyad(one, pin, other)

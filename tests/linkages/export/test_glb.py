@@ -6,15 +6,20 @@ import numpy as np
 import pytest
 
 from linkages.export.glb import make_glb
-from linkages.export.model import Motion, link_poses, model_of_loop, motion_of_form
+from linkages.export.model import Motion, model_of, motion_of_form
 from linkages.linkage import load
 from linkages.links.rods import place_links
 from linkages.loop import Loop
+from linkages.subject import as_subject
 from linkages.values import GeometryError
 from tests.maps import map_of
 
 DSG = "special-double-subtractive-goldberg"
 FRAMES = 100
+
+
+def model_of_loop(loop, motions):
+    return model_of(as_subject(loop).parts, loop.name, motions)
 
 
 @pytest.fixture(scope="module")
@@ -147,7 +152,8 @@ def test_lengths_beyond_the_floats_of_a_model_are_refused():
 def test_poses_are_those_of_the_frames():
     loop = Loop([1, 2, 1, 2], [0.3, 0.4, 0.5, 0.6], [0.1, 0.2, 0.3, 0.4])
     theta = np.random.default_rng(2).uniform(-3, 3, (7, 4))
-    poses = link_poses(loop, Motion("any", theta, np.arange(7.0)))
+    motion = Motion("any", theta, np.arange(7.0))
+    ((_, poses),) = model_of_loop(loop, [motion]).motions
     frames = loop.frames(theta)
     for i in range(4):
         rebuilt = matrices(poses.translations[i], poses.rotations[i])

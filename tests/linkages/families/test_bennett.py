@@ -4,15 +4,12 @@ import mpmath
 import pytest
 import sympy
 
-from linkages.families.bennett import (
-    bennett,
-    bennett_ab_2,
-    bennett_lb_2,
-    bennett_line_symmetric,
-)
+from linkages.catalogue import entry
+from linkages.families.bennett import bennett
 from linkages.values import GeometryError
 
-SET_UPS = (bennett, bennett_ab_2, bennett_line_symmetric, bennett_lb_2)
+NAMES = ("bennett", "bennett-ab-2", "bennett-line-symmetric", "bennett-lb-2")
+SET_UPS = tuple(entry(name).construct for name in NAMES)
 
 
 @pytest.mark.parametrize("construct", SET_UPS)
@@ -42,7 +39,7 @@ def test_the_closed_form_closes_at_fifty_digits(construct, closure_entries):
     with mpmath.workdps(50):
         loop = construct(mpmath.mpf(1), mpmath.mpf("1.2"), mpmath.mpf("0.7"))
         alpha, second = loop.twists[:2]
-        symmetric = construct in (bennett_line_symmetric, bennett_lb_2)
+        symmetric = construct in SET_UPS[2:]
         ratio = mpmath.cos if symmetric else mpmath.sin
         product = ratio((second + alpha) / 2) / ratio((second - alpha) / 2)
         t1 = mpmath.mpf("0.37")

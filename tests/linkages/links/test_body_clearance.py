@@ -2,7 +2,8 @@
 
 import pytest
 
-from linkages.links.clearance import TOLERANCE, Bodies, approaches_of_bodies
+from linkages.links.clearance import TOLERANCE, approaches_along, distances_of
+from linkages.links.parts import Bodies
 from linkages.readout.poses import Poses
 from linkages.structure.structure import Structure
 from tests.linkages.links.test_clearance import nearest_by_optimisation
@@ -21,17 +22,18 @@ def test_no_place_of_a_form_has_bodies_nearer_than_is_said(name):
     mechanism = MECHANISMS[name]()
     structure = Structure(mechanism)
     form = map_of(mechanism).forms[0]
-    bodies = Bodies(structure, form.branch)
-    approaches = approaches_of_bodies(structure, form.branch)
+    bodies = Bodies(structure)
+    approaches = approaches_along(bodies, form.branch)
     assert [one.links for one in approaches]
     assert approaches == sorted(approaches, key=lambda one: one.distance)
     samples = form.branch.sample(2001)
+    lines = bodies.lines(samples)
     for approach in approaches:
         names = {mechanism.bodies[body] for body in approach.links}
         assert not any(names <= set(joint.bodies) for joint in mechanism.joints)
-        there = bodies.distances(approach.theta[None], approach.links)
+        there = distances_of(bodies, lines, approach.theta[None], approach.links)
         assert there[0] == pytest.approx(approach.distance, abs=1e-12)
-        sampled = bodies.distances(samples, approach.links).min()
+        sampled = distances_of(bodies, lines, samples, approach.links).min()
         assert approach.distance <= sampled + 1e-9 * structure.unit
         assert approach.error <= 2 * TOLERANCE * structure.unit
 
@@ -40,19 +42,19 @@ def test_distances_are_those_of_the_nearest_points_of_two_bodies():
     mechanism = MECHANISMS["CRCR"]()
     structure = Structure(mechanism)
     form = map_of(mechanism).forms[0]
-    bodies = Bodies(structure, form.branch)
-    pair = bodies.pairs_apart()[0]
+    bodies = Bodies(structure)
     points = form.branch.sample(3)
+    lines = bodies.lines(points)
+    pair = bodies.pairs_apart(lines)[0]
     poses = Poses(structure).at(points)
-    distances = bodies.distances(points, pair)
+    distances = distances_of(bodies, lines, points, pair)
     for pose, distance in zip(poses, distances, strict=True):
-        lines = [
-            bodies.lines[body] @ pose[body, :3, :3].T + pose[body, :3, 3]
-            for body in pair
+        placed = [
+            lines[body] @ pose[body, :3, :3].T + pose[body, :3, 3] for body in pair
         ]
         expected = min(
             nearest_by_optimisation(one, other, rods=1)
-            for one in lines[0]
-            for other in lines[1]
+            for one in placed[0]
+            for other in placed[1]
         )
         assert distance == pytest.approx(expected, abs=1e-7)

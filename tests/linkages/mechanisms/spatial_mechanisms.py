@@ -127,7 +127,7 @@ def ring_with_rods(rng):
 
 def samples(problem, rng, count):
     """Random points within the limits."""
-    low, high = problem.bounds.T
+    low, high = problem.domain.bounds.T
     low = np.where(np.isfinite(low), low, -np.pi)
     high = np.where(np.isfinite(high), high, np.pi)
     return rng.uniform(low, high, (count, problem.n))

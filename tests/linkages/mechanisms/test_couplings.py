@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import linkages
+from bifurc.problem import hessian_at
 from bifurc.settings import SearchSettings
 from linkages.closure.curvature import CurvatureBounds
 from linkages.closure.driving import joints_to_hold
@@ -158,10 +159,10 @@ def test_derivatives_agree_with_differences_and_bounds(name):
         for d in step * np.eye(problem.n)
     ]
     assert np.allclose(np.stack(shifted, axis=-1), problem.jacobians(points), atol=1e-8)
-    bounds = CurvatureBounds(problem.structure, problem.curvature_residual)
+    bounds = CurvatureBounds(problem.structure, problem.curvature.residual)
     near, gaps = problem.project(points)
     assert np.all(gaps < 1e-12)
-    norms = [np.linalg.norm(problem.hessian(point).ravel()) for point in near]
+    norms = [np.linalg.norm(hessian_at(problem, point).ravel()) for point in near]
     largest = bounds.near_solutions * np.sqrt(problem.n)
     assert max(norms) < largest
 
@@ -187,7 +188,9 @@ def test_a_coupling_of_a_slide_and_a_turn_does_not_depend_on_units(way):
     points = np.random.default_rng(1).normal(size=(3, problem.n))
     images = points
     if way == "mirrored":  # slides along axes that are turned round change their sign
-        images = points * [-1.0 if "slide" in name else 1.0 for name in problem.names]
+        images = points * [
+            -1.0 if "slide" in name else 1.0 for name in problem.domain.names
+        ]
     gaps = np.linalg.norm(problem.residuals(images), axis=1)
     assert np.allclose(gaps, np.linalg.norm(expected.residuals(points), axis=1))
 

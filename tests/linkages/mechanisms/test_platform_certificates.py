@@ -76,9 +76,9 @@ def test_forms_of_platforms_are_certified_all_along(name):
 
 def test_the_bound_is_the_same_in_other_units_and_frames():
     mechanism = PLATFORMS["6-SPS"]
-    bound = MechanismClosure(mechanism).curvature_bound()
+    bound = MechanismClosure(mechanism).curvature.bound
     for other in (mechanism.scaled(1e3), mechanism.scaled(1e-3), mechanism.mirrored()):
-        assert MechanismClosure(other).curvature_bound() == pytest.approx(bound)
+        assert MechanismClosure(other).curvature.bound == pytest.approx(bound)
 
 
 # --- a crossing of two forms, and beside it -------------------------------------------

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from linkages.linkage import load
-from linkages.links.clearance import pairs_apart
 from linkages.printing.assembly import Assembly, Dimensions, Kind, Part, Seats
 from linkages.printing.seating import choose_seats
 
@@ -101,13 +100,11 @@ def test_segments_with_their_radii_enclose_the_solids_and_not_much_more(printed)
     placed = assembly.placed(theta[None])
     clearances = assembly.clearances(placed, assembly.pairs)[0]
     parts = [[assembly.part(m) for m in pair] for pair in assembly.pairs]
-    for first, second in pairs_apart(n)[:1]:
-        enclosed = least_between(parts, clearances, bodies(first, n), bodies(second, n))
-        rods = least_between(
-            parts, clearances, bodies(first, n)[:1], bodies(second, n)[:1]
-        )
-        distance = solids[f"link {first}"].distance_to(solids[f"link {second}"])
-        assert enclosed - 1e-6 <= distance <= rods + 0.301
+    first, second = 0, 2
+    enclosed = least_between(parts, clearances, bodies(first, n), bodies(second, n))
+    rods = least_between(parts, clearances, bodies(first, n)[:1], bodies(second, n)[:1])
+    distance = solids[f"link {first}"].distance_to(solids[f"link {second}"])
+    assert enclosed - 1e-6 <= distance <= rods + 0.301
 
 
 def bodies(link, n):

@@ -8,13 +8,14 @@ import pytest
 
 import linkages
 from bifurc.files.dataset import load_atlas, save_atlas
+from bifurc.problem import jacobian_at, relative_gaps
 from bifurc.routes.route import find_route
 from bifurc.torus import SEAM
 from linkages.closure.loop_closure import LoopClosure
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.labels import FormLabels, subject_of
-from linkages.readout.loop_atlas import in_loop_angles
 from linkages.readout.readout import Readout
+from linkages.subject import as_subject
 from tests.linkages.mechanisms.single_loops import (
     FEW,
     SINGLE_LOOPS,
@@ -55,14 +56,14 @@ def points_of(atlas):
 def test_unknowns_are_the_joint_variables_and_close_the_mechanism(name):
     mechanism, atlas = mapped(name)
     problem = MechanismClosure(mechanism)
-    assert atlas.names == problem.names
+    assert atlas.names == problem.domain.names
     assert set(atlas.names) == {joint.name for joint in mechanism.joints}
-    assert atlas.units == problem.units
-    assert atlas.periods.tolist() == problem.periods.tolist()
-    assert problem.gaps(along_forms(atlas)).max(initial=0.0) < CLOSED
-    assert problem.gaps(points_of(atlas)).max(initial=0.0) < CLOSED_AT_POINTS
+    assert atlas.units == problem.domain.units
+    assert atlas.periods.tolist() == problem.domain.periods.tolist()
+    assert relative_gaps(problem, along_forms(atlas)).max(initial=0.0) < CLOSED
+    assert relative_gaps(problem, points_of(atlas)).max(initial=0.0) < CLOSED_AT_POINTS
     for meeting in atlas.points:
-        jacobian = problem.jacobian(meeting.point.u)
+        jacobian = jacobian_at(problem, meeting.point.u)
         assert np.abs(jacobian @ meeting.point.null_space).max() < 1e-9
         assert np.abs(jacobian @ meeting.tangents.T).max(initial=0.0) < 1e-9
     for event in atlas.dead_points:
@@ -84,13 +85,15 @@ def test_a_form_or_surface_passes_through_the_reference_configuration(name):
 def test_in_the_angles_of_its_loop_it_closes_the_loop(name):
     mechanism, atlas = mapped(name)
     loop = Readout(mechanism).single_loop.loop
-    of_loop = in_loop_angles(atlas, Readout(mechanism))
+    of_loop = as_subject(mechanism).in_loop_angles(atlas)
     problem = LoopClosure(loop)
-    assert of_loop.names == problem.names
+    assert of_loop.names == problem.domain.names
     assert linkages.loop_of(of_loop) == loop
     assert linkages.mechanism_of(of_loop) is None
-    assert problem.gaps(along_forms(of_loop)).max(initial=0.0) < CLOSED
-    assert problem.gaps(points_of(of_loop)).max(initial=0.0) < CLOSED_AT_POINTS
+    assert relative_gaps(problem, along_forms(of_loop)).max(initial=0.0) < CLOSED
+    assert (
+        relative_gaps(problem, points_of(of_loop)).max(initial=0.0) < CLOSED_AT_POINTS
+    )
 
 
 @pytest.mark.parametrize("name", [DSG, MIURA])
@@ -114,7 +117,7 @@ def test_a_joint_that_is_held_is_no_unknown():
     assert Readout(mechanism).single_loop is not None
     atlas = map_of(mechanism, settings=FEW)
     assert "held" not in atlas.names
-    assert MechanismClosure(mechanism).gaps(along_forms(atlas)).max() < CLOSED
+    assert relative_gaps(MechanismClosure(mechanism), along_forms(atlas)).max() < CLOSED
     values = Readout(mechanism).values(along_forms(atlas))
     assert values[:, 0].tolist() == [0.0] * len(values)
 
@@ -131,7 +134,7 @@ def test_a_dataset_has_the_variables_by_the_names_of_joints_and_is_read_back(tmp
     assert route.length == pytest.approx(
         find_route(atlas, first, last, problem=problem).length
     )
-    assert problem.gaps(route.path).max() < CLOSED
+    assert relative_gaps(problem, route.path).max() < CLOSED
 
 
 def test_a_map_in_the_angles_of_a_table_is_refused():

@@ -86,7 +86,7 @@ def test_the_variables_of_a_spherical_joint_are_its_rotation_vector():
 def test_a_slide_counts_in_the_unit_of_the_file():
     mechanism = rods().scaled(7.0)
     problem = MechanismClosure(mechanism)
-    column = problem.names.index("P")
+    column = problem.domain.names.index("P")
     point = problem.reference.copy()
     point[column] = 0.3
     expected = 0.3 * problem.structure.unit

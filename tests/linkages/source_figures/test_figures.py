@@ -22,7 +22,7 @@ from linkages.source_figures.drawing import best_look, look_along, symmetry_line
 from linkages.source_figures.graph_drawing import places_of
 from linkages.source_figures.notation_figure import chain_assembly, ray_angles
 from linkages.source_figures.table import Kind, figure_named, source_figures
-from linkages.source_figures.tori_figure import Torus, companion_torus, shared_turn
+from linkages.source_figures.tori_figure import Torus, companion_torus
 from linkages.source_figures.transitions_figure import tour_of
 
 TURN = 2 * np.pi
@@ -222,8 +222,11 @@ def test_both_circles_make_the_same_torus():
     assert other.s == pytest.approx(1.519767164315, abs=1e-12)
     assert other.chi == pytest.approx(2.702834702730, abs=1e-12)
     assert other.theta == pytest.approx(-0.112996175807, abs=1e-12)
-    _, gap = shared_turn(torus, other, np.linspace(0, 6, 40))
-    assert gap < 1e-12
+    phi = np.linspace(0, 6, 40)
+    ours, theirs = torus.points(0.0, phi), other.points(0.0, phi)
+    reaches = np.linalg.norm(ours[:, :2], axis=1), np.linalg.norm(theirs[:, :2], axis=1)
+    np.testing.assert_allclose(reaches[0], reaches[1], atol=1e-12)
+    np.testing.assert_allclose(ours[:, 2], theirs[:, 2], atol=1e-12)
 
 
 # --- on paper -------------------------------------------------------------------------

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from bifurc import SearchSettings
-from linkages.app.answer.mechanism_document import describe_mechanism
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.readout.mechanism_document import describe_mechanism
 from linkages.readout.poses import Poses
 from linkages.readout.readout import Readout
 from linkages.values import GeometryError

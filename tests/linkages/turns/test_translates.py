@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
+from bifurc.problem import relative_gaps
 from bifurc.settings import SearchSettings
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.joint import Joint
@@ -92,7 +93,7 @@ def test_of_parallel_screws_all_are_counted_that_are_partly_within_the_limits():
     points = form.branch.sample(2000)
     turns = [k for k in itertools.product(range(-4, 5), repeat=4) if sum(k) == 0]
     shifts = 2 * np.pi * np.array(turns)
-    assert MechanismClosure(mechanism).gaps(points[0] + shifts).max() < 1e-11
+    assert relative_gaps(MechanismClosure(mechanism), points[0] + shifts).max() < 1e-11
     low, high = np.array(limits).T
     inside = [np.all((points + one > low) & (points + one < high), 1) for one in shifts]
     whole = sum(bool(np.all(one)) for one in inside)

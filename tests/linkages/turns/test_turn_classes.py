@@ -54,7 +54,7 @@ def test_assemblies_whole_turns_apart_are_one():
     problem = problem_of(SWINGING)
     (shift,) = problem.lattice.basis
     point = problem.reference
-    periods = problem.periods
+    periods = problem.domain.periods
     around = point + np.where(np.isfinite(periods), TURN, 0.0)
     points = [point, point + 2 * shift, point + 0.4 * shift, around]
     classes = classes_of_assemblies(points, periods, problem.lattice)

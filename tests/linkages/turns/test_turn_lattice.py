@@ -5,14 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bifurc.problem import relative_gaps
 from bifurc.settings import SearchSettings
-from linkages.app.answer.mechanism_document import describe_mechanism
 from linkages.app.answer.verdict import judge
-from linkages.app.subject import subject_at
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.readout.mechanism_document import describe_mechanism
+from linkages.subject import subject_at
 from linkages.turns.translates import translates_of
 from tests.maps import map_of
 from tests.samples import one_in
@@ -63,7 +64,7 @@ def test_shifts_lead_from_closed_configurations_to_closed_ones():
     seeds = problem.seeds(rng, 40)
     turns = rng.integers(-3, 4, (len(seeds.points), len(problem.lattice)))
     shifted = seeds.points + turns @ problem.lattice.basis
-    assert problem.gaps(shifted).max() < 1e-12
+    assert relative_gaps(problem, shifted).max() < 1e-12
 
 
 def test_a_slide_takes_up_what_a_screw_advances():
@@ -79,8 +80,8 @@ def test_a_slide_takes_up_what_a_screw_advances():
     problem = MechanismClosure(Mechanism(tuple(joints)))
     (shift,) = problem.lattice.basis
     unit = problem.structure.unit
-    assert shift[problem.names.index("H")] == pytest.approx(TURN)
-    assert abs(shift[problem.names.index("P")]) == pytest.approx(0.4 / unit)
+    assert shift[problem.domain.names.index("H")] == pytest.approx(TURN)
+    assert abs(shift[problem.domain.names.index("P")]) == pytest.approx(0.4 / unit)
 
 
 def test_what_turns_between_two_screws_lets_no_advance_pass():
@@ -122,14 +123,14 @@ def test_assemblies_of_screws_are_those_of_the_triangle(seed):
     atlas = map_of(mechanism, settings=settings, seed=seed)
     assert len(atlas.rigid) == 2
     problem = MechanismClosure(mechanism)
-    most = int(problem.bounds[0, 1] / TURN)
+    most = int(problem.domain.bounds[0, 1] / TURN)
     turns = np.arange(-most - 1, most + 1)
     grid = np.stack(np.meshgrid(turns, turns, turns), axis=-1).reshape(-1, 3)
     shifts = TURN * grid[grid.sum(axis=1) == 0]
     places = (atlas.rigid[:, None] + shifts).reshape(-1, 3)
     # every translate is closed, and so many of them are within the limits
-    assert problem.gaps(places).max() < 1e-11
-    inside = np.count_nonzero(problem.excess(places) <= 0.0)
+    assert relative_gaps(problem, places).max() < 1e-11
+    inside = np.count_nonzero(problem.domain.excess(places) <= 0.0)
     assert translates_of(atlas).assemblies == inside > 600
     assert f"with them {inside}" in judge(atlas).sentence
 
@@ -158,8 +159,8 @@ def test_what_closes_only_whole_turns_beside_its_reference_is_found():
     atlas = map_of(with_limits(mechanism, limits), settings=settings)
     assert len(atlas.rigid) >= 1
     problem = MechanismClosure(with_limits(mechanism, limits))
-    assert np.all(problem.are_inside(atlas.rigid))
-    assert problem.gaps(atlas.rigid).max() < 1e-12
+    assert np.all(problem.domain.are_inside(atlas.rigid))
+    assert relative_gaps(problem, atlas.rigid).max() < 1e-12
 
 
 @pytest.mark.parametrize("low", [20.0, 20.7])

@@ -32,10 +32,12 @@ def test_all_that_is_within_limits_is_listed_but_for_whole_turns(mechanism):
     atlas = map_of(mechanism, settings=SETTINGS)
     problem = MechanismClosure(mechanism)
     rng = np.random.default_rng(1)
-    reach = np.where(np.isfinite(problem.bounds[:, 1]), problem.bounds[:, 1], np.pi)
+    reach = np.where(
+        np.isfinite(problem.domain.bounds[:, 1]), problem.domain.bounds[:, 1], np.pi
+    )
     starts = rng.uniform(-reach, reach, (1500, problem.n))
     points, gaps = problem.project(starts)
-    inside = points[(gaps < 1e-11) & problem.are_inside(points)]
+    inside = points[(gaps < 1e-11) & problem.domain.are_inside(points)]
     assert len(inside) > 100
     is_listed = np.zeros(len(inside), dtype=bool)
     for form in atlas.forms:

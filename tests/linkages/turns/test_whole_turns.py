@@ -103,8 +103,8 @@ def assemblies_of_rack(ratio, low, high):
 def test_a_rigid_mechanism_has_its_assemblies_at_every_turn(ratio, seed):
     mechanism = rack(ratio)
     problem = MechanismClosure(mechanism)
-    column = problem.names.index("A")
-    expected = assemblies_of_rack(ratio, *problem.bounds[column])
+    column = problem.domain.names.index("A")
+    expected = assemblies_of_rack(ratio, *problem.domain.bounds[column])
     assert len(expected) >= 5
     settings = SearchSettings(starts=20, near_motions=False)
     atlas = map_of(mechanism, settings=settings, seed=seed)

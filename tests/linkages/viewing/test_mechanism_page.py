@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from linkages.closure.mechanism_closure import MechanismClosure
+from linkages.links import motion_document
 from linkages.mechanisms.joint import JointKind
 from linkages.mechanisms.subject import mechanism_of
 from linkages.readout.readout import Readout
-from linkages.viewing import mechanism_document
 from tests.linkages.viewing.test_viewer import drawn_share, picture_of
 
 GO = "([name, places]) => places.map((s) => bifurc.go(name, s))"
@@ -175,7 +175,7 @@ def test_singular_values_in_the_browser_are_those_of_python(show_shared, name):
 def test_a_mechanism_of_many_unknowns_has_the_smallest_singular_value_only(
     show, monkeypatch
 ):
-    monkeypatch.setattr(mechanism_document, "MOST_UNKNOWNS", 4)
+    monkeypatch.setattr(motion_document, "MOST_UNKNOWNS", 4)
     shown = show("Kempe")
     assert shown.bifurc("state().singular_values") == []
     assert shown.page.locator(".bv-cell:has(.bv-level)").count() == 0

@@ -12,8 +12,8 @@ from linkages.closure.loop_closure import LoopClosure
 from linkages.labels import loop_of
 from linkages.links.rods import place_links
 from linkages.mechanisms.subject import mechanism_of
-from linkages.readout.loop_atlas import to_loop_angles
 from linkages.readout.readout import Readout
+from linkages.subject import subject_at
 from linkages.viewing.document import make_view_document
 from linkages.viewing.page import write_page
 
@@ -90,7 +90,7 @@ def test_a_loop_that_is_given_by_joints_has_their_names_and_its_axes(show_shared
     loop = readout.single_loop.loop
     form = shown.atlas.forms[0]
     places = np.linspace(0.0, form.branch.length, 24)[:-1]
-    theta = to_loop_angles(readout).points(form.branch(places))
+    theta = subject_at(shown.atlas).to_angles.points(form.branch(places))
     states = shown.page.evaluate(
         "([form, places]) => places.map((s) => bifurc.go(form, s))",
         [form.name, places.tolist()],

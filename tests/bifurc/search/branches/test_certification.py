@@ -7,6 +7,7 @@ import pytest
 from bifurc.completeness import Claim, Level
 from bifurc.curves.certificate import CertificateStatus
 from bifurc.function_problem import FunctionProblem
+from bifurc.problem import Curvature
 from bifurc.search import tracing
 from bifurc.search.branches import branch_examination
 from bifurc.search.explore import explore
@@ -25,13 +26,11 @@ class Hyperbola(FunctionProblem):
         super().__init__(lambda u: np.array([u[0] * u[1] - gap]), [[-2, 2], [-2, 2]])
         self.magnitude = 1.0
 
-    def curvature_bound(self) -> float:
-        return 1.0
+    @property
+    def curvature(self) -> Curvature:
+        return Curvature(1.0, np.ones_like)
 
-    def complex_curvature(self, reach: np.ndarray) -> np.ndarray:
-        return np.ones_like(reach)
-
-    def seeds(self, rng: np.random.Generator, count: int) -> Seeds:
+    def seeds(self, rng: np.random.Generator, count: int, deadline=None) -> Seeds:
         seeds = super().seeds(rng, count)
         audit = Audit(
             (Claim("test", "nothing is missing", level=Level.PROVED),), np.empty((0, 2))

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from bifurc.settings import SearchSettings
-from linkages.app.subject import numbers_at, subject_at
+from linkages.app.texts.configurations import numbers_at
 from linkages.app.texts.summary import make_summary
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.subject import subject_at
 from tests.maps import map_of
 
 FEW_STARTS = SearchSettings(starts=20, certify=False)

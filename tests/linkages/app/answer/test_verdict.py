@@ -6,9 +6,9 @@ import pytest
 from bifurc.settings import SearchSettings
 from linkages.app.answer.verdict import judge
 from linkages.app.exit_codes import ExitCode
-from linkages.app.reports.beyond_limits import LimitedRange
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.readout.beyond_limits import LimitedRange
 from linkages.readout.ranges import VariableRange
 from tests.maps import map_of
 

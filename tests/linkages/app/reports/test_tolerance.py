@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from bifurc.problem import relative_gaps
 from linkages.app.cli import main
 from linkages.app.reports.tolerance import climb, half_branches, measure, slope
 from linkages.catalogue import entry
@@ -12,9 +13,8 @@ from linkages.formats.table import mechanism_text
 from linkages.linkage import load
 from linkages.mapping import map_linkage
 from linkages.mechanisms.of_loop import mechanism_of_loop
-from linkages.readout.loop_atlas import in_loop_angles
-from linkages.readout.readout import Readout
-from linkages.tolerance import closure_with_errors, make_with_errors
+from linkages.subject import as_subject
+from linkages.tolerance import make_with_errors
 from linkages.values import GeometryError
 from tests.linkages.app.slider_cranks import slider_crank_text
 
@@ -45,16 +45,16 @@ def test_an_error_below_zero_is_refused():
 
 
 def test_without_errors_the_forms_close_and_the_crossings_stay(parallelogram):
-    atlas, loop = parallelogram
-    made = measure(atlas, loop, 0.0, 0)
+    atlas, _ = parallelogram
+    made = measure(atlas, 0.0, 0)
     assert made.largest.max() < 1e-13
 
 
 def test_the_closure_gap_grows_as_the_error_and_the_near_miss_as_its_root(
     parallelogram,
 ):
-    atlas, loop = parallelogram
-    ladder = climb(atlas, loop, [0, 1], 10.0 ** -np.array([4.0, 6.0, 8.0]))
+    atlas, _ = parallelogram
+    ladder = climb(atlas, [0, 1], 10.0 ** -np.array([4.0, 6.0, 8.0]))
     for i in range(2):
         assert slope(ladder.errors, ladder.gaps[:, :, i]) == pytest.approx(
             1.0, abs=0.01
@@ -68,9 +68,9 @@ def test_the_closure_gap_grows_as_the_error_and_the_near_miss_as_its_root(
 
 
 def test_every_half_branch_of_a_crossing_leads_to_one_of_another_form(parallelogram):
-    atlas, loop = parallelogram
+    atlas, _ = parallelogram
     for point, unfolding in zip(
-        atlas.bifurcations, measure(atlas, loop, 1e-5, 3).unfoldings, strict=True
+        atlas.bifurcations, measure(atlas, 1e-5, 3).unfoldings, strict=True
     ):
         names = half_branches(atlas, point)[1]
         assert sorted(i for pair in unfolding.pairs for i in pair) == [0, 1, 2, 3]
@@ -121,8 +121,8 @@ def test_a_mechanism_is_made_with_errors_of_its_joints(tmp_path):
 
 def test_a_network_is_made_with_errors_and_joints_locked():
     network = load("four-bennett-network")
-    locked = network.with_kinks({"2": np.radians(40), "6": np.radians(-75)})
-    made = measure(map_linkage(locked), locked, 1e-4, 0)
+    locked = network.held({"2": np.radians(40), "6": np.radians(-75)})
+    made = measure(map_linkage(locked), 1e-4, 0)
     assert len(made.largest) == 2
     assert np.all(made.largest > 1e-5) and np.all(made.largest < 1e-2)
 
@@ -142,9 +142,8 @@ def test_a_loop_given_as_a_mechanism_is_made_as_the_loop(parallelogram, tmp_path
     command = ["tolerance", str(file), "--error", "1e-3", "--samples", "1"]
     result = CliRunner().invoke(main, command)
     assert result.stdout.startswith("Errors of 0.001 ")
-    readout = Readout(mechanism)
-    of_loop = in_loop_angles(map_linkage(mechanism), readout)
-    made = measure(of_loop, readout.single_loop.loop, 1e-3, 0)
+    of_loop = as_subject(mechanism).in_loop_angles(map_linkage(mechanism))
+    made = measure(of_loop, 1e-3, 0)
     rows = [line.split() for line in result.stdout.splitlines()]
     for form, largest in zip(of_loop.forms, made.largest, strict=True):
         row = next(row for row in rows if " ".join(row[:2]) == form.name)
@@ -154,9 +153,10 @@ def test_a_loop_given_as_a_mechanism_is_made_as_the_loop(parallelogram, tmp_path
 def test_a_mechanism_is_made_in_the_unknowns_of_its_atlas(parallelogram):
     atlas, loop = parallelogram
     mechanism = mechanism_of_loop(loop, atlas.forms[0].branch(0.4))
-    exact = closure_with_errors(mechanism, 0.0, np.random.default_rng(0))
+    subject = as_subject(mechanism)
+    exact = subject.closure_with_errors(0.0, np.random.default_rng(0))
     for form in map_linkage(mechanism).forms:
-        assert exact.gaps(form.branch.sample(50)).max() < 1e-12
+        assert relative_gaps(exact, form.branch.sample(50)).max() < 1e-12
 
 
 def test_a_form_has_no_half_branch_beyond_its_end(tmp_path):

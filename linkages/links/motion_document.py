@@ -4,143 +4,55 @@ motions along a tree of bodies, and what of them is drawn.
 Lengths are in characteristic lengths, but for what is said to be in the user's unit.
 Places and directions are those of the reference configuration. Bodies and unknowns are
 given by their numbers, from 0.
+
+size         the characteristic length in the user's unit
+frame, held  the body at rest, and the one that is drawn at rest at first
+unknowns     name; times factor it is in rad or the user's unit of length: is_angle and
+             is_length say which, a number of an embedded rotation is neither; period or
+             None
+followers    variables coupled to an unknown: name, is_angle; rate times the unknown of
+             this column, plus offset; times factor it is in rad or the user's unit
+steps        from the body origin to the body goal: the product of factors, or a rotation;
+             the inverse of it where the sign is -1
+  factors    elementary motions (`linkages.mechanisms.joint.Motion`): is_turn, direction,
+             point, advance; by rate times the unknown of this column, plus offset; by the
+             offset alone where the column is None, as the variable is locked
+  rotation   about center, by a matrix whose first two columns are the unknowns of these
+             columns; the last three of nine are a translation
+rods         between points, centers, of the bodies ends
+  parts      bodies that move as one at an end; start comes to the spherical joint there,
+             inside are their displacements, three rows of four, from the first of them
+  leg        its slide: the length is length + rate times the unknown of column; or None
+bodies       what `draw_bodies` gives
+symbols      what `draw_symbols` gives
+tape         the closure equations as operations by their names, one after the other, left
+             and right the numbers of earlier ones or of an unknown, with constants; the
+             outputs are the equations; None where unknowns are many
 """
 
 from __future__ import annotations
 
-from typing import TypedDict
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from linkages.closure.equations import write_equations
-from linkages.links.mechanism_drawing import (
-    BodyDrawing,
-    SymbolDrawing,
-    draw_bodies,
-    draw_symbols,
-    held_body,
-)
+from linkages.links.mechanism_drawing import draw_bodies, draw_symbols, held_body
 from linkages.readout.poses import Poses, TreeStep
 from linkages.structure.rods import Rod
 from linkages.structure.structure import Structure, Unknown
 
+Document: TypeAlias = dict[str, Any]  # values that JSON can hold
+
 MOST_UNKNOWNS = 30  # up to which a page has time for singular values at each frame
 
 
-class UnknownDocument(TypedDict):
-    """An unknown: times ``factor`` it is in rad or the user's unit of length.
-    ``is_angle`` says which; a number of an embedded rotation is neither."""
-
-    name: str
-    is_angle: bool
-    is_length: bool
-    factor: float
-    period: float | None
+def has_tape(structure: Structure) -> bool:
+    """Whether the document holds the closure equations."""
+    return len(structure.unknowns) <= MOST_UNKNOWNS
 
 
-class FollowerDocument(TypedDict):
-    """A variable that is coupled to an unknown: ``rate`` times the one of this
-    ``column``, plus ``offset``; times ``factor`` it is in rad or the user's unit."""
-
-    name: str
-    is_angle: bool
-    factor: float
-    column: int
-    rate: float
-    offset: float
-
-
-class FactorDocument(TypedDict):
-    """An elementary motion, as `linkages.mechanisms.joint.Motion`, by ``rate`` times
-    the unknown of this ``column``, plus ``offset``; by the offset alone where the
-    variable is locked and has no column."""
-
-    is_turn: bool
-    direction: list[float]
-    point: list[float]
-    advance: float
-    column: int | None
-    rate: float
-    offset: float
-
-
-class RotationDocument(TypedDict):
-    """A rotation about ``center`` whose first two columns are the unknowns of these
-    ``columns``; the last three of nine are a translation."""
-
-    columns: list[int]
-    center: list[float]
-
-
-class StepDocument(TypedDict):
-    """A step from a body to another one: the product of its ``factors``, or a
-    ``rotation``; the inverse of it where the ``sign`` is -1."""
-
-    origin: int
-    goal: int
-    sign: int
-    factors: list[FactorDocument]
-    rotation: RotationDocument | None
-
-
-class RodPartDocument(TypedDict):
-    """Bodies that move as one at an end of a rod, with their displacements (three rows
-    of four) from its first body; ``start`` comes to the spherical joint of this
-    end."""
-
-    start: list[float]
-    bodies: list[int]
-    inside: list[list[float]]
-
-
-class LegDocument(TypedDict):
-    """The slide of a leg: its length is ``length`` + ``rate`` times the unknown of
-    this ``column``."""
-
-    column: int
-    rate: float
-    length: float
-
-
-class RodDocument(TypedDict):
-    """A rod between points ``centers`` of the bodies ``ends``."""
-
-    ends: list[int]
-    centers: list[list[float]]
-    parts: list[RodPartDocument]
-    leg: LegDocument | None
-
-
-class TapeDocument(TypedDict):
-    """The closure equations as operations by their names, one after the other; operands
-    are the numbers of earlier ones, or of an unknown. ``outputs`` are the equations."""
-
-    operations: list[str]
-    left: list[int]
-    right: list[int]
-    constants: list[float]
-    outputs: list[int]
-
-
-class MechanismDocument(TypedDict):
-    """The mechanism of a page; ``size`` is the characteristic length in the user's
-    unit, ``frame`` the body at rest, ``held`` the one that is drawn at rest at first,
-    and ``tape`` the equations whose singular values are shown, None where unknowns are
-    many."""
-
-    size: float
-    frame: int
-    held: int
-    unknowns: list[UnknownDocument]
-    followers: list[FollowerDocument]
-    steps: list[StepDocument]
-    rods: list[RodDocument]
-    bodies: list[BodyDrawing]
-    symbols: list[SymbolDrawing]
-    tape: TapeDocument | None
-
-
-def describe_motion(structure: Structure, points: np.ndarray) -> MechanismDocument:
+def describe_motion(structure: Structure, points: np.ndarray) -> Document:
     """The document of a mechanism; slides are drawn as long as they are used at
     ``points`` (k, n), the configurations on the map."""
     poses = Poses(structure)
@@ -160,11 +72,11 @@ def describe_motion(structure: Structure, points: np.ndarray) -> MechanismDocume
         "rods": [_rod(poses, rod) for rod in structure.rods],
         "bodies": draw_bodies(structure, points),
         "symbols": draw_symbols(structure),
-        "tape": _tape(structure) if len(structure.unknowns) <= MOST_UNKNOWNS else None,
+        "tape": _tape(structure) if has_tape(structure) else None,
     }
 
 
-def _tape(structure: Structure) -> TapeDocument:
+def _tape(structure: Structure) -> Document:
     nodes, outputs = write_equations(structure).tape.nodes()
     return {
         "operations": [node.operation.name.lower() for node in nodes],
@@ -175,7 +87,7 @@ def _tape(structure: Structure) -> TapeDocument:
     }
 
 
-def _unknown(unknown: Unknown, factor: float) -> UnknownDocument:
+def _unknown(unknown: Unknown, factor: float) -> Document:
     return {
         "name": unknown.label,
         "is_angle": unknown.is_angle,
@@ -185,8 +97,8 @@ def _unknown(unknown: Unknown, factor: float) -> UnknownDocument:
     }
 
 
-def _followers(structure: Structure) -> list[FollowerDocument]:
-    followers: list[FollowerDocument] = []
+def _followers(structure: Structure) -> list[Document]:
+    followers: list[Document] = []
     for number, variable in enumerate(structure.mechanism.variables):
         share = structure.share(number)
         if share is None or variable.leader.number == number:
@@ -205,8 +117,8 @@ def _followers(structure: Structure) -> list[FollowerDocument]:
     return followers
 
 
-def _step(structure: Structure, step: TreeStep) -> StepDocument:
-    rotation: RotationDocument | None = None
+def _step(structure: Structure, step: TreeStep) -> Document:
+    rotation: Document | None = None
     columns = structure.embedded.get(step.pair)
     if columns is not None:
         center = structure.center(step.pair) / structure.unit
@@ -223,7 +135,7 @@ def _step(structure: Structure, step: TreeStep) -> StepDocument:
     }
 
 
-def _factor(structure: Structure, number: int) -> FactorDocument:
+def _factor(structure: Structure, number: int) -> Document:
     variable = structure.mechanism.variables[number]
     motion = variable.motion
     share = structure.share(number)
@@ -239,7 +151,7 @@ def _factor(structure: Structure, number: int) -> FactorDocument:
     }
 
 
-def _shifts(structure: Structure, pair: int) -> list[FactorDocument]:
+def _shifts(structure: Structure, pair: int) -> list[Document]:
     """The slides of a pair that moves a free point; none for another one."""
     if pair not in structure.shifts:
         return []
@@ -258,19 +170,19 @@ def _shifts(structure: Structure, pair: int) -> list[FactorDocument]:
     ]
 
 
-def _rod(poses: Poses, rod: Rod) -> RodDocument:
+def _rod(poses: Poses, rod: Rod) -> Document:
     structure = poses.structure
     unit = structure.unit
     centers = rod.centers
     inside = poses.inside_rod(rod)
     far = (inside[poses.holder(rod, 1)] @ np.append(centers[1], 1.0))[:3]
-    parts: list[RodPartDocument] = []
+    parts: list[Document] = []
     for bodies, start in zip(rod.parts, (centers[0], far), strict=True):
         rows = [_rows(inside[body], unit) for body in bodies]
         parts.append(
             {"start": (start / unit).tolist(), "bodies": list(bodies), "inside": rows}
         )
-    leg: LegDocument | None = None
+    leg: Document | None = None
     if rod.leg is not None:
         share = structure.share(rod.leg.variable)
         assert share is not None  # a locked slide makes no leg

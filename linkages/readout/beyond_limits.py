@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +11,6 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.settings import SearchSettings
 from bifurc.torus import wrap
-from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Limits
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.readout.ranges import VariableRange, variable_ranges
@@ -49,7 +48,9 @@ class LimitedRange:
         return low <= one.high and one.low <= high
 
 
-def ranges_beyond_limits(mechanism: Mechanism) -> list[LimitedRange]:
+def ranges_beyond_limits(
+    mechanism: Mechanism, map_linkage: Callable[..., Atlas]
+) -> list[LimitedRange]:
     """The variables with limits, and what they are in the configurations that were
     found without these in a few seconds; none where there are no configurations, or no
     limits."""

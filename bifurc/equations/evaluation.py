@@ -1,0 +1,187 @@
+"""Values and derivatives of a function: from its tape, or as far as calls of it tell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from bifurc.checks import floats_of
+from bifurc.equations.recording import Recording
+from bifurc.equations.tape import Tape, rounding_of_constants
+from bifurc.numerics.bordered import as_dense
+from bifurc.units import Units
+
+if TYPE_CHECKING:
+    # SciPy takes longer to import than a small problem to solve
+    from scipy.sparse import sparray
+
+COMPLEX_STEP = 1e-100  # its square vanishes beside 1, and it costs no digits
+DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences of F
+SOLVED_IN_NOISE = 30.0  # times the noise, below which a value is zero
+
+# From a point (n,) to F (m,), and to F' (m, n), dense or sparse.
+Function: TypeAlias = Callable[[np.ndarray], "Sequence[float] | np.ndarray"]
+Jacobian: TypeAlias = "Callable[[np.ndarray], np.ndarray | sparray]"
+
+
+@dataclass(frozen=True, eq=False)
+class Equations:
+    """F: R^n -> R^m by a ``function``, of which the ``recording`` is a tape or the
+    reason why there is none.
+
+    All values and derivatives come from the tape where there is one, compiled and
+    exact. Otherwise F' comes from a ``given_jacobian``, which may make it sparse, by
+    complex step or by central differences; ``derivatives`` says which. Values of the
+    function may be noisy by ``noise`` (m,), a share ``noise_share`` of what they change by;
+    what is within `SOLVED_IN_NOISE` of that is zero, and differences take longer steps.
+    """
+
+    function: Function
+    given_jacobian: Jacobian | None
+    m: int
+    recording: Recording
+    derivatives: str = ""
+    is_sparse: bool = False
+    noise: np.ndarray | None = None
+    noise_share: float = 0.0
+
+    @property
+    def tape(self) -> Tape | None:
+        """The tape, where there is one."""
+        return self.recording.tape
+
+    def in_units(self, units: Units, tape: Tape | None = None) -> Equations:
+        """The same equations, or those on another ``tape``, over unknowns counted in
+        ``units``, and weighted by these."""
+        own_tape = self.tape if tape is None else tape
+        recording = self.recording
+        if own_tape is not None:
+            in_units = own_tape.in_units(units.origin, units.sizes, units.weights)
+            recording = Recording(in_units)
+
+        def function(point: np.ndarray) -> np.ndarray:
+            value = self.function(units.outwards(point))
+            weighted: np.ndarray = units.weights * np.asarray(value)
+            return weighted
+
+        def jacobian(point: np.ndarray) -> np.ndarray | sparray:
+            return units.jacobian(self.jacobian_as_given(units.outwards(point)))
+
+        return replace(
+            self,
+            function=function,
+            given_jacobian=None if self.given_jacobian is None else jacobian,
+            m=len(units.weights),
+            recording=recording,
+            noise=None if self.noise is None else units.weights * self.noise,
+        )
+
+    def with_derivatives_at(self, probe: np.ndarray) -> Equations:
+        """The same with F' made as well as can be, by what is seen at a point (n,)."""
+        is_given = self.tape is None and self.given_jacobian is not None
+        is_sparse = is_given and not isinstance(
+            self.jacobian_as_given(probe), np.ndarray
+        )
+        return replace(self, derivatives=self._best_way(probe), is_sparse=is_sparse)
+
+    def _best_way(self, probe: np.ndarray) -> str:
+        """How F' is made: from the recording or as it is given, else by complex step,
+        if that agrees with differences at a point.
+
+        A function may also drop imaginary parts without a word.
+        """
+        if self.tape is not None:
+            return "recorded"
+        if self.given_jacobian is not None:
+            return "given"
+        try:
+            by_complex = self.complex_step(probe)
+        except (TypeError, ValueError, np.exceptions.ComplexWarning):
+            return "central differences"
+        by_difference = self.central_difference(probe)
+        if by_complex.shape != by_difference.shape:
+            return "central differences"
+        error = np.abs(by_complex - by_difference).max()
+        size = 1.0 + np.abs(by_difference).max()
+        return "complex step" if error < 1e-5 * size else "central differences"
+
+    def value(self, point: np.ndarray) -> np.ndarray:
+        """What the function gives at one point (n,), as an array."""
+        return floats_of("value of the function", self.function(point))
+
+    def residuals(self, points: np.ndarray) -> np.ndarray:
+        """F (k, m) at points (k, n)."""
+        points = np.atleast_2d(points)
+        if self.tape is not None:
+            return self.tape.compiled.residuals(_contiguous(points))
+        function = self.function  # called thousands of times a curve
+        with np.errstate(all="ignore"):  # beyond the rim of where it is defined
+            values = [function(point) for point in points]
+        exact = np.array(values, dtype=float).reshape(len(points), self.m)
+        if self.noise is None:
+            return exact
+        floor = SOLVED_IN_NOISE * self.noise
+        beyond: np.ndarray = exact - np.clip(exact, -floor, floor)
+        return beyond
+
+    def jacobians(self, points: np.ndarray) -> np.ndarray:
+        """F' (k, m, n) at points (k, n), dense."""
+        points = np.atleast_2d(points)
+        if self.tape is not None:
+            return self.tape.compiled.jacobians(_contiguous(points))
+        jacobians = [as_dense(self.jacobian_by_calls(point)) for point in points]
+        return np.array(jacobians).reshape(len(points), self.m, points.shape[1])
+
+    def jacobian_by_calls(self, point: np.ndarray) -> np.ndarray | sparray:
+        """F' (m, n) at one point (n,) by calls of what was given; sparse where the
+        ``given_jacobian`` makes it so."""
+        if self.given_jacobian is not None:
+            return self.jacobian_as_given(point)
+        with np.errstate(all="ignore"):
+            if self.derivatives == "complex step":
+                return self.complex_step(point)
+            return self.central_difference(point)
+
+    def jacobian_as_given(self, point: np.ndarray) -> np.ndarray | sparray:
+        """What the ``given_jacobian`` is at one point (n,)."""
+        assert self.given_jacobian is not None
+        jacobian = self.given_jacobian(point)
+        is_sparse = hasattr(jacobian, "tocsc")
+        return jacobian if is_sparse else np.asarray(jacobian, dtype=float)
+
+    def complex_step(self, point: np.ndarray) -> np.ndarray:
+        """F' (m, n) at one point (n,) by complex step."""
+        columns = []
+        for shifted in point + 1j * COMPLEX_STEP * np.eye(len(point)):
+            value = np.asarray(self.function(shifted))
+            columns.append(np.imag(value) / COMPLEX_STEP)
+        return np.column_stack(columns)
+
+    def central_difference(self, point: np.ndarray) -> np.ndarray:
+        """F' (m, n) at one point (n,) by central differences."""
+        columns = []
+        size = max(DIFFERENCE_STEP, self.noise_share ** (1.0 / 3.0))
+        for i in range(len(point)):
+            step = np.zeros(len(point))
+            step[i] = size * (1.0 + abs(point[i]))
+            upper = self.value(point + step)
+            lower = self.value(point - step)
+            width = 2 * step[i]
+            columns.append((upper - lower) / width)
+        return np.column_stack(columns)
+
+    @property
+    def coefficient_rounding(self) -> Callable[[np.ndarray], np.ndarray] | None:
+        """How far off F (m,) at a point (n,) is where its coefficients are rounded to
+        doubles; None where it is not recorded."""
+        tape = self.tape
+        return (
+            None if tape is None else lambda point: rounding_of_constants(tape, point)
+        )
+
+
+def _contiguous(values: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(values, dtype=float)

@@ -1,0 +1,306 @@
+"""What moves, as lines on bodies that joints let move: the links of a loop, or the bodies
+of a mechanism. Distances, models and pages are made of them alike."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from functools import cached_property
+from itertools import combinations
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+
+from bifurc.atlas import Form
+from bifurc.branch import Branch
+from bifurc.isometry import Isometry
+from linkages.geometry_table import link_name
+from linkages.links.distances import MARGIN, largest_rates, places_along
+from linkages.links.mechanism_drawing import (
+    Drawing,
+    best_view_of_mechanism,
+    breadths_of_mechanism,
+    draw_bodies,
+    draw_symbols,
+)
+from linkages.links.motion_document import describe_motion, has_tape
+from linkages.links.rods import link_corners, seat_heights
+from linkages.loop import Loop
+from linkages.mechanisms.joint import JointKind, Shape
+from linkages.readout.poses import Poses
+from linkages.scene import View, best_view, make_scene
+from linkages.structure.structure import Structure
+
+STEP = 1e-5  # rad, along a branch: of the differences that are taken for speeds
+ALIKE = 1e-3  # of a breadth: configurations that differ by less show as much
+UPWARD = np.array([0.0, 0.0, 1.0])
+
+Pair: TypeAlias = tuple[int, int]  # of bodies, by their numbers
+
+
+class Symbol(NamedTuple):
+    """A joint on a body: its ``place`` (3,), and its ``direction`` (3,), a unit
+    vector."""
+
+    name: str
+    shape: Shape
+    place: np.ndarray
+    direction: np.ndarray
+
+
+class Parts(ABC):
+    """Bodies by their ``names``, of a characteristic length, their ``size``; the body
+    number ``frame`` is at rest. ``word`` is what all are called, ``whole`` what they make
+    together, ``full_names`` what each is where it stands alone. Lengths are in the
+    user's unit, and every body has its own frame."""
+
+    word: str
+    whole: str
+    names: Sequence[str]
+    full_names: Sequence[str]
+    size: float
+    frame: int
+
+    @abstractmethod
+    def lines(self, points: np.ndarray) -> list[np.ndarray]:
+        """The lines (m, 2, 3) of every body, rails as long as slides are used at
+        configurations (k, n)."""
+
+    @abstractmethod
+    def poses(self, points: np.ndarray) -> np.ndarray:
+        """The transforms (k, b, 4, 4) of all bodies at configurations (k, n)."""
+
+    @abstractmethod
+    def symbols_on(self, body: int) -> list[Symbol]:
+        """The symbols of joints that a body carries."""
+
+    @abstractmethod
+    def are_joined(self, pair: Pair) -> bool:
+        """Whether two bodies share a joint."""
+
+    @abstractmethod
+    def closing_speeds(
+        self, pairs: Sequence[Pair], lines: list[np.ndarray], branch: Branch
+    ) -> list[float]:
+        """How fast the lines of each two bodies can near each other for each unit of
+        arclength of a branch."""
+
+    @abstractmethod
+    def best_view(self, point: np.ndarray) -> View:
+        """From where the joints of a configuration (n,) are seen farthest apart."""
+
+    @abstractmethod
+    def page(self, points: np.ndarray) -> dict[str, Any]:
+        """What a page has to know of them, ``points`` (k, n) being on the map."""
+
+    def form_on_page(self, form: Form, places: np.ndarray) -> dict[str, Any]:
+        """What it has to know of a form besides, which may first be shown at one of the
+        ``places`` (k,)."""
+        return {}
+
+    def pairs_apart(self, lines: list[np.ndarray]) -> list[Pair]:
+        """Every two bodies that have lines and share no joint."""
+        drawn = [body for body, of_body in enumerate(lines) if len(of_body)]
+        pairs = combinations(drawn, 2)
+        return [pair for pair in pairs if not self.are_joined(pair)]
+
+
+class Links(Parts):
+    """The links of a ``loop``, to whose joint angles an isometry leads from the unknowns;
+    these have ``unknowns`` as names where they are others. Each is given by the joint
+    (from 0) that it follows."""
+
+    word = "links"
+    whole = "linkage"
+
+    def __init__(
+        self, loop: Loop, to_angles: Isometry, unknowns: Sequence[str] = ()
+    ) -> None:
+        self.loop = loop
+        self.to_angles = to_angles
+        self.unknowns = unknowns
+        self.names = [link_name(link, loop.n) for link in range(loop.n)]
+        self.full_names = [f"link {name}" for name in self.names]
+        self.size = loop.characteristic_length
+        self.frame = loop.n - 1
+
+    def lines(self, points: np.ndarray) -> list[np.ndarray]:
+        """The rods of every link."""
+        corners = link_corners(self.loop)
+        return list(np.stack([corners[:, :-1], corners[:, 1:]], axis=2))
+
+    def poses(self, points: np.ndarray) -> np.ndarray:
+        """The frames that move with the links."""
+        return self.loop.frames(self.to_angles.points(points))[:, 1:]
+
+    def symbols_on(self, body: int) -> list[Symbol]:
+        """The joint behind a link, whose axis is the z axis of the link."""
+        joint = (body + 1) % self.loop.n
+        seat = float(seat_heights(self.loop)[joint]) * UPWARD
+        return [Symbol(f"joint {joint + 1}", Shape.CYLINDER, seat, UPWARD)]
+
+    def are_joined(self, pair: Pair) -> bool:
+        """Whether one follows the other."""
+        return pair[1] - pair[0] in (1, self.loop.n - 1)
+
+    def closing_speeds(
+        self, pairs: Sequence[Pair], lines: list[np.ndarray], branch: Branch
+    ) -> list[float]:
+        """Bounds that the geometry gives.
+
+        Only the joints between them move them, either way round; of these a point of a
+        closed loop is no farther away than half the way round.
+        """
+        lengths, _, offsets = self.loop.arrays
+        half_way = float(np.abs(lengths).sum() + np.abs(offsets).sum()) / 2
+        # joints that were moved aside stand that far out at both ends
+        farthest = half_way + 2 * self.size
+        largest = largest_rates(branch)[self.to_angles.columns]
+        speeds = []
+        for first, second in pairs:
+            between = largest[first + 1 : second + 1].sum()
+            around = largest.sum() - between
+            speeds.append(farthest * float(min(between, around)))
+        return speeds
+
+    def best_view(self, point: np.ndarray) -> View:
+        """The view of the scene of axes and common normals."""
+        return best_view(make_scene(self.loop, self.to_angles.points(point)))
+
+    def page(self, points: np.ndarray) -> dict[str, Any]:
+        """The table, and the joints where the unknowns are not its angles."""
+        lengths, twists, offsets = self.loop.arrays
+        loop = {
+            "lengths": lengths.tolist(),
+            "twists": twists.tolist(),
+            "offsets": offsets.tolist(),
+            "size": self.size,
+        }
+        if self.unknowns:
+            loop["joints"] = self._joints()
+        return {"loop": loop}
+
+    def _joints(self) -> list[dict[str, Any]]:
+        """The joints in loop order: each angle is an offset, and a sign times the
+        unknown of a column."""
+        back = self.to_angles.inverse
+        joints = []
+        for joint in range(self.loop.n):
+            column = back.index(joint)
+            joints.append(
+                {
+                    "name": self.unknowns[column],
+                    "column": column,
+                    "sign": int(back.signs[column]),
+                    "offset": float(back.origin[column]),
+                }
+            )
+        return joints
+
+
+class Bodies(Parts):
+    """The bodies of the mechanism of a ``structure``; their frames are that of the
+    reference configuration."""
+
+    word = "bodies"
+    whole = "mechanism"
+
+    def __init__(self, structure: Structure):
+        mechanism = structure.mechanism
+        self.structure = structure
+        self.names = self.full_names = mechanism.bodies
+        self.size = structure.unit
+        self.frame = mechanism.bodies.index(mechanism.frame)
+        self._placing = Poses(structure)
+
+    def lines(self, points: np.ndarray) -> list[np.ndarray]:
+        """Those from joint to joint."""
+        drawings = draw_bodies(self.structure, points)
+        lines = [np.array(one["lines"]).reshape(-1, 2, 3) for one in drawings]
+        return [self.size * one for one in lines]
+
+    def poses(self, points: np.ndarray) -> np.ndarray:
+        """The displacements from the reference configuration."""
+        return self._placing.at(points)
+
+    def symbols_on(self, body: int) -> list[Symbol]:
+        """Those of its joints; the second axis of a universal joint is on its other
+        body, and a rigid joint has no symbol."""
+        symbols = []
+        for drawing in self._drawn_symbols:
+            kind = JointKind(drawing["kind"])
+            if kind is JointKind.RIGID:
+                continue
+            name = f"joint {drawing['label']}".strip()
+            place = self.size * np.array(drawing["place"])
+            directions = drawing["directions"] or [UPWARD.tolist()]
+            holders = (drawing["holder"], drawing["other"])
+            for holder, direction in zip(holders, directions, strict=False):
+                if holder == body:
+                    along = np.array(direction)
+                    symbols.append(Symbol(name, kind.facets.shape, place, along))
+        return symbols
+
+    @cached_property
+    def _drawn_symbols(self) -> list[Drawing]:
+        return draw_symbols(self.structure)
+
+    def are_joined(self, pair: Pair) -> bool:
+        """Whether a joint is of both."""
+        names = {self.names[body] for body in pair}
+        return any(names <= {*one.bodies} for one in self.structure.mechanism.joints)
+
+    def closing_speeds(
+        self, pairs: Sequence[Pair], lines: list[np.ndarray], branch: Branch
+    ) -> list[float]:
+        """No faster than the fastest end of a line of one, seen from the other, either
+        way round."""
+        points, rates = places_along(branch)
+        steps = [self.poses(points + step * rates) for step in (-STEP, STEP)]
+
+        def largest(seen_from: int, body: int) -> float:
+            before, after = (
+                moved_lines(
+                    lines[body], np.linalg.inv(poses[:, seen_from]) @ poses[:, body]
+                )
+                for poses in steps
+            )
+            ways = np.linalg.norm(after - before, axis=-1)
+            return float(ways.max()) / (2 * STEP)
+
+        return [MARGIN * min(largest(a, b), largest(b, a)) for a, b in pairs]
+
+    def best_view(self, point: np.ndarray) -> View:
+        """The same, the body at rest that is drawn so."""
+        return best_view_of_mechanism(self.structure, point)
+
+    def page(self, points: np.ndarray) -> dict[str, Any]:
+        """How bodies move, and what is drawn of them."""
+        return {"mechanism": describe_motion(self.structure, points)}
+
+    def form_on_page(self, form: Form, places: np.ndarray) -> dict[str, Any]:
+        """Where joints are farthest from one line, and the smallest regular singular
+        value where the page has no equations."""
+        breadths = breadths_of_mechanism(self.structure, form.branch(places))
+        # the first of those that are alike, whatever rounding makes of them
+        first = np.argmax(breadths > (1 - ALIKE) * breadths.max())
+        on_page: dict[str, Any] = {"start": float(places[first])}
+        if not has_tape(self.structure):
+            on_page["smallest"] = _smallest(form)
+        return on_page
+
+
+def _smallest(form: Form) -> list[list[float]]:
+    """The smallest regular singular value along a form, as [s, value] in order."""
+    profile = form.profile
+    rows = np.stack([profile.arclength.ravel(), profile.smallest.ravel()], axis=1)
+    ordered = rows[np.argsort(rows[:, 0], kind="stable")]
+    values: list[list[float]] = ordered.tolist()
+    return values
+
+
+def moved_lines(lines: np.ndarray, poses: np.ndarray) -> np.ndarray:
+    """Lines (k, m, 2, 3) that transforms (k, 4, 4) make of lines (m, 2, 3)."""
+    turned = lines.reshape(-1, 3) @ np.swapaxes(poses[:, :3, :3], 1, 2)
+    moved: np.ndarray = turned + poses[:, None, :3, 3]
+    return moved.reshape(len(poses), -1, 2, 3)
