@@ -184,12 +184,40 @@ class MovingSet(NamedTuple):
 def _between_sets(
     spectrum: Spectrum, low: MovingSet, high: MovingSet
 ) -> list[HopfPlace]:
-    """Where eigenvalues cross the axis between two places, in order.
+    """Where eigenvalues cross the axis between two places, in order: between places as
+    near to each other as it takes."""
+    width = high.s - low.s
+    moved = _moved(low, high)
+    if width > NARROW * spectrum.branch.length:
+        if not np.any(moved.has_crossed) and not moved.is_open:
+            return []
+        middle = spectrum.moving(low.s + UNEVEN * width)
+        before = _between_sets(spectrum, low, middle)
+        return [*before, *_between_sets(spectrum, middle, high)]
+    places = []
+    for k in np.flatnonzero(moved.has_crossed & (moved.values.imag >= 0.0)):
+        slope = (moved.values[k] - low.values[k]) / width
+        s = low.s - float(low.values[k].real / slope.real)
+        value = low.values[k] + (s - low.s) * slope
+        places.append(_hopf_place(spectrum, s, value, slope))
+    return sorted(places)
+
+
+class _Moved(NamedTuple):
+    """What eigenvalues (q,) at a place are at the next one: their ``values`` (q,), which
+    of them have ``has_crossed`` (q,) the axis, and whether that ``is_open``."""
+
+    values: np.ndarray
+    has_crossed: np.ndarray
+    is_open: bool
+
+
+def _moved(low: MovingSet, high: MovingSet) -> _Moved:
+    """What the eigenvalues at one place are at another.
 
     As a set they move steadily: each is followed to the next place along its
-    derivative, and back, and where that leaves open which of them are on the other side
-    of the axis, or one is, a place between them is looked at. Derivatives are those
-    away from there: two eigenvalues may meet between the places.
+    derivative, and back. Derivatives are those away from there: two eigenvalues may
+    meet between the places.
     """
     width = high.s - low.s
     forth = low.values + width * low.before
@@ -197,24 +225,9 @@ def _between_sets(
     distances = np.abs(forth[:, None] - high.values)
     distances += np.abs(low.values[:, None] - back)
     partners = _partners(distances)
-    after = high.values[partners]
-    has_crossed = (low.values.real > 0.0) != (after.real > 0.0)
-    if width > NARROW * spectrum.branch.length:
-        if np.any(has_crossed) or _is_open(distances, partners, high.values):
-            middle = spectrum.moving(low.s + UNEVEN * width)
-            return [
-                *_between_sets(spectrum, low, middle),
-                *_between_sets(spectrum, middle, high),
-            ]
-        return []
-    places = []
-    for k in np.flatnonzero(has_crossed & (after.imag >= 0.0)):
-        slope = (after[k] - low.values[k]) / width
-        s = low.s - float(low.values[k].real / slope.real)
-        places.append(
-            _hopf_place(spectrum, s, low.values[k] + (s - low.s) * slope, slope)
-        )
-    return sorted(places)
+    values = high.values[partners]
+    has_crossed = (low.values.real > 0.0) != (values.real > 0.0)
+    return _Moved(values, has_crossed, _is_open(distances, partners, high.values))
 
 
 def _partners(distances: np.ndarray) -> np.ndarray:

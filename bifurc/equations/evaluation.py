@@ -110,7 +110,7 @@ class Equations:
 
     def value(self, point: np.ndarray) -> np.ndarray:
         """What the function gives at one point (n,), as an array."""
-        return floats_of("value of the function", self.function(point))
+        return floats_of("value of the function", self.function(point.copy()))
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
@@ -119,7 +119,8 @@ class Equations:
             return self.tape.compiled.residuals(_contiguous(points))
         function = self.function  # called thousands of times a curve
         with np.errstate(all="ignore"):  # beyond the rim of where it is defined
-            values = [function(point) for point in points]
+            # a copy: it may change its argument
+            values = [function(point.copy()) for point in points]
         exact = np.array(values, dtype=float).reshape(len(points), self.m)
         if self.noise is None:
             return exact

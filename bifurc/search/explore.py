@@ -73,7 +73,9 @@ def explore(
     events_of({} if events is None else events, problem.domain.names)
     request = _Request(settings, int(seed), seeds, progress)
     deadline = Deadline(settings.budget)
-    with one_thread(problem.n), until(deadline):
+    # beside a rim of where equations are defined there are values that are no numbers
+    quiet = np.errstate(all="ignore")
+    with one_thread(problem.n), until(deadline), quiet:
         atlas = _explored_in_any_units(problem, request)
         if parameter is None and not events:
             return atlas

@@ -67,3 +67,14 @@ def test_too_much_noise_is_refused_with_what_was_measured():
         ProblemError, match=r"noise of the values.*e-0[23] is not allowed"
     ):
         FunctionProblem(noisy(circle, 3e-2), BOUNDS)
+
+
+def test_a_function_may_change_its_argument():
+    def changing(u):
+        u *= 2.0
+        return circle(u / 2.0)
+
+    problem = FunctionProblem(changing, BOUNDS, is_recorded=False)
+    points = np.array([[1.0, 0.0], [0.0, 2.0]])
+    assert np.allclose(problem.residuals(points), [[0.0], [3.0]])
+    assert np.array_equal(points, [[1.0, 0.0], [0.0, 2.0]])
