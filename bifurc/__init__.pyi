@@ -41,13 +41,7 @@ from .large.large_branch import LargePoint as LargePoint
 from .large.large_problem import LargeProblem as LargeProblem
 from .large.trace_large_branch import LargeSettings as LargeSettings
 from .large.trace_large_branch import trace_large_branch as trace_large_branch
-from .problem import Accuracy as Accuracy
-from .problem import Curvature as Curvature
-from .problem import March as March
-from .problem import MarchSettings as MarchSettings
-from .problem import MarchStatus as MarchStatus
 from .problem import Problem as Problem
-from .problem import SphereProjection as SphereProjection
 from .routes.route import Leg as Leg
 from .routes.route import Route as Route
 from .routes.route import find_route as find_route
@@ -61,6 +55,12 @@ from .singular.point import Kind as Kind
 from .singular.point import SingularPoint as SingularPoint
 from .surfaces.chart_atlas import ChartAtlas as ChartAtlas
 from .surfaces.chart_atlas import Covering as Covering
+from .system import Accuracy as Accuracy
+from .system import Curvature as Curvature
+from .system import March as March
+from .system import MarchSettings as MarchSettings
+from .system import MarchStatus as MarchStatus
+from .system import SphereProjection as SphereProjection
 from .systems.equation_file import EquationFileError as EquationFileError
 from .systems.equation_file import EquationSystem as EquationSystem
 from .systems.equation_file import read_equations as read_equations

@@ -17,6 +17,7 @@ from bifurc.torus import whole_turns
 
 SLIVER = 1e-3  # of its radius: so little of a piece is left to the next one
 SAME_PASS = 1e-6  # arclength: feet no farther apart are one
+RATES_SEEN = 64  # places of a curve at which its rates are seen
 
 
 class Outcome(Enum):
@@ -275,10 +276,12 @@ class Branch:
         check_whole("unknown", unknown, 0)
         if unknown >= self.n:
             raise ProblemError("unknown", unknown, f"below {self.n}")
-        rows = self.compiled.turnings(
-            unknown, share=hides_turning.threshold, jump=jumps_at_turning.threshold
-        )
-        return tuple(Turning(*row) for row in rows.tolist())
+        if unknown not in self._turnings:
+            rows = self.compiled.turnings(
+                unknown, share=hides_turning.threshold, jump=jumps_at_turning.threshold
+            )
+            self._turnings[unknown] = tuple(Turning(*row) for row in rows.tolist())
+        return self._turnings[unknown]
 
     def turning_points(self, unknown: int) -> np.ndarray:
         """Arclengths, in order, at which the derivative of an ``unknown`` (from 0)
@@ -330,14 +333,33 @@ class Branch:
         return state
 
     @cached_property
-    def travel(self) -> np.ndarray:
-        """What each unknown (n,) gains from the begin to the end of the curve."""
+    def _turnings(self) -> dict[int, tuple[Turning, ...]]:
+        """Those of the unknowns that were asked for."""
+        return {}
+
+    @cached_property
+    def largest_rates(self) -> np.ndarray:
+        """The largest rate |du_i/ds| (n,) of every unknown, as seen at places all along
+        the curve."""
+        rates = np.abs(self(self.arclengths(RATES_SEEN), 1))
+        largest: np.ndarray = rates.max(axis=0)
+        return largest
+
+    @cached_property
+    def ends(self) -> np.ndarray:
+        """Where the curve begins and where it ends (2, n)."""
         ends = [0, -1]
         offsets = self.breaks[ends] - self.centers[ends]
         x = offsets / self.radii[ends]
         exponents = np.arange(self.pieces.shape[1])
         powers = x[:, None] ** exponents
-        begin, end = np.einsum("ek,ekn->en", powers, self.pieces[ends])
+        points: np.ndarray = np.einsum("ek,ekn->en", powers, self.pieces[ends])
+        return points
+
+    @property
+    def travel(self) -> np.ndarray:
+        """What each unknown (n,) gains from the begin to the end of the curve."""
+        begin, end = self.ends
         travel: np.ndarray = end - begin
         return travel
 

@@ -42,9 +42,9 @@ def check_number(name: str, value: object) -> None:
 
 def check_finite(name: str, values: float | np.ndarray) -> None:
     """Raises `ProblemError` where one of the ``values`` is infinite or no number."""
-    values = np.asarray(values)
-    if not np.all(np.isfinite(values)):
-        raise ProblemError(name, values[~np.isfinite(values)][0], "finite")
+    is_finite = np.isfinite(values)
+    if not is_finite.all():
+        raise ProblemError(name, np.asarray(values)[~is_finite][0], "finite")
 
 
 def check_distance(name: str, value: float) -> None:
@@ -57,6 +57,8 @@ def check_distance(name: str, value: float) -> None:
 
 def floats_of(name: str, value: ArrayLike) -> np.ndarray:
     """``value`` as an array of floats; raises `ProblemError` where it is none."""
+    if isinstance(value, np.ndarray) and value.dtype == float:
+        return value.copy()
     try:
         if np.iscomplexobj(value):
             raise TypeError("complex numbers")

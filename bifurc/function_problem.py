@@ -32,19 +32,19 @@ from bifurc.numerics.corrector import (
     project_to_sphere_by_newton,
 )
 from bifurc.numerics.noise import noise_of
-from bifurc.problem import (
+from bifurc.problem import Problem
+from bifurc.seeding import random_seeds
+from bifurc.seeds import Seeds
+from bifurc.system import (
     NO_SHORTCUTS,
     Accuracy,
     March,
     MarchSettings,
     PreciseResidual,
-    Problem,
     Shortcuts,
     SphereProjection,
     jacobian_at,
 )
-from bifurc.seeding import random_seeds
-from bifurc.seeds import Seeds
 
 if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve

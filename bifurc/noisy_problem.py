@@ -15,15 +15,9 @@ import numpy as np
 
 from bifurc.function_problem import NumericalProblem
 from bifurc.limits import Deadline
-from bifurc.problem import (
-    CurveNodes,
-    March,
-    MarchSettings,
-    Problem,
-    Shortcuts,
-    SphereProjection,
-)
+from bifurc.problem import Problem
 from bifurc.seeds import Seeds
+from bifurc.system import CurveNodes, March, MarchSettings, Shortcuts, SphereProjection
 
 ULPS = 2.0  # the largest error, in units of the last place of a number about 1
 

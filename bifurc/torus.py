@@ -21,11 +21,11 @@ def difference(a: np.ndarray, b: np.ndarray, periods: np.ndarray) -> np.ndarray:
     """a - b (..., n), periodic unknowns taken to within half a period of zero."""
     gap: np.ndarray = np.asarray(a, dtype=float) - b
     periodic = np.isfinite(periods)
-    if np.all(periodic):  # every loop: picking columns would take most of the time
-        gap -= periods * np.round(gap / periods)
-    elif np.any(periodic):
+    if periodic.all():  # every loop: picking columns would take most of the time
+        gap -= periods * np.rint(gap / periods)
+    elif periodic.any():
         period = periods[periodic]
-        turns = np.round(gap[..., periodic] / period)
+        turns = np.rint(gap[..., periodic] / period)
         gap[..., periodic] -= period * turns
     return gap
 
@@ -40,7 +40,7 @@ def wrap(points: np.ndarray, periods: np.ndarray, within: float = SEAM) -> np.nd
     periodic = np.isfinite(periods)
     period = periods[periodic]
     angles = out[..., periodic]
-    angles -= period * np.round(angles / period)
+    angles -= period * np.rint(angles / period)
     at_the_seam = np.abs(angles) >= (0.5 - within) * period
     out[..., periodic] = np.where(at_the_seam, 0.5 * period, angles)
     return out

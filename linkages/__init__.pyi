@@ -2,13 +2,13 @@ from .axes import loop_from_axes as loop_from_axes
 from .catalogue import UnknownLinkageError as UnknownLinkageError
 from .closure.loop_closure import LoopClosure as LoopClosure
 from .closure.mechanism_closure import MechanismClosure as MechanismClosure
+from .entry import Linkage as Linkage
 from .entry import UnknownParameterError as UnknownParameterError
 from .file import LinkageFileError as LinkageFileError
 from .labels import FormLabels as FormLabels
 from .labels import NoLinkageError as NoLinkageError
 from .labels import Symmetry as Symmetry
 from .labels import loop_of as loop_of
-from .linkage import Linkage as Linkage
 from .linkage import load as load
 from .linkage import load_linkage as load_linkage
 from .loop import Loop as Loop

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum, StrEnum
 from functools import cached_property
+from html import escape
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -16,6 +17,7 @@ from linkages.closed_forms.closed_form import ClosedForm
 from linkages.closed_forms.form_table import closed_form, form_tables
 from linkages.construction.equations import equation_gaps
 from linkages.construction.numbers import Number
+from linkages.geometry_table import geometry_html, geometry_rows
 from linkages.loop import Loop
 
 Guesses: TypeAlias = Callable[[np.ndarray], Iterable[Mapping[str, float]]]
@@ -185,3 +187,43 @@ class Entry:
         """Random parameters within their ranges (the constructor may still refuse
         them)."""
         return {p.name: float(rng.uniform(p.low, p.high)) for p in self.parameters}
+
+
+# --- what is mapped -------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Linkage:
+    """A loop with the ``patterns`` of the forms that its source names."""
+
+    loop: Loop
+    patterns: tuple[FormPattern, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """What the linkage is called, in the catalogue or in its file."""
+        return self.loop.name
+
+    @property
+    def extent(self) -> float:
+        """The characteristic length."""
+        return self.loop.characteristic_length
+
+    def __repr__(self) -> str:
+        if not self.patterns:
+            return repr(self.loop)
+        return f"{self.loop!r}\n  {self._named_forms()}"
+
+    def _repr_html_(self) -> str:
+        """The linkage as notebooks show it."""
+        loop = self.loop
+        title = f"{loop.name or 'Linkage'}: {loop.n} joints"
+        rows = geometry_rows(loop.lengths, loop.twists, loop.offsets)
+        parts = [f"<p><b>{escape(title)}</b></p>", geometry_html(rows)]
+        if self.patterns:
+            parts.append(f"<p>{escape(self._named_forms())}</p>")
+        return "".join(parts)
+
+    def _named_forms(self) -> str:
+        names = [pattern.name for pattern in self.patterns]
+        return f"forms named by the source: {', '.join(names)}"

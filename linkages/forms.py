@@ -8,13 +8,14 @@ direction, or on whether the angles are wrapped.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from bifurc import torus
-from bifurc.decisions import unit_over_rounding
+from bifurc.decisions import Decision, unit_over_rounding
 from bifurc.search.canonical_order import order_rows
 from linkages.axes import loop_from_axes
 from linkages.decisions import (
@@ -31,6 +32,7 @@ from linkages.loop import Loop
 from linkages.values import GeometryError
 
 OF_SAMPLES = 1e-4  # what the choice of samples makes of a mean along a form
+FEW = 8  # samples at which an equation is tried first: most do not hold there
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
 
 
@@ -103,8 +105,10 @@ def name_forms(
         identify_form(samples, loop, patterns, change)
         for samples, change in zip(forms, changes, strict=True)
     ]
-    in_order = _in_order(forms)
     names = [identity.name for identity in identities]
+    in_order = list(range(len(forms)))
+    if len(set(names)) < len(names):
+        in_order = _in_order(forms)
     distinct = list(identities)
     for name in set(names):
         alike = [i for i in in_order if names[i] == name]
@@ -133,7 +137,7 @@ def _labels(theta: np.ndarray, by_rounding: float) -> FormLabels:
     """The joints that keep their angle modulo 2 pi, these angles in (-pi, pi], and the
     symmetry."""
     full_turns = _full_turns(theta)
-    mean = np.angle(np.exp(1j * theta).mean(axis=0))
+    mean = np.arctan2(np.sin(theta).mean(axis=0), np.cos(theta).mean(axis=0))
     deviation = np.abs(torus.difference(theta, mean, full_turns))
     unit = unit_over_rounding(keeps_angle, by_rounding)
     is_still = keeps_angle(deviation.max(axis=0), unit)
@@ -158,12 +162,30 @@ def _symmetry(theta: np.ndarray) -> Symmetry:
     for step in range(n // 2, 0, -1):
         if n % step:
             continue
+        further = np.roll(np.arange(n), -step)
         for sign in (1, -1):
-            further = np.roll(theta, -step, axis=1)
-            difference = np.sin((theta - sign * further) / 2)
-            if has_symmetry(float(np.abs(difference).max())):
+            difference = partial(_half_sines, further, sign)
+            if _holds_along(difference, theta, has_symmetry):
                 return Symmetry.of_step(step, sign)
     return Symmetry.NONE
+
+
+def _half_sines(further: np.ndarray, sign: int, theta: np.ndarray) -> np.ndarray:
+    """Sines (m, n) of half of what theta (m, n) differ by from ``sign`` times those of
+    the joints ``further`` (n,) on."""
+    sines: np.ndarray = np.sin((theta - sign * theta[:, further]) / 2)
+    return sines
+
+
+def _holds_along(
+    residual: Callable[[np.ndarray], np.ndarray], theta: np.ndarray, is_zero: Decision
+) -> bool:
+    """Whether an equation holds at all samples theta (m, n): the largest entry of its
+    ``residual`` there ``is_zero``."""
+    few = theta[:: max(1, len(theta) // FEW)]
+    return all(
+        is_zero(float(np.abs(residual(samples)).max())) for samples in (few, theta)
+    )
 
 
 # --- names ----------------------------------------------------------------------------
@@ -171,7 +193,7 @@ def _symmetry(theta: np.ndarray) -> Symmetry:
 
 def _name_by_pattern(theta: np.ndarray, patterns: Sequence[FormPattern]) -> str:
     for pattern in patterns:
-        if matches_pattern(float(np.abs(pattern.residual(theta)).max())):
+        if _holds_along(pattern.residual, theta, matches_pattern):
             return pattern.name
     return ""
 

@@ -23,13 +23,13 @@ from bifurc.problem import Problem
 from bifurc.torus import wrap
 from linkages.closure.loop_closure import LoopClosure
 from linkages.decisions import keeps_angle
+from linkages.entry import Linkage
 from linkages.forms import name_forms
 from linkages.labels import FormLabels, largest_residual, subject_of
-from linkages.linkage import Linkage
 
 if TYPE_CHECKING:
     # it imports networkx, which a loop does not need
-    from linkages.closure.mechanism_closure import MechanismClosure
+    from linkages.closure.mechanism_system import MechanismSystem
 
 SAMPLES = 400  # of a form, to name it and to see what stands still
 
@@ -51,7 +51,7 @@ def name_atlas(atlas: Atlas, linkage: Linkage) -> Atlas:
 
 
 def label_atlas(
-    atlas: Atlas, problem: MechanismClosure, subject: Mapping[str, Any]
+    atlas: Atlas, problem: MechanismSystem, subject: Mapping[str, Any]
 ) -> Atlas:
     """The atlas of a mechanism with labels on its forms, and what is its ``subject``."""
     from linkages.turns.translates import with_translates

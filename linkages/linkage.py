@@ -1,60 +1,20 @@
-"""A linkage to be mapped: its loop, its name, and the forms that its source names."""
+"""From a name of the catalogue or a file to a linkage to be mapped."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkages.catalogue import UnknownLinkageError, entry
-from linkages.entry import FormPattern
+from linkages.entry import Linkage
 from linkages.file import LinkageFileError, read_file
 from linkages.formats.table import ENDINGS
-from linkages.geometry_table import geometry_html, geometry_rows
 from linkages.loop import Loop
 from linkages.networks.entries import NETWORKS
 from linkages.values import GeometryError, check_number
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
-
-
-@dataclass(frozen=True)
-class Linkage:
-    """A loop with the ``patterns`` of the forms that its source names."""
-
-    loop: Loop
-    patterns: tuple[FormPattern, ...] = ()
-
-    @property
-    def name(self) -> str:
-        """What the linkage is called, in the catalogue or in its file."""
-        return self.loop.name
-
-    @property
-    def extent(self) -> float:
-        """The characteristic length."""
-        return self.loop.characteristic_length
-
-    def __repr__(self) -> str:
-        if not self.patterns:
-            return repr(self.loop)
-        return f"{self.loop!r}\n  {self._named_forms()}"
-
-    def _repr_html_(self) -> str:
-        """The linkage as notebooks show it."""
-        loop = self.loop
-        title = f"{loop.name or 'Linkage'}: {loop.n} joints"
-        rows = geometry_rows(loop.lengths, loop.twists, loop.offsets)
-        parts = [f"<p><b>{escape(title)}</b></p>", geometry_html(rows)]
-        if self.patterns:
-            parts.append(f"<p>{escape(self._named_forms())}</p>")
-        return "".join(parts)
-
-    def _named_forms(self) -> str:
-        names = [pattern.name for pattern in self.patterns]
-        return f"forms named by the source: {', '.join(names)}"
 
 
 def load(source: str | Path, **parameters: float) -> Linkage | Mechanism:

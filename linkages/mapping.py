@@ -7,7 +7,7 @@ from collections.abc import Callable
 from bifurc.atlas import Atlas
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
-from linkages.linkage import Linkage
+from linkages.entry import Linkage
 from linkages.loop import Loop
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.subject import as_subject

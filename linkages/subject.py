@@ -18,9 +18,9 @@ from bifurc.atlas import Atlas
 from bifurc.isometry import Isometry
 from bifurc.problem import Problem
 from linkages.closure.loop_closure import LoopClosure
+from linkages.entry import Linkage
 from linkages.labelling import label_atlas, name_atlas, recount_labelled
 from linkages.labels import FormLabels, loop_of, subject_of, table_values
-from linkages.linkage import Linkage
 from linkages.loop import LARGEST, SMALLEST, Loop
 from linkages.mechanisms.mechanism import Lock, Mechanism
 from linkages.networks.mechanism import mechanism_at
@@ -244,9 +244,11 @@ class MechanismSubject(Subject):
         self.gruebler = self.mechanism.gruebler
         self.factors = structure.scales
 
-    @property
+    @cached_property
     def closure(self) -> MechanismClosure:
-        return self.readout.closure
+        from linkages.closure.mechanism_closure import MechanismClosure
+
+        return MechanismClosure(self.mechanism, structure=self.readout.structure)
 
     @property
     def values(self) -> dict[str, Any]:

@@ -15,12 +15,14 @@ import click
 from studies.errata_page import errata_page
 from studies.figures_page import figures_page
 from studies.negative_controls import controls_page
+from studies.results_page import results_page
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGES: dict[str, Callable[[], str]] = {
     "errata": errata_page,
     "figures": figures_page,
     "negative_controls": controls_page,
+    "results": results_page,
 }
 
 

@@ -26,8 +26,8 @@ import click
 import numpy as np
 
 from bifurc import Atlas, SearchSettings
-from bifurc.problem import relative_gaps
 from bifurc.singular.dimension import local_dimensions
+from bifurc.system import relative_gaps
 from bifurc.tables import count_of, section
 from linkages import Mechanism, MechanismClosure, map_linkage
 from linkages.app.options import FOLDER

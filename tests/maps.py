@@ -8,7 +8,8 @@ from bifurc.atlas import Atlas
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from linkages.closure.loop_closure import LoopClosure
-from linkages.linkage import Linkage, load
+from linkages.entry import Linkage
+from linkages.linkage import load
 from linkages.loop import Loop
 from linkages.mapping import map_linkage
 from linkages.mechanisms.mechanism import Mechanism

@@ -138,11 +138,11 @@ public:
     // lead to a nearer foot.
     Foot nearest(Vector<const double> point, double within, std::vector<double>& room) const {
         Foot best{within, 0.0};
-        std::vector<std::pair<double, Index>> order_of_visit(count());
+        std::vector<std::pair<double, Index>> order_of_visit;
         for (Index number = 0; number < count(); ++number) {
             const double half = 0.5 * (breaks[number + 1] - breaks[number]);
-            const double apart = std::sqrt(squared_distance(middles_.row(number), point));
-            order_of_visit[number] = {apart - half, number};
+            const double bound = std::sqrt(squared_distance(middles_.row(number), point)) - half;
+            if (bound < within) order_of_visit.emplace_back(bound, number);
         }
         std::sort(order_of_visit.begin(), order_of_visit.end());
         for (const auto& [bound, number] : order_of_visit) {

@@ -151,15 +151,27 @@ View<double> rows_from(View<double> table, Index begin) {
     return {table.data + begin * table.columns, std::min(SingularValues::lanes, table.rows - begin), table.columns};
 }
 
+// (k, n) of matrices (k, m, n), zeros after the first min(m, n); all of a matrix that is not finite are
+// infinite.
 nb::object singular_values(const CubeIn<double>& matrices) {
     const auto count = static_cast<Index>(matrices.shape(0)), m = static_cast<Index>(matrices.shape(1)),
                n = static_cast<Index>(matrices.shape(2));
-    Array<double> out({count, std::min(m, n)});
+    Array<double> out({count, n});
     {
         nb::gil_scoped_release release;
         SingularValues decomposition(m, n);
+        Matrix<double> values(count, std::min(m, n));
         for (Index begin = 0; begin < count; begin += SingularValues::lanes) {
-            decomposition.of(matrices_from(matrices, begin), rows_from(out.matrix(), begin));
+            decomposition.of(matrices_from(matrices, begin), rows_from(values, begin));
+        }
+        for (Index i = 0; i < count; ++i) {
+            const Vector<double> row = out.matrix().row(i);
+            const double* const entries = matrices.data() + i * m * n;
+            const bool is_finite = std::all_of(entries, entries + m * n, [](double entry) { return std::isfinite(entry); });
+            if (is_finite)
+                std::copy(values.row(i).begin(), values.row(i).end(), row.begin());
+            else
+                std::fill(row.begin(), row.end(), std::numeric_limits<double>::infinity());
         }
     }
     return out.release();

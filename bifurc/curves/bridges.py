@@ -6,14 +6,13 @@ import numpy as np
 
 from bifurc.branch import points_on_piece
 from bifurc.curves.misclosure import visible_misclosure
-from bifurc.curves.track import Bridge, BridgeRule, Place, Track
-from bifurc.curves.valley_problem import ValleyProblem
+from bifurc.curves.track import Bridge, BridgeRule, Place, SplitCurve, Track
 from bifurc.decisions import is_solution
 from bifurc.numerics.collocation import bridge_by_collocation
 from bifurc.numerics.null_spaces import decompose
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Piece, Problem
 from bifurc.singular.locate import locate_singular_point
+from bifurc.system import Piece, System
 
 REACHES = (0.1, 0.2, 0.05, 0.4, 0.02)  # half widths of bridges, in scales,
 MOST_ROOM = max(REACHES)  # that a bridge needs before the point, in scales
@@ -25,7 +24,7 @@ BEYOND = 1.5  # times as far as points are missed
 RESIDUAL = 10.0  # times the tolerance: the residual that a bridge may have
 
 
-def bridge_from(problem: Problem, track: Track, tolerance: float) -> Bridge | None:
+def bridge_from(problem: System, track: Track, tolerance: float) -> Bridge | None:
     """A bridge across the point before which the track stalled, or None.
 
     Near a singular point where the rank drops faster than on a simple crossing no
@@ -34,10 +33,10 @@ def bridge_from(problem: Problem, track: Track, tolerance: float) -> Bridge | No
     """
     if not len(track):
         return None
-    if isinstance(problem, ValleyProblem):
+    if isinstance(problem, SplitCurve):
         blurred = _blurred_ahead(problem, track)
         if blurred is not None:
-            return _bridge_of_valley(problem, track, blurred)
+            return _bridge_of_split_curve(problem, track, blurred)
     if track.caution.bridges is BridgeRule.NOWHERE:
         return None
     misclosure = visible_misclosure(problem, track.pieces[:, 0])
@@ -59,35 +58,35 @@ def bridge_from(problem: Problem, track: Track, tolerance: float) -> Bridge | No
     return None
 
 
-def _blurred_ahead(valley: ValleyProblem, track: Track) -> float | None:
-    """How far ahead the last point lies where the valley is not single and the next
+def _blurred_ahead(curve: SplitCurve, track: Track) -> float | None:
+    """How far ahead the last point lies where the curve is not single and the next
     piece would be; None where there is none."""
     point, tangent = track.front
     steps = 2.0 * float(track.radii[-1]) * AHEAD
-    missed = np.flatnonzero(valley.missed(point + steps[:, None] * tangent))
+    missed = np.flatnonzero(curve.missed(point + steps[:, None] * tangent))
     return float(steps[missed[-1]]) if len(missed) else None
 
 
-def _bridge_of_valley(
-    valley: ValleyProblem, track: Track, blurred: float
+def _bridge_of_split_curve(
+    curve: SplitCurve, track: Track, blurred: float
 ) -> Bridge | None:
-    """A bridge across points where the valley is not single, which reach as far ahead
+    """A bridge across points where the curve is not single, which reach as far ahead
     as ``blurred``."""
     for reach in BLURRED_REACHES:
-        begin = track.reached - reach * valley.domain.scale
-        if begin < track.centers[0] or reach * valley.domain.scale < BEYOND * blurred:
+        begin = track.reached - reach * curve.domain.scale
+        if begin < track.centers[0] or reach * curve.domain.scale < BEYOND * blurred:
             continue
         last = track.piece_at(begin)
         place = track.at(last, begin)
-        width = 2 * reach * valley.domain.scale
-        piece = valley.bridge(place.point, place.tangent, width, track.order)
+        width = 2 * reach * curve.domain.scale
+        piece = curve.bridge(place.point, place.tangent, width, track.order)
         if piece is not None:
             return Bridge(last, begin, piece)
     return None
 
 
 def _piece_across(
-    problem: Problem,
+    problem: System,
     place: Place,
     width: float,
     order: int,
@@ -108,7 +107,7 @@ def _piece_across(
     return None
 
 
-def _is_near_singular(problem: Problem, point: np.ndarray, misclosure: float) -> bool:
+def _is_near_singular(problem: System, point: np.ndarray, misclosure: float) -> bool:
     """Whether a singular point can be located near ``point``, so that a bridge is worth
     trying."""
     if problem.domain.is_large:
@@ -124,7 +123,7 @@ def _is_near_singular(problem: Problem, point: np.ndarray, misclosure: float) ->
 
 
 def _spans_a_crossing(
-    problem: Problem, piece: np.ndarray, tolerance: float, misclosure: float
+    problem: System, piece: np.ndarray, tolerance: float, misclosure: float
 ) -> bool:
     """Whether a bridge meets the weakest equation to rounding, or to the
     ``misclosure`` of its curve, as it does where branches really cross.

@@ -42,7 +42,7 @@ from bifurc.branch import Branch
 from bifurc.curves.kantorovich import Joints, check_arcs
 from bifurc.curves.monitor import Profile
 from bifurc.numerics.chebyshev import NODE_COUNT
-from bifurc.problem import Problem
+from bifurc.system import System
 
 # distance, in scales, at which an arc is handed over to a located singular point
 HANDOVER = 1e-3
@@ -136,7 +136,7 @@ class Certificate:
 
 
 def certify_branch(
-    problem: Problem, branch: Branch, profile: Profile, singular: Sequence[float] = ()
+    problem: System, branch: Branch, profile: Profile, singular: Sequence[float] = ()
 ) -> Certificate:
     """Whether the dense curve follows one arc from every singular point to the next.
 
@@ -169,7 +169,7 @@ class _Survey:
     """What has been seen of a branch so far: arcs on which the theorem holds are done
     with, what is refused is divided and looked at again, as long as that may help."""
 
-    def __init__(self, problem: Problem, branch: Branch):
+    def __init__(self, problem: System, branch: Branch):
         self.points = 0
         self._problem = problem
         self._branch = branch

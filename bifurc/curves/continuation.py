@@ -16,15 +16,9 @@ from bifurc.decisions import is_solution
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline, is_time_over
 from bifurc.numerics.null_spaces import null_vector
-from bifurc.problem import (
-    Anchor,
-    March,
-    MarchSettings,
-    MarchStatus,
-    Problem,
-    relative_gaps,
-)
+from bifurc.problem import Problem
 from bifurc.settings import TraceSettings
+from bifurc.system import Anchor, March, MarchSettings, MarchStatus, relative_gaps
 
 # Pieces made before the end of the curve is looked for: beside a bend, at least, and at
 # most.

@@ -39,8 +39,9 @@ from bifurc.function_problem import NumericalProblem
 from bifurc.numerics.collocation import march_by_collocation, reparametrised
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.numerics.singular_values import factors_of, singular_values, values_of
-from bifurc.problem import March, MarchSettings, MarchStatus, Piece, Problem
+from bifurc.problem import Problem
 from bifurc.singular.sphere import section
+from bifurc.system import March, MarchSettings, MarchStatus, Piece
 
 RUN = 4  # pieces made with one choice of a and t, before both are renewed
 SECTION_RADIUS = 1e-2  # of the sphere on which half-branches are looked for, in scales

@@ -12,7 +12,7 @@ from bifurc.curves.track import End, Track
 from bifurc.decisions import is_back, is_nearly_back, is_other_way, is_solution
 from bifurc.numerics.blur import same_reach
 from bifurc.numerics.roots import bracketed_roots
-from bifurc.problem import Problem, jacobian_at
+from bifurc.system import System, jacobian_at
 
 GRID = np.linspace(0.0, 1.0, 33)  # of a piece, where it is held against its region
 LOOSE = 30.0  # times the tolerance: the largest residual that pieces may have
@@ -23,7 +23,7 @@ ANCHORS = 60  # first pieces, of which the clearest is where the curve may also 
 
 
 def end_of_curve(
-    problem: Problem, track: Track, first: int, tolerance: float
+    problem: System, track: Track, first: int, tolerance: float
 ) -> End | None:
     """Where the curve, from piece ``first`` on, closes or first leaves the bounds.
 
@@ -72,7 +72,7 @@ class _Return(NamedTuple):
 
 
 def _closing(
-    problem: Problem, track: Track, first: int, anchor: _Anchor, tolerance: float
+    problem: System, track: Track, first: int, anchor: _Anchor, tolerance: float
 ) -> float | None:
     """Arclength at which the curve, from piece ``first`` on, passes the anchor again in
     the same direction."""
@@ -93,7 +93,7 @@ def _closing(
 
 
 def _is_same_pass(
-    problem: Problem, track: Track, anchor: _Anchor, place: _Return, tolerance: float
+    problem: System, track: Track, anchor: _Anchor, place: _Return, tolerance: float
 ) -> bool:
     """Whether the curve is at the anchor again where it is near it, and runs in the
     same direction."""
@@ -115,7 +115,7 @@ def _is_same_pass(
     return is_back(nearness) if is_exact else is_nearly_back(nearness)
 
 
-def _known_to(problem: Problem, point: np.ndarray) -> float:
+def _known_to(problem: System, point: np.ndarray) -> float:
     """How far, over the scale, from a point (n,) of a curve it may be found again; of a
     large problem singular values are not taken."""
     if problem.domain.is_large:
@@ -123,7 +123,7 @@ def _known_to(problem: Problem, point: np.ndarray) -> float:
     return max(float(same_reach(problem, point[None])[0]), NEAR)
 
 
-def _leaving(problem: Problem, track: Track, first: int) -> float | None:
+def _leaving(problem: System, track: Track, first: int) -> float | None:
     """Arclength at which the curve, from piece ``first`` on, first leaves its
     region."""
     by_bounds = _core.exit_of_bounds(
@@ -142,7 +142,7 @@ def _leaving(problem: Problem, track: Track, first: int) -> float | None:
     return min(exits, default=None)
 
 
-def _leaving_by_samples(problem: Problem, track: Track, first: int) -> float | None:
+def _leaving_by_samples(problem: System, track: Track, first: int) -> float | None:
     """The same where something besides the bounds ends the region."""
     breaks = track.breaks(track.reached)[first:]
     centers, radii = track.centers[first:, None], track.radii[first:, None]
@@ -159,7 +159,7 @@ def _leaving_by_samples(problem: Problem, track: Track, first: int) -> float | N
     return float(centers[number, 0] + x * radii[number, 0])
 
 
-def _exit(problem: Problem, piece: np.ndarray, low: float, high: float) -> float:
+def _exit(problem: System, piece: np.ndarray, low: float, high: float) -> float:
     """Coordinate at which a piece (order + 1, n) leaves the region, between one of a
     point on or inside it, ``low``, and one of a point outside, ``high``: from a place on
     its rim, along which it may run, where it is plainly outside."""

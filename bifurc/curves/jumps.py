@@ -16,15 +16,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.curves.monitor import Profile
+from bifurc.curves.monitor import Profile, usual_rank
 from bifurc.decisions import (
     is_same_line,
     is_same_point,
     is_slow,
-    is_zero_along,
     rests,
 )
-from bifurc.problem import Problem
+from bifurc.system import System
 
 # shares of its length at which a curve is looked at again
 PLACES = np.array([0.07, 0.23, 0.41, 0.61, 0.83])
@@ -32,7 +31,7 @@ SEVERAL = 2  # of these places: a curve may touch itself at one
 LEAST = 4  # samples of a stretch that is compared
 
 
-def repeats_itself(problem: Problem, branch: Branch) -> bool:
+def repeats_itself(problem: System, branch: Branch) -> bool:
     """Whether a curve passes several of its places more than once along the same
     line."""
     within = is_same_point.threshold * problem.domain.scale
@@ -103,15 +102,14 @@ class _Course:
         """That of a stretch with rates (k, n) of the unknowns and singular values (k,
         n)."""
         largest = rates.max(axis=0)
-        typical = np.median(values, axis=0)
         return _Course(
             rests=rests(largest),
             moves=~is_slow(largest),
-            rank=int(np.count_nonzero(~is_zero_along(typical))),
+            rank=usual_rank(values),
         )
 
     def differs_from(self, other: _Course) -> bool:
         """Whether one branch cannot have both."""
-        sets_out = np.any(self.rests & other.moves)
-        comes_to_rest = np.any(self.moves & other.rests)
+        sets_out = (self.rests & other.moves).any()
+        comes_to_rest = (self.moves & other.rests).any()
         return bool(sets_out or comes_to_rest or self.rank != other.rank)

@@ -25,7 +25,7 @@ from bifurc import _core
 from bifurc.branch import Branch
 from bifurc.decisions import is_closed_to_rounding, is_unique
 from bifurc.numerics.chebyshev import CELL_EDGES, CHEBYSHEV, NODE_COUNT, NODES
-from bifurc.problem import Problem, relative_jacobians, relative_residuals
+from bifurc.system import System, relative_jacobians, relative_residuals
 
 PROMISING = 0.05  # omega |G| at a node: shorter arcs about it may hold
 LONG = 1e-4  # arc, in scales, on which interpolation may be what is in the way
@@ -69,7 +69,7 @@ class Joints:
     images: np.ndarray
 
     @staticmethod
-    def of(problem: Problem, branch: Branch) -> Joints:
+    def of(problem: System, branch: Branch) -> Joints:
         """The joints of a branch."""
         begins, ends = branch.ends_of_pieces()
         left, right = ends[:-1], begins[1:]
@@ -98,7 +98,7 @@ class Joints:
 
 
 def check_arcs(
-    problem: Problem, branch: Branch, arcs: np.ndarray, joints: Joints
+    problem: System, branch: Branch, arcs: np.ndarray, joints: Joints
 ) -> ArcChecks:
     """Where on the ``arcs`` (a, 2) of arclength, each within one piece, solutions
     across the curve are unique: by the bound on F'', and where that refuses, also on
@@ -121,7 +121,7 @@ class _Nodes:
     u is from where it is in the middle, ``curvature`` |F''|. ``degree`` is that of the
     pieces."""
 
-    problem: Problem
+    problem: System
     edges: np.ndarray
     points: np.ndarray
     slopes: np.ndarray
@@ -134,9 +134,7 @@ class _Nodes:
     degree: int
 
     @staticmethod
-    def on(
-        problem: Problem, branch: Branch, arcs: np.ndarray, joints: Joints
-    ) -> _Nodes:
+    def on(problem: System, branch: Branch, arcs: np.ndarray, joints: Joints) -> _Nodes:
         """Arcs (a, 2) of a branch at their nodes."""
         middles = arcs.mean(axis=1)[:, None]
         halves = 0.5 * np.diff(arcs, axis=1)
@@ -162,7 +160,7 @@ class _Nodes:
             residuals=residuals.reshape(*shape, -1),
             jacobians=jacobians,
             left=np.ascontiguousarray(left[:, :, : problem.n - 1]),
-            images=np.stack([joints.at(arcs[:, 0]), joints.at(arcs[:, 1])], axis=1),
+            images=joints.at(arcs.ravel()).reshape(len(arcs), 2, -1),
             travel=travel,
             curvature=curvature.reshape(travel.shape),
             degree=degree,
@@ -243,5 +241,5 @@ class _Nodes:
 
 def _largest_rows(values: np.ndarray) -> np.ndarray:
     """The largest norm (a,) of vectors (a, k, q)."""
-    largest: np.ndarray = np.linalg.norm(values, axis=2).max(axis=1)
-    return largest
+    squares: np.ndarray = (values * values).sum(axis=2)
+    return np.asarray(np.sqrt(squares.max(axis=1)))

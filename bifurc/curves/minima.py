@@ -19,7 +19,7 @@ from bifurc.curves.monitor import NODES, Profile
 from bifurc.decisions import is_level, stands_out
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem
+from bifurc.system import System, relative_jacobians
 
 FINE = 96  # intervals of a piece on which the interpolants are compared
 DIFFERENCE = 1e-5  # step, over the scale, of the central difference of F'
@@ -40,7 +40,7 @@ class Minima(NamedTuple):
     values: np.ndarray
 
 
-def singular_value_minima(problem: Problem, branch: Branch, profile: Profile) -> Minima:
+def singular_value_minima(problem: System, branch: Branch, profile: Profile) -> Minima:
     """The local minima of the smallest regular singular value.
 
     Where a value rises to no side by more than rounding there is no minimum, and the
@@ -85,7 +85,7 @@ def singular_value_minima(problem: Problem, branch: Branch, profile: Profile) ->
 
 
 def stand_out(
-    problem: Problem, branch: Branch, profile: Profile, values: np.ndarray
+    problem: System, branch: Branch, profile: Profile, values: np.ndarray
 ) -> np.ndarray:
     """Which of the minima ``values`` (k,) are below half the largest value on the
     curve.
@@ -100,7 +100,7 @@ def stand_out(
     return stands_out(values, half)
 
 
-def _largest_value(problem: Problem, branch: Branch, profile: Profile) -> float:
+def _largest_value(problem: System, branch: Branch, profile: Profile) -> float:
     """The largest of the smallest regular singular values on the curve, to about 1e-8.
 
     From every node near the top a row of points closes in on the highest one.
@@ -155,11 +155,14 @@ def _places_to_look(branch: Branch, profile: Profile) -> np.ndarray:
     meet.
     """
     squares = profile.values[..., : profile.rank] ** 2
+    spacing = np.gradient(profile.arclength.ravel())
     places = np.concatenate(
         [
             _around_lowest_nodes(branch, profile),
-            _around_interpolated_minima(branch, profile, squares[..., -1]),
-            _around_interpolated_minima(branch, profile, squares.prod(axis=-1)),
+            _around_interpolated_minima(branch, profile, spacing, squares[..., -1]),
+            _around_interpolated_minima(
+                branch, profile, spacing, squares.prod(axis=-1)
+            ),
         ]
     )
     if branch.closed:
@@ -176,10 +179,11 @@ def _around_lowest_nodes(branch: Branch, profile: Profile) -> np.ndarray:
 
 
 def _around_interpolated_minima(
-    branch: Branch, profile: Profile, quantity: np.ndarray
+    branch: Branch, profile: Profile, spacing: np.ndarray, quantity: np.ndarray
 ) -> np.ndarray:
     """Arclengths (4 k,) on both sides of the minima of the interpolant of a quantity
-    (p, nodes), near and a little farther away."""
+    (p, nodes), near and a little farther away: as far as the ``spacing`` of the nodes
+    there."""
     fine = _fine_grid()
     grid = branch.places(fine.fractions)  # (p, FINE + 1)
     interpolated = quantity @ fine.from_nodes.T
@@ -194,7 +198,7 @@ def _around_interpolated_minima(
     middles, near = arclengths[lowest], 2 * steps[lowest]
     nodes = profile.arclength.ravel()
     node = np.minimum(np.searchsorted(nodes, middles), len(nodes) - 1)
-    far = np.gradient(nodes)[node]
+    far = spacing[node]
     return np.concatenate(
         [middles - far, middles - near, middles + near, middles + far]
     )
@@ -226,21 +230,20 @@ class _ValuesAndSlopes(NamedTuple):
 
 
 def _values_and_slopes(
-    problem: Problem, branch: Branch, rank: int, s: np.ndarray
+    problem: System, branch: Branch, rank: int, s: np.ndarray
 ) -> _ValuesAndSlopes:
     """Singular value number ``rank`` at arclengths (k,), and its derivative there.
 
     With l and r the singular vectors d sigma/ds = l^T F''(r, du/ds): F'' along the
     tangent is a central difference of F'.
     """
-    points = branch(s)
+    points, count = branch(s), len(s)
     step = DIFFERENCE * problem.domain.scale
     along = step * branch(s, 1)
     rows = np.concatenate([points, points + along, points - along])
-    jacobians = problem.jacobians(rows) / problem.magnitude
-    here, after, before = np.split(jacobians, 3)
-    change = (after - before) / (2 * step)
-    values, slopes = _core.singular_value_rates(here, change, rank - 1)
+    jacobians = relative_jacobians(problem, rows)
+    change = (jacobians[count : 2 * count] - jacobians[2 * count :]) / (2 * step)
+    values, slopes = _core.singular_value_rates(jacobians[:count], change, rank - 1)
     return _ValuesAndSlopes(values, slopes)
 
 

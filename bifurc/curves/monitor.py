@@ -15,10 +15,9 @@ from bifurc.branch import Branch, Outcome
 from bifurc.decisions import is_zero_along, stands_still, unit_over_rounding
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem
+from bifurc.system import System
 
 COUNT = 16
-SAMPLES = 64  # of a curve at which rates are seen
 # Chebyshev nodes of a piece, from 0 where it begins to 1 where it ends.
 NODES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(COUNT) + 0.5) / COUNT)
 
@@ -45,13 +44,20 @@ class Profile:
         return self.values[..., self.rank - 1]
 
 
-def profile_branch(problem: Problem, branch: Branch) -> Profile:
+def profile_branch(problem: System, branch: Branch) -> Profile:
     """The singular values along a curve."""
     arclength = branch.places(NODES)
     values = singular_values(problem, branch(arclength))
-    typical = np.median(values.reshape(-1, problem.n), axis=0)
-    rank = int(np.count_nonzero(~is_zero_along(typical)))
+    rank = usual_rank(values.reshape(-1, problem.n))
     return Profile(arclength, values, min(rank, problem.n - 1))
+
+
+def usual_rank(values: np.ndarray) -> int:
+    """The rank that singular values (k, n) tell of at most of k places: by the middle
+    one of every column."""
+    middle = len(values) // 2
+    typical = np.partition(values, middle, axis=0)[middle]
+    return int(np.count_nonzero(~is_zero_along(typical)))
 
 
 def roots_along(
@@ -77,14 +83,6 @@ def roots_along(
     return [roots[which == q] for q in range(values.shape[1])]
 
 
-def largest_rates(branch: Branch) -> np.ndarray:
-    """The largest rate |du_i/ds| (n,) of every unknown, as seen at places all along a
-    curve."""
-    rates = np.abs(branch(branch.arclengths(SAMPLES), 1))
-    largest: np.ndarray = rates.max(axis=0)
-    return largest
-
-
 def dead_points(
     branch: Branch, by_rounding: float = 0.0, slack: float = 0.0
 ) -> list[np.ndarray]:
@@ -95,7 +93,7 @@ def dead_points(
     ``slack`` is at the end.
     """
     unit = unit_over_rounding(stands_still, by_rounding)
-    is_constant = stands_still(largest_rates(branch), unit)
+    is_constant = stands_still(branch.largest_rates, unit)
     turnings = [
         np.empty(0) if is_constant[i] else branch.turning_points(i)
         for i in range(branch.n)

@@ -17,7 +17,7 @@ from bifurc.branch import Branch
 from bifurc.curves.misclosure import as_floats
 from bifurc.errors import NOT_DEFINED
 from bifurc.numerics.null_spaces import TINY, Decomposition, decompose
-from bifurc.problem import PreciseResidual, Problem, hessian_at
+from bifurc.system import PreciseResidual, System, hessian_at
 
 if TYPE_CHECKING:
     import mpmath
@@ -54,7 +54,7 @@ class NearMissValue(NamedTuple):
 
 
 def near_miss_value(
-    problem: Problem, branch: Branch, rank: int, s: float
+    problem: System, branch: Branch, rank: int, s: float
 ) -> NearMissValue:
     """Singular value number ``rank`` of F' at its minimum on a branch, at arclength
     ``s``.
@@ -87,7 +87,7 @@ def _is_to_be_refined(rough: NearMissValue) -> bool:
 
 
 def _refined(
-    problem: Problem, branch: Branch, s: float, rough: NearMissValue
+    problem: System, branch: Branch, s: float, rough: NearMissValue
 ) -> NearMissValue:
     """The value in many digits, where it is within the error of that of doubles."""
     try:
@@ -126,7 +126,7 @@ class _Station(NamedTuple):
 
 
 def _precise_near_miss(
-    problem: Problem, branch: Branch, rank: int, s: float
+    problem: System, branch: Branch, rank: int, s: float
 ) -> NearMissValue | None:
     """Singular value number ``rank`` of F' at its minimum on a branch next to
     arclength ``s``; None where F is known in doubles only, or no minimum is reached.
@@ -164,7 +164,7 @@ def _precise_near_miss(
 
 
 def _station(
-    problem: Problem, residual: PreciseResidual, place: list[mpmath.mpf], rank: int
+    problem: System, residual: PreciseResidual, place: list[mpmath.mpf], rank: int
 ) -> _Station | None:
     """The point of the curve next to a place (n,), and the singular value there; None
     where no correction leads to one."""
@@ -228,7 +228,7 @@ def _secant(before: _Station, here: _Station) -> float:
     return -here.half_slope * width / change if change else 0.0
 
 
-def _is_near(problem: Problem, here: _Station, start: np.ndarray) -> bool:
+def _is_near(problem: System, here: _Station, start: np.ndarray) -> bool:
     """Whether a station is next to where the near miss was found."""
     offset = np.array([float(x) for x in here.point]) - start
     return bool(np.linalg.norm(offset) < FARTHEST * problem.domain.scale)

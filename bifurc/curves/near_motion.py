@@ -21,12 +21,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bifurc.branch import Branch, Outcome
+from bifurc.branch import Branch
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.jumps import repeats_itself
-from bifurc.curves.misclosure import largest_of, misclosures
+from bifurc.curves.misclosure import (
+    NearMotionTrace,
+    NearSurface,
+    bridges_of,
+    largest_of,
+    misclosures,
+)
 from bifurc.curves.monitor import NODES
-from bifurc.curves.valley import correct_to_valley
 from bifurc.curves.valley_problem import ValleyProblem
 from bifurc.decisions import (
     closes_to_rounding,
@@ -37,11 +42,17 @@ from bifurc.decisions import (
 )
 from bifurc.limits import Deadline
 from bifurc.numerics.corrector import correct_across
-from bifurc.numerics.null_spaces import decompose, newton_in_rank, null_spaces
+from bifurc.numerics.null_spaces import (
+    correct_to_valley,
+    decompose,
+    newton_in_rank,
+    null_spaces,
+)
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem, relative_gaps, relative_jacobians
+from bifurc.problem import Problem
 from bifurc.settings import TraceSettings
+from bifurc.system import System, relative_gaps, relative_jacobians
 
 LONGEST = 200.0  # scales along which a near motion is followed
 # Of the misclosure: tolerance of the pieces, within these bounds. Pieces that may miss as
@@ -51,10 +62,6 @@ PRECISION, FINEST, COARSEST = 1e-2, 1e-13, 1e-10
 # start, in scales, after so many steps onto it.
 BESIDE, CORRECTIONS = 0.1, 5
 CLEAR = 30.0  # square of the smallest regular singular value over the misclosure
-SPREAD = 4.0  # times the root of the residual: how far a point may lie beside it there
-# Times the tolerance over the smallest regular singular value: how far elsewhere. Times
-# the tolerance: residuals of pieces that are no bridges.
-KNOWN, EXACT = 20.0, 30.0
 # How far from a sample a solution may lie: times the distance of its neighbours, or over
 # the scale.
 REACH, NEARBY = 2.0, 1e-3
@@ -64,65 +71,11 @@ ROUNDS = 30  # of Newton's method for a place where the misclosure passes zero
 # Rounds in which the place on a bridge is looked for where most is singular, and the
 # places that are looked at in each.
 NARROWINGS, LOOKS = 5, 33
-UNFINISHED = (Outcome.STALLED, Outcome.STEP_LIMIT, Outcome.TIME_LIMIT)
 LOCATED = 1e-9  # over the scale: error of the places where the misclosure is extreme
 STEPS = 6  # of Newton's method across a surface
 FAR = 0.2  # of the scale: so far beside a point it is seen whether the surface goes on
 STAYS = 0.5  # share of that which correction must leave
 TRIED = 12  # points from which that is looked at
-
-
-@dataclass(frozen=True)
-class NearMotionTrace:
-    """A curve along which a system is nearly solved.
-
-    ``branch``: as far as it nearly closes, or all round if it is closed; where it
-    ``is_short`` it counts as none. The least residuals across it go up to
-    ``misclosure``, over the magnitude; where it passes a place at which the rank drops
-    it ``is_blurred`` there, and what it misses is looked for before and beyond. Where
-    it ``is_repeated`` it passes stretches twice, as no curve does: it went over to
-    another one, and its length is wrong. At the ``assemblies`` (k, n) on it the system
-    is solved. ``tolerance``: how closely it was followed.
-    """
-
-    branch: Branch
-    misclosure: float
-    is_short: bool
-    is_blurred: bool
-    is_repeated: bool
-    assemblies: np.ndarray
-    tolerance: float
-
-    @property
-    def has_loose_end(self) -> bool:
-        """Whether it stops where it neither closes nor misses too much."""
-        return self.branch.outcome in UNFINISHED
-
-    def runs_through(self, problem: Problem, points: np.ndarray) -> np.ndarray:
-        """Which of the points (k, n) lie on it, as far as it is known there."""
-        within = SPREAD * np.sqrt(self.misclosure * problem.domain.scale)
-        distance, s = self.branch.nearest(
-            points, within=max(within, problem.domain.scale)
-        )
-        number = np.searchsorted(self.branch.breaks, s, side="right") - 1
-        number = np.clip(number, 0, len(self.branch.pieces) - 1)
-        misses = self.branch.residuals[number]
-        is_bridge = bridges_of(self.branch, self.tolerance)[number]
-        weakest = singular_values(problem, points)[:, max(problem.n - 2, 0)]
-        known = KNOWN * self.tolerance / np.maximum(weakest, TINY)
-        reach = np.where(
-            is_bridge, SPREAD * np.sqrt(misses * problem.domain.scale), known
-        )
-        reach = np.clip(reach, is_same_point.threshold * problem.domain.scale, within)
-        is_on: np.ndarray = distance < reach
-        return is_on
-
-
-def bridges_of(branch: Branch, tolerance: float) -> np.ndarray:
-    """Which pieces (p,) of a near motion followed to a ``tolerance`` lead straight on
-    where the valley is not single."""
-    is_bridge: np.ndarray = branch.residuals > EXACT * tolerance
-    return is_bridge
 
 
 def trace_near_motion(
@@ -158,7 +111,7 @@ def trace_near_motion(
     )
 
 
-def _beside(problem: Problem, start: np.ndarray) -> np.ndarray:
+def _beside(problem: System, start: np.ndarray) -> np.ndarray:
     """Points (2, n) of the valley a little away from ``start`` (n,), to both sides."""
     _, right = null_spaces(problem, start[None])
     step = BESIDE * problem.domain.scale * right[0, -1]
@@ -291,9 +244,7 @@ def _course(valley: ValleyProblem, branch: Branch, tolerance: float) -> _Course:
     )
 
 
-def _slopes_at(
-    problem: Problem, points: np.ndarray, tangents: np.ndarray
-) -> np.ndarray:
+def _slopes_at(problem: System, points: np.ndarray, tangents: np.ndarray) -> np.ndarray:
     """Half the slope (k,) of the squared misclosure along a curve with unit
     ``tangents`` (k, n) at points (k, n)."""
     at = decompose(problem, points)
@@ -318,7 +269,7 @@ class _Zeros:
     blur: np.ndarray
 
 
-def _assemblies(problem: Problem, course: _Course) -> np.ndarray:
+def _assemblies(problem: System, course: _Course) -> np.ndarray:
     """Solutions (k, n) on a near motion. Between two of them the misclosure is more
     than rounding."""
     zeros = _zeros(problem, course)
@@ -339,7 +290,7 @@ def _assemblies(problem: Problem, course: _Course) -> np.ndarray:
     return separate
 
 
-def _zeros(problem: Problem, course: _Course) -> _Zeros:
+def _zeros(problem: System, course: _Course) -> _Zeros:
     """Solutions next to where the misclosure is least."""
     lowest = np.sort(course.roots_of_slope(1.0) % course.branch.length)
     if not len(lowest):
@@ -358,7 +309,7 @@ def _zeros(problem: Problem, course: _Course) -> _Zeros:
 
 
 def _are_apart(
-    problem: Problem, heights: np.ndarray, zeros: _Zeros, one: int, other: int
+    problem: System, heights: np.ndarray, zeros: _Zeros, one: int, other: int
 ) -> bool:
     """Whether two zeros, ``other`` being the next along the near motion, are two in
     doubles: there is a misclosure between them, and they are not one place."""
@@ -372,7 +323,7 @@ def _are_apart(
     return not is_one_place and not closes_to_rounding(wall)
 
 
-def _solve(problem: Problem, points: np.ndarray, longest: np.ndarray) -> np.ndarray:
+def _solve(problem: System, points: np.ndarray, longest: np.ndarray) -> np.ndarray:
     """Points (k, n) after Gauss-Newton steps of full rank, none longer than
     ``longest`` (k,)."""
     solutions = points.copy()
@@ -393,21 +344,8 @@ def _solve(problem: Problem, points: np.ndarray, longest: np.ndarray) -> np.ndar
 # --- near surfaces --------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class NearSurface:
-    """A component of a ``dimension`` all over which a system is nearly solved.
-
-    The least residuals across it, at the places looked at, go up to ``misclosure``,
-    over the magnitude. ``sample`` (n,) is one of these places.
-    """
-
-    dimension: int
-    misclosure: float
-    sample: np.ndarray
-
-
 def near_surfaces(
-    problem: Problem, points: np.ndarray
+    problem: System, points: np.ndarray
 ) -> tuple[list[NearSurface], np.ndarray]:
     """The near surfaces, one for each dimension, on which some of the points (k, n) lie
     at which the system is nearly solved; and which of the points lie on none (k,)."""
@@ -426,7 +364,7 @@ def near_surfaces(
     return surfaces, is_left
 
 
-def _weak_directions(problem: Problem, points: np.ndarray) -> np.ndarray:
+def _weak_directions(problem: System, points: np.ndarray) -> np.ndarray:
     """How many singular values (k,) are small beside the root of what points (k, n)
     miss."""
     if not len(points):
@@ -440,7 +378,7 @@ def _weak_directions(problem: Problem, points: np.ndarray) -> np.ndarray:
     return counts
 
 
-def _is_surface(problem: Problem, places: np.ndarray, dimension: int) -> bool:
+def _is_surface(problem: System, places: np.ndarray, dimension: int) -> bool:
     """Whether about most of the places (k, n) the system is nearly solved in all weak
     directions, as far as `FAR`."""
     tried = places[:TRIED]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
@@ -9,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.branch import Branch, Outcome, point_and_slope
-from bifurc.problem import March, Piece
+from bifurc.system import March, Piece, System
 
 
 class BridgeRule(Enum):
@@ -51,6 +52,22 @@ class Place(NamedTuple):
 
     point: np.ndarray
     tangent: np.ndarray
+
+
+class SplitCurve(System):
+    """A system whose curve may split where it is not single, and leads straight on
+    there."""
+
+    @abstractmethod
+    def missed(self, points: np.ndarray) -> np.ndarray:
+        """What points (k, n) miss where the curve is not single (k,), else 0."""
+
+    @abstractmethod
+    def bridge(
+        self, start: np.ndarray, heading: np.ndarray, width: float, order: int
+    ) -> Piece | None:
+        """One piece of about ``width`` from ``start`` (n,) along ``heading`` (n,), None
+        where there is none."""
 
 
 class Bridge(NamedTuple):

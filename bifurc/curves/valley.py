@@ -25,16 +25,12 @@ from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import follow_curve
 from bifurc.curves.track import Place, Track
 from bifurc.curves.valley_problem import ValleyProblem
-from bifurc.numerics.null_spaces import decompose, null_vector
+from bifurc.numerics.null_spaces import correct_to_valley, null_vector
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem, relative_gaps
+from bifurc.problem import Problem
 from bifurc.settings import TraceSettings
+from bifurc.system import relative_gaps
 
-# corrections of one point; convergence is linear with a rate of about the gap over
-# sigma
-ROUNDS = 40
-# singular values below this share of the largest are taken for that in a correction
-FLOOR = 1e-12
 # distance from a start, in scales, beyond which another valley is reached and not its
 # own
 FAR = 0.25
@@ -58,22 +54,6 @@ class Unfolding:
     distance: float
     weakest: float
     gap: float
-
-
-def correct_to_valley(
-    problem: Problem, points: np.ndarray, rounds: int = ROUNDS
-) -> tuple[np.ndarray, np.ndarray]:
-    """Points (k, n) moved onto the valley, across it, and the relative residual (k,)
-    that is left at each."""
-    points = np.array(points, dtype=float)
-    rank = problem.n - 1
-    for _ in range(rounds):
-        steps = decompose(problem, points).newton_steps(rank, FLOOR)
-        points += steps
-        longest = np.abs(steps).max(initial=0.0)
-        if longest < 1e-14 * problem.domain.scale:
-            break
-    return points, relative_gaps(problem, points)
 
 
 def unfold_crossing(

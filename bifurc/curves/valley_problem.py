@@ -33,6 +33,7 @@ from numpy.polynomial import chebyshev
 
 from bifurc import _core
 from bifurc.branch import points_on_piece
+from bifurc.curves.track import SplitCurve
 from bifurc.decisions import has_one_form, has_valley, is_beside_drop, nearly_closes
 from bifurc.function_problem import NumericalProblem
 from bifurc.numerics.collocation import (
@@ -42,11 +43,11 @@ from bifurc.numerics.collocation import (
 )
 from bifurc.numerics.corrector import correct_across
 from bifurc.numerics.null_spaces import Decomposition, decompose
-from bifurc.problem import (
+from bifurc.problem import Problem
+from bifurc.system import (
     March,
     MarchSettings,
     Piece,
-    Problem,
     hessian_at,
     relative_gaps,
     relative_jacobians,
@@ -63,7 +64,7 @@ PREDICTOR = 5  # degree of the polynomial by which the next node is predicted
 BRIDGE_ERROR = 0.5  # of the root of the misclosure, over the scale: at the nodes
 
 
-class ValleyProblem(NumericalProblem):
+class ValleyProblem(NumericalProblem, SplitCurve):
     """G = P F of the problem ``of``: its solutions are the curves along which that is
     nearly solved.
 

@@ -163,7 +163,7 @@ def _crossings(
         is_asked[:] = True
     crossings: list[HopfPlace] = []
     known: dict[int, MovingSet] = {}
-    for k in np.flatnonzero(is_asked):
+    for k in np.flatnonzero(is_asked).tolist():
         for number in (k, k + 1):
             if number not in known:
                 known[number] = spectrum.moving(float(places[number]))

@@ -19,8 +19,9 @@ from bifurc.curves.deflation import WithNullVector
 from bifurc.curves.monitor import NODES
 from bifurc.decisions import is_drawn_to_point, is_fold_of_crossing, stands_still
 from bifurc.diagrams.diagram import DiagramPoint, Stretch
-from bifurc.problem import Problem, hessian_at
+from bifurc.problem import Problem
 from bifurc.singular.point import Kind
+from bifurc.system import hessian_at
 
 SAME_CUT = 1e-12  # of a length: a stretch ends at the very arclength of a pass
 STEPS = (

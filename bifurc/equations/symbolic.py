@@ -24,7 +24,7 @@ from bifurc.function_problem import FunctionProblem
 if TYPE_CHECKING:
     import mpmath
 
-    from bifurc.problem import PreciseResidual
+    from bifurc.system import PreciseResidual
 
 # of one number, by their names in sympy
 _RECIPROCALS = {

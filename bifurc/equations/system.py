@@ -18,7 +18,7 @@ from bifurc import _core
 from bifurc.checks import rows_of
 from bifurc.domain import Domain
 from bifurc.equations.tape import Tape, real_values
-from bifurc.problem import (
+from bifurc.system import (
     CurveNodes,
     March,
     MarchSettings,

@@ -26,8 +26,7 @@ import numpy as np
 from bifurc.decisions import is_without_crossing_speed, is_without_quadratic_terms
 from bifurc.large.locators import LocatedCrossing
 from bifurc.large.scaled_problem import ScaledProblem
-from bifurc.numerics.binary_forms import lines_of_binary_form, monomials
-from bifurc.numerics.directions import unit_vectors
+from bifurc.numerics.binary_forms import lines_of_binary_form, monomials, unit_vectors
 from bifurc.singular.second_order import lines_of_form
 
 # Angles on a half circle at which a cubic map of the plane is taken.

@@ -11,7 +11,7 @@ import numpy as np
 
 from bifurc.large.scaled_problem import ScaledProblem
 from bifurc.large.singular_triples import SingularTriple
-from bifurc.problem import relative_gaps, relative_residuals
+from bifurc.system import relative_gaps, relative_residuals
 
 T = TypeVar("T")
 

@@ -24,7 +24,7 @@ from bifurc.large.bordered_system import (
 )
 from bifurc.large.large_problem import LargeProblem
 from bifurc.numerics.collocation import PieceRules, march_by_collocation
-from bifurc.problem import Accuracy, March, MarchSettings, Shortcuts, Solver
+from bifurc.system import Accuracy, March, MarchSettings, Shortcuts, Solver
 from bifurc.units import Units
 
 if TYPE_CHECKING:

@@ -24,8 +24,8 @@ from bifurc.large.scaled_problem import ScaledProblem
 from bifurc.large.singular_triples import singular_profile, unit_tangent
 from bifurc.large.special_points import crossings_on, folds_on, near_misses_on
 from bifurc.numerics.null_spaces import null_vector
-from bifurc.problem import relative_gaps, relative_residuals
 from bifurc.settings import TraceSettings
+from bifurc.system import relative_gaps, relative_residuals
 
 NEWTON_STEPS = 12
 RESIZINGS = 4  # tracings at most, each with the size that was seen by the one before

@@ -7,7 +7,6 @@ from functools import partial
 import numpy as np
 
 from bifurc.decisions import is_multiple_line
-from bifurc.numerics.directions import unit_vectors
 from bifurc.numerics.roots import bracketed_roots
 
 # Angles on a half circle, between two of which there is one root of a form of low degree
@@ -58,3 +57,11 @@ def _values(form: np.ndarray, angles: np.ndarray) -> np.ndarray:
     """Values (k,) of a form (d + 1,) at unit vectors at angles (k,)."""
     values: np.ndarray = monomials(unit_vectors(angles), len(form) - 1) @ form
     return values
+
+
+def unit_vectors(angles: np.ndarray) -> np.ndarray:
+    """Unit vectors (k, 2) of the plane at angles (k,)."""
+    vectors = np.empty((len(angles), 2))
+    vectors[:, 0] = np.cos(angles)
+    vectors[:, 1] = np.sin(angles)
+    return vectors

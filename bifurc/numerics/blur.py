@@ -15,7 +15,7 @@ from bifurc.branch import Branch
 from bifurc.decisions import is_without_equation, may_be_scaled_down
 from bifurc.numerics.null_spaces import decompose
 from bifurc.numerics.singular_values import factors_of, singular_values
-from bifurc.problem import Problem, hessian_at, relative_jacobians, relative_residuals
+from bifurc.system import System, hessian_at, relative_jacobians, relative_residuals
 
 ROUNDING = 1e-15  # of F, over the magnitude, where F is evaluated with care
 # Step, over the scale, after which F differs by its slope and rounding, and how far from
@@ -34,7 +34,7 @@ TINY = 1e-300  # keeps a rate of zero from being divided by
 
 
 def known_to(
-    problem: Problem, points: np.ndarray, values: np.ndarray | None = None
+    problem: System, points: np.ndarray, values: np.ndarray | None = None
 ) -> np.ndarray:
     """The distance, over the scale, to which points (k, n) of curves are known: what
     rounding leaves of the weakest regular equation, over its singular value.
@@ -51,6 +51,8 @@ def known_to(
         values = singular_values(problem, points)
     sigma = values[:, problem.n - 2]
     is_clear = np.isfinite(sigma) & ~may_be_scaled_down(sigma)
+    if is_clear.all():
+        return np.asarray(ROUNDING / sigma)
     distances[is_clear] = ROUNDING / sigma[is_clear]
     weak = np.flatnonzero(~is_clear & ~is_without_equation(sigma))
     if len(weak):
@@ -59,7 +61,7 @@ def known_to(
     return distances
 
 
-def _rounding_of_weakest(problem: Problem, points: np.ndarray) -> np.ndarray:
+def _rounding_of_weakest(problem: System, points: np.ndarray) -> np.ndarray:
     """The rounding (k,) of the weakest regular equation at points (k, n)."""
     left, _, _ = factors_of(relative_jacobians(problem, points))
     weakest = left[:, :, problem.n - 2]
@@ -70,21 +72,21 @@ def _rounding_of_weakest(problem: Problem, points: np.ndarray) -> np.ndarray:
 
 
 def same_reach(
-    problem: Problem, points: np.ndarray, values: np.ndarray | None = None
+    problem: System, points: np.ndarray, values: np.ndarray | None = None
 ) -> np.ndarray:
     """How far, over the scale, from where a curve was found its points (k, n) may be
     found for rounding alone; ``values`` as in `known_to`."""
     return ALIKE * known_to(problem, points, values)
 
 
-def blur_along(problem: Problem, branch: Branch) -> float:
+def blur_along(problem: System, branch: Branch) -> float:
     """The distance, over the scale, to which the points of a curve are known, as a
     rule."""
-    points = branch(branch.length * PLACES)
-    return float(np.median(known_to(problem, points)))
+    distances = known_to(problem, branch(branch.length * PLACES))
+    return float(np.sort(distances)[len(PLACES) // 2])
 
 
-def change_by_rounding(problem: Problem, branch: Branch) -> float:
+def change_by_rounding(problem: System, branch: Branch) -> float:
     """The largest change of an unknown along a curve, over the scale, that rounding may
     make; the largest rate as well."""
     return change_by_blur(blur_along(problem, branch))
@@ -96,7 +98,7 @@ def change_by_blur(blur: float) -> float:
     return MADE * blur
 
 
-def rounding_unit(problem: Problem, points: np.ndarray) -> float:
+def rounding_unit(problem: System, points: np.ndarray) -> float:
     """How many times larger than `ROUNDING` the rounding of F is at points (k, n), 1 at
     least."""
     if not len(points):
@@ -105,7 +107,7 @@ def rounding_unit(problem: Problem, points: np.ndarray) -> float:
     return max(1.0, float(sizes.max()) / ROUNDING)
 
 
-def _rounding(problem: Problem, points: np.ndarray) -> np.ndarray:
+def _rounding(problem: System, points: np.ndarray) -> np.ndarray:
     """Samples (p, k, m) of the rounding of F, over the magnitude, about points (k, n).
 
     F is evaluated twice, a little apart: what its slope does not explain is rounding.
@@ -124,9 +126,7 @@ def _rounding(problem: Problem, points: np.ndarray) -> np.ndarray:
     return rounding.reshape(PROBES, len(points), -1)
 
 
-def distance_to_singular(
-    problem: Problem, point: np.ndarray, nullity: int = 2
-) -> float:
+def distance_to_singular(problem: System, point: np.ndarray, nullity: int = 2) -> float:
     """The distance, over the scale, at which a singular point of a ``nullity`` would
     lie from a solution (n,), to first order.
 

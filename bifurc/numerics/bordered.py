@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bifurc import _core
-from bifurc.problem import Problem, Solver, jacobian_at
+from bifurc.system import Solver, System, jacobian_at
 
 if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
@@ -81,7 +81,7 @@ class Bordered:
         return unit
 
 
-def bordered_at(problem: Problem, point: np.ndarray, tangent: np.ndarray) -> Bordered:
+def bordered_at(problem: System, point: np.ndarray, tangent: np.ndarray) -> Bordered:
     """Solutions of systems with F' of a problem at ``point`` (n,), over the magnitude,
     and the row ``tangent`` (n,) under it."""
     shortcuts = problem.shortcuts

@@ -20,14 +20,14 @@ from bifurc.branch import points_on_piece
 from bifurc.numerics.blur import ROUNDING, known_to
 from bifurc.numerics.bordered import Bordered, bordered_at
 from bifurc.numerics.corrector import correct_across, last_step
-from bifurc.problem import (
+from bifurc.system import (
     CurveNodes,
     March,
     MarchSettings,
     MarchStatus,
     NodeCorrector,
     Piece,
-    Problem,
+    System,
     relative_gaps,
     relative_residuals,
 )
@@ -94,7 +94,7 @@ class _Rejected:
 
 
 def march_by_collocation(
-    problem: Problem,
+    problem: System,
     start: np.ndarray,
     tangent: np.ndarray,
     settings: MarchSettings,
@@ -144,7 +144,7 @@ def _end(piece: Piece) -> tuple[np.ndarray, np.ndarray]:
 
 
 def bridge_by_collocation(
-    problem: Problem,
+    problem: System,
     start: np.ndarray,
     heading: np.ndarray,
     order: int,
@@ -173,7 +173,7 @@ def bridge_by_collocation(
 
 
 def _next_piece(
-    problem: Problem, aim: _Aim, width: float, shortest: float
+    problem: System, aim: _Aim, width: float, shortest: float
 ) -> _Accepted | None:
     """A piece of ``width`` or less; None where even one of the ``shortest`` width
     fails."""
@@ -185,7 +185,7 @@ def _next_piece(
     return None
 
 
-def _attempt(problem: Problem, aim: _Aim, width: float) -> _Accepted | _Rejected:
+def _attempt(problem: System, aim: _Aim, width: float) -> _Accepted | _Rejected:
     """A piece of the given width, if its last coefficients and its residual are small
     enough."""
     basis = _basis(aim.order)
@@ -210,7 +210,7 @@ def _attempt(problem: Problem, aim: _Aim, width: float) -> _Accepted | _Rejected
     return _Rejected(min(0.75, max(0.3, 0.9 * shrinkage)))
 
 
-def _known_to(problem: Problem, point: np.ndarray, misclosure: float) -> float:
+def _known_to(problem: System, point: np.ndarray, misclosure: float) -> float:
     """The distance, over the scale, to which a point (n,) of a curve with a
     ``misclosure`` is known; 0 for a large problem, of which singular values are not
     taken."""
@@ -220,7 +220,7 @@ def _known_to(problem: Problem, point: np.ndarray, misclosure: float) -> float:
     return by_rounding * max(1.0, misclosure / ROUNDING)
 
 
-def _residual_between_nodes(problem: Problem, piece: np.ndarray) -> float:
+def _residual_between_nodes(problem: System, piece: np.ndarray) -> float:
     """Largest relative residual of a piece (order + 1, n) at places between its
     nodes."""
     order = len(piece) - 1
@@ -232,7 +232,7 @@ def _residual_between_nodes(problem: Problem, piece: np.ndarray) -> float:
 
 
 def _points_at_nodes(
-    problem: Problem, aim: _Aim, basis: _Basis, width: float
+    problem: System, aim: _Aim, basis: _Basis, width: float
 ) -> np.ndarray | None:
     """Curve points (k, n) at the nodes of a piece; None where correction fails.
 

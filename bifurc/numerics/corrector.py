@@ -10,9 +10,9 @@ import numpy as np
 
 from bifurc.limits import is_time_over
 from bifurc.numerics.bordered import Bordered, bordered_at, bordered_matrix
-from bifurc.problem import (
-    Problem,
+from bifurc.system import (
     SphereProjection,
+    System,
     jacobian_at,
     relative_gaps,
     relative_jacobians,
@@ -48,7 +48,7 @@ class _Iterate(NamedTuple):
     gap: float
 
 
-def _iterate(problem: Problem, point: np.ndarray) -> _Iterate:
+def _iterate(problem: System, point: np.ndarray) -> _Iterate:
     residual = problem.residuals(point[None])[0] / problem.magnitude
     return _Iterate(point, residual, math.sqrt(residual @ residual))
 
@@ -57,7 +57,7 @@ def _iterate(problem: Problem, point: np.ndarray) -> _Iterate:
 
 
 def correct_across(
-    problem: Problem,
+    problem: System,
     point: np.ndarray,
     tangent: np.ndarray,
     tolerance: float,
@@ -110,7 +110,7 @@ def last_step(tolerance: float, scale: float) -> float:
 
 
 def correct_normal(
-    problem: Problem, points: np.ndarray, bases: np.ndarray
+    problem: System, points: np.ndarray, bases: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Solutions (k, n) straight above ``points`` (k, n) of tangent planes (k, n, 2),
     and the relative residuals (k,).
@@ -165,7 +165,7 @@ def limited(steps: np.ndarray, longest: float) -> np.ndarray:
 
 
 def project_by_least_squares(
-    problem: Problem, starts: np.ndarray
+    problem: System, starts: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Solutions (k, n) reached from every start (k, n), and the relative residual (k,)
     left at each, infinite where F is not defined; where the time is over, from the first
@@ -179,7 +179,7 @@ def project_by_least_squares(
     return points, gaps
 
 
-def _least_squares(problem: Problem, start: np.ndarray) -> _Iterate:
+def _least_squares(problem: System, start: np.ndarray) -> _Iterate:
     """Where Levenberg and Marquardt's method ends.
 
     With the residual norm as damping it converges quadratically to solution sets that
@@ -203,7 +203,7 @@ def _least_squares(problem: Problem, start: np.ndarray) -> _Iterate:
     return best
 
 
-def _damped_step(problem: Problem, at: _Iterate, weight: float) -> np.ndarray | None:
+def _damped_step(problem: System, at: _Iterate, weight: float) -> np.ndarray | None:
     """What to subtract (n,) from a point, with a ``weight`` on its length; None where
     F' is not finite there."""
     jacobian = jacobian_at(problem, at.point)
@@ -227,7 +227,7 @@ def _damped_step(problem: Problem, at: _Iterate, weight: float) -> np.ndarray | 
 
 
 def project_to_sphere_by_newton(
-    problem: Problem, starts: np.ndarray, center: np.ndarray, radius: float
+    problem: System, starts: np.ndarray, center: np.ndarray, radius: float
 ) -> SphereProjection:
     """Solutions reached from starts (k, n), at distance ``radius`` from ``center``."""
     points = np.array(starts, dtype=float)
@@ -240,7 +240,7 @@ def project_to_sphere_by_newton(
 
 
 def _newton_on_sphere(
-    problem: Problem, start: np.ndarray, center: np.ndarray, radius: float
+    problem: System, start: np.ndarray, center: np.ndarray, radius: float
 ) -> tuple[np.ndarray, float]:
     """Where Gauss-Newton on F = 0 and |u - center| = radius ends, and the length of its
     last step.

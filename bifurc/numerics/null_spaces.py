@@ -14,7 +14,13 @@ from bifurc._core import null_vector as null_vector_of
 from bifurc.decisions import is_null
 from bifurc.numerics.bordered import bordered_at
 from bifurc.numerics.singular_values import factors_of
-from bifurc.problem import Problem, jacobian_at, relative_jacobians, relative_residuals
+from bifurc.system import (
+    System,
+    jacobian_at,
+    relative_gaps,
+    relative_jacobians,
+    relative_residuals,
+)
 
 # stands in a denominator where a singular value is zero: the square of what comes out
 # is still a double
@@ -22,13 +28,16 @@ TINY = 1e-140
 # A singular value, over the largest, that counts as zero beside a smaller one; and the
 # part of a direction, over its length, that must lie in a null space to say where to go.
 NEGLIGIBLE, AGREEING = 1e-9, 1e-3
+# Corrections of one point onto a valley, which converge linearly with a rate of about the
+# gap over sigma; singular values below a share of the largest are taken for that there.
+VALLEY_ROUNDS, VALLEY_FLOOR = 40, 1e-12
 
 
 # --- tangents -------------------------------------------------------------------------
 
 
 def null_vector(
-    problem: Problem, point: np.ndarray, along: np.ndarray | None = None
+    problem: System, point: np.ndarray, along: np.ndarray | None = None
 ) -> np.ndarray:
     """Unit tangent (n,) of the curve through ``point``: the null vector of F'.
 
@@ -46,7 +55,7 @@ def null_vector(
 
 
 def _null_vector_by_borders(
-    problem: Problem, point: np.ndarray, along: np.ndarray | None
+    problem: System, point: np.ndarray, along: np.ndarray | None
 ) -> np.ndarray:
     """The null vector (n,), first with any border that is not across it, then with
     itself."""
@@ -58,16 +67,14 @@ def _null_vector_by_borders(
     return bordered_at(problem, point, first).null_vector()
 
 
-def null_spaces(problem: Problem, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def null_spaces(problem: System, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Singular values (k, n) of F' at points (k, n), padded with zeros, and right
     singular vectors (k, n, n), one a row."""
     _, sigma, right = factors_of(relative_jacobians(problem, points))
     return _padded(sigma, problem.n), right
 
 
-def tangent_planes(
-    problem: Problem, points: np.ndarray, near: np.ndarray
-) -> np.ndarray:
+def tangent_planes(problem: System, points: np.ndarray, near: np.ndarray) -> np.ndarray:
     """Orthonormal bases (k, n, 2) of the tangent planes of surfaces at solutions (k,
     n), turned as little as possible against the bases ``near`` (k, n, 2) or (n, 2).
 
@@ -85,6 +92,14 @@ def tangent_planes(
     columns = np.swapaxes(rows, 1, 2)
     planes: np.ndarray = columns @ left @ across
     return planes
+
+
+def cosines_between_planes(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Cosines (..., d), decreasing, of the principal angles between spaces with
+    orthonormal bases (..., n, d)."""
+    products = np.swapaxes(one, -1, -2) @ other
+    cosines: np.ndarray = np.linalg.svd(products, compute_uv=False)
+    return cosines
 
 
 def _padded(sigma: np.ndarray, n: int) -> np.ndarray:
@@ -145,7 +160,7 @@ class Decomposition:
 
 
 def newton_in_rank(
-    problem: Problem, points: np.ndarray, rank: int, rounds: int
+    problem: System, points: np.ndarray, rank: int, rounds: int
 ) -> np.ndarray:
     """Points (k, n) after so many Gauss-Newton steps of a ``rank``: in the equations
     that are regular there."""
@@ -154,7 +169,23 @@ def newton_in_rank(
     return points
 
 
-def decompose(problem: Problem, points: np.ndarray) -> Decomposition:
+def correct_to_valley(
+    problem: System, points: np.ndarray, rounds: int = VALLEY_ROUNDS
+) -> tuple[np.ndarray, np.ndarray]:
+    """Points (k, n) moved onto the valley of a system (`bifurc.curves.valley`), across
+    it, and the relative residual (k,) that is left at each."""
+    points = np.array(points, dtype=float)
+    rank = problem.n - 1
+    for _ in range(rounds):
+        steps = decompose(problem, points).newton_steps(rank, VALLEY_FLOOR)
+        points += steps
+        longest = np.abs(steps).max(initial=0.0)
+        if longest < 1e-14 * problem.domain.scale:
+            break
+    return points, relative_gaps(problem, points)
+
+
+def decompose(problem: System, points: np.ndarray) -> Decomposition:
     """F and the singular value decomposition of F' at points (k, n)."""
     residuals = relative_residuals(problem, points)
     left, sigma, right = factors_of(relative_jacobians(problem, points))

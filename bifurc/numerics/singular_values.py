@@ -11,27 +11,25 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc import _core
-from bifurc.problem import Problem
+from bifurc.system import System, relative_jacobians
 
 # Unknowns up to which compiled code takes them by Jacobi's method, which knows small ones
 # to more digits than LAPACK: of more unknowns that takes twenty times as long.
 FEW = 100
 
 
-def singular_values(problem: Problem, points: np.ndarray) -> np.ndarray:
+def singular_values(problem: System, points: np.ndarray) -> np.ndarray:
     """Singular values (..., n) of F' at points (..., n), over the problem's magnitude,
     padded with zeros."""
     if not points.size:
         return np.empty(points.shape)
     flat = points.reshape(-1, points.shape[-1])
-    jacobians = problem.jacobians(flat) / problem.magnitude
-    is_finite, jacobians = _sound(jacobians)
-    is_few = problem.n <= FEW
-    decomposed = _core.singular_values if is_few else np.linalg.svdvals
-    values = decomposed(jacobians)
+    jacobians = relative_jacobians(problem, flat)
+    if problem.n <= FEW:
+        return _core.singular_values(jacobians).reshape(points.shape)
+    values = values_of(jacobians)
     out = np.zeros((len(flat), problem.n))
-    out[:, : values.shape[1]] = values[:, : problem.n]
-    out[~is_finite] = np.inf
+    out[:, : values.shape[1]] = values
     return out.reshape(points.shape)
 
 
@@ -64,6 +62,6 @@ def _sound(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Which matrices (..., m, n) are finite, and the matrices with zeros in the place of
     the others."""
     is_finite = np.asarray(np.isfinite(matrices).all(axis=(-2, -1)))
-    if np.all(is_finite):
+    if is_finite.all():
         return is_finite, matrices
     return is_finite, np.where(is_finite[..., None, None], matrices, 0.0)

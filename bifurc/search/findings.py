@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import compress
-from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
 from bifurc.branch import Branch, Outcome
-from bifurc.curves.certificate import Certificate
-from bifurc.curves.monitor import Profile
-from bifurc.curves.near_motion import NearMotionTrace, NearSurface
+from bifurc.curves.misclosure import NearMotionTrace, NearSurface
 from bifurc.decisions import (
     Decision,
     is_lost_in_rounding,
@@ -22,12 +20,13 @@ from bifurc.decisions import (
 )
 from bifurc.limits import Deadline, HeldInterrupt
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem, relative_gaps
-from bifurc.search.components import Components
+from bifurc.problem import Problem
+from bifurc.search.records import Components, PointSighting, RigidAssembly, TracedBranch
 from bifurc.search.seed_book import Fate, SeedBook, SeedFate, reach_of_places
 from bifurc.seeds import Audit
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import SingularPoint
+from bifurc.system import relative_gaps
 
 if TYPE_CHECKING:
     from bifurc.singular.germ import Germ  # mpmath takes long to import
@@ -35,7 +34,6 @@ if TYPE_CHECKING:
 # Shares of its length at which a branch is compared with those already known.
 PLACES = np.array([0.11, 0.29, 0.47, 0.71, 0.93])
 SHARPER = 1e-2  # times the distance of two assemblies: where they are weak
-NO_DOUBT = (False, False, 0.0)
 
 Item = TypeVar("Item")
 
@@ -59,67 +57,6 @@ class Numbered(dict[int, Item], Generic[Item]):
             if number in self:
                 yield self[number]
             number += 1
-
-
-@dataclass(frozen=True, eq=False)
-class TracedBranch:
-    """A branch with what was seen along it.
-
-    ``minima`` are arclengths (k,) and values (k,) of the local minima of the smallest
-    regular singular value. ``located`` are the arclengths of minima that led to a
-    singular point, ``passes`` those at which the branch passes it, ``missing`` those
-    where one must be and none was located. ``misclosure`` is the largest along the
-    branch, ``blur`` the distance, over the scale, to which its points are known.
-    ``certificate`` says what is certified of it, None where that was not asked for or
-    the problem has no bounds. ``multiplicity``: 1 of an ordinary curve, 2 of one that
-    one step of deflation makes regular, 0 where it is not known.
-    """
-
-    branch: Branch
-    profile: Profile
-    minima: tuple[np.ndarray, np.ndarray]
-    located: tuple[float, ...]
-    misclosure: float = 0.0
-    blur: float = 0.0
-    passes: tuple[float, ...] = ()
-    missing: tuple[float, ...] = ()
-    certificate: Certificate | None = None
-    multiplicity: int = 1
-
-    @property
-    def is_refused(self) -> bool:
-        """Whether there is a certificate, and it does not hold."""
-        return self.certificate is not None and not self.certificate.holds
-
-    @property
-    def doubt(self) -> tuple[bool, bool, float]:
-        """Whether the branch is refused a certificate, whether it stalls, and the
-        arclength on which it is refused; less doubt is the smaller tuple."""
-        refused = 0.0
-        if self.certificate is not None and self.is_refused:
-            refused = self.certificate.refused_length
-        return self.is_refused, self.branch.outcome is Outcome.STALLED, refused
-
-
-class PointSighting(NamedTuple):
-    """A singular point that was looked at, its number, and whether it is new."""
-
-    point: SingularPoint
-    number: int
-    is_new: bool
-
-    @property
-    def fate(self) -> SeedFate:
-        """That of a seed there."""
-        return SeedFate(Fate.AT_SINGULAR_POINT, self.number)
-
-
-class RigidAssembly(NamedTuple):
-    """An isolated solution at a ``place`` (n,). It, or several, lie ``hidden`` by
-    rounding up to so far from there."""
-
-    place: np.ndarray
-    hidden: float
 
 
 class Findings:
@@ -179,7 +116,7 @@ class Findings:
         points = self.book.seeds.points[list(numbers)]
         within = self.book.reach[list(numbers)]
         reach = float(within.max())
-        distance, _ = self.traced[branch].branch.nearest(points, within=reach)
+        distance, _ = self.traced[branch].branch.nearest(points, reach)
         is_on = may_be_known(distance, within / may_be_known.threshold)
         matching = compress(numbers, is_on)
         self.book.settle(matching, SeedFate(Fate.ON_FORM, branch))
@@ -210,7 +147,7 @@ class Findings:
             points = branch(branch.length * PLACES)
             gaps = relative_gaps(self.problem, points)
             points = points[is_same_point(gaps, self.problem.domain.scale)]
-            if self._are_on(others, points):
+            if _are_on(others, points, reach_of_places(self.problem, points)):
                 self.forget_branch(number)
 
     def forget_parts(self) -> None:
@@ -238,25 +175,31 @@ class Findings:
                 return SeedFate(Fate.ON_FORM, number)
         return None
 
+    def are_on_branches(self, points: np.ndarray) -> np.ndarray:
+        """Which of the points (k, n) lie on some branch, as far as they are known."""
+        within = reach_of_places(self.problem, points)
+        unit = within / may_be_known.threshold
+        are_on = np.zeros(len(points), dtype=bool)
+        for branch in self.branches:
+            distances, _ = branch.nearest(points, float(within.max()))
+            are_on |= may_be_known(distances, unit)
+        return are_on
+
     def branch_along(self, branch: Branch) -> SeedFate | None:
         """That of a seed on the first known branch that runs along another one."""
+        if not self.traced:
+            return None
+        points = branch(branch.length * PLACES)
+        within = reach_of_places(self.problem, points)
         for number, known in self.traced.items():
-            if self._runs_along(known.branch, branch):
+            if _are_on([known.branch], points, within):
                 return SeedFate(Fate.ON_FORM, number)
         return None
 
     def _runs_along(self, one: Branch, other: Branch) -> bool:
         """Whether a branch passes all along another one."""
-        return self._are_on([one], other(other.length * PLACES))
-
-    def _are_on(self, branches: Sequence[Branch], points: np.ndarray) -> bool:
-        """Whether each of the points (k, n) lies on one of the ``branches``."""
-        within = reach_of_places(self.problem, points)
-        are_there = np.zeros(len(points), dtype=bool)
-        for branch in branches:
-            distance, _ = branch.nearest(points)
-            are_there |= is_same_point(distance, within / is_same_point.threshold)
-        return bool(np.all(are_there))
+        points = other(other.length * PLACES)
+        return _are_on([one], points, reach_of_places(self.problem, points))
 
     # --- near motions -----------------------------------------------------------------
 
@@ -441,6 +384,17 @@ class Findings:
             return True
         reach = within * self.problem.domain.scale
         return any(self._distance(one.place, u) < reach for one in self.rigid.values())
+
+
+def _are_on(branches: Sequence[Branch], points: np.ndarray, within: np.ndarray) -> bool:
+    """Whether each of the points (k, n), as far as it is known, ``within`` (k,), lies on
+    one of the ``branches``."""
+    unit = within / is_same_point.threshold
+    are_there = np.zeros(len(points), dtype=bool)
+    for branch in branches:
+        distance, _ = branch.nearest(points, float(within.max(initial=0.0)))
+        are_there |= is_same_point(distance, unit)
+    return bool(are_there.all())
 
 
 @dataclass(frozen=True)

@@ -13,17 +13,13 @@ from bifurc.decisions import closes_to_rounding, is_same_point, nearly_closes
 from bifurc.limits import Deadline
 from bifurc.numerics.corrector import limited
 from bifurc.numerics.singular_values import factors_of, singular_values
-from bifurc.problem import (
-    Problem,
-    relative_gaps,
-    relative_jacobians,
-    relative_residuals,
-)
+from bifurc.problem import Problem
 from bifurc.search.branches.canonical_course import canonical_course
 from bifurc.search.findings import Run
 from bifurc.search.seed_book import SeedFate
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
+from bifurc.system import relative_gaps, relative_jacobians, relative_residuals
 
 STEPS = 12
 LONGEST = 0.5  # step, over the problem's scale

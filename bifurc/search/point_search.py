@@ -13,8 +13,8 @@ from bifurc.decisions import (
     is_precise_enough,
 )
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import relative_gaps, relative_jacobians
-from bifurc.search.findings import PointSighting, Run
+from bifurc.search.findings import Run
+from bifurc.search.records import PointSighting
 from bifurc.singular.classify import classify_from_nearby, classify_singular_point
 from bifurc.singular.locate import (
     MOST_FOR_GERM,
@@ -22,7 +22,8 @@ from bifurc.singular.locate import (
     locate_singular_point,
 )
 from bifurc.singular.point import Kind
-from bifurc.singular.sphere import is_on_surface
+from bifurc.singular.sphere import Sections, is_on_surface
+from bifurc.system import relative_gaps, relative_jacobians
 
 if TYPE_CHECKING:
     from bifurc.singular.germ import Germ
@@ -76,8 +77,9 @@ class PointSearch:
             known = self.findings.point_at(located.u, located.error)
             if known is not None and known.point.dimension == 1:
                 return known
-            if not is_on_surface(problem, located.u):
-                sighting = self._sight_exactly(located, misclosure)
+            sections = Sections(problem, located.u, located.null_space)
+            if not is_on_surface(sections):
+                sighting = self._sight_exactly(located, misclosure, sections)
                 if sighting is not None:
                     return sighting
                 is_refuted = True
@@ -152,26 +154,43 @@ class PointSearch:
         return sighting
 
     def _sight_exactly(
-        self, located: LocatedPoint, misclosure: float = 0.0
+        self,
+        located: LocatedPoint,
+        misclosure: float = 0.0,
+        sections: Sections | None = None,
     ) -> PointSighting | None:
         """The known singular point that a located one is, or a new one, classified;
         None where the exact equations have none there, beside curves with a
-        ``misclosure``."""
+        ``misclosure``. Some ``sections`` about it may have been made before."""
         known = self._known(located)
         if known is not None:
             return known
         if closes_to_rounding(misclosure):
             misclosure = 0.0
         exactly, germ = self._in_more_digits(located, misclosure)
-        return None if exactly is None else self._record(exactly, germ)
+        if exactly is None:
+            return None
+        if exactly is located:
+            return self._add(exactly, germ, sections)
+        return self._record(exactly, germ)
 
     def _record(self, located: LocatedPoint, germ: Germ | None) -> PointSighting:
         """The known singular point that a located one is, or a new one, classified; its
         ``germ`` may be known."""
         known = self._known(located)
-        if known is not None:
-            return known
-        point = classify_singular_point(self.problem, located, germ=germ)
+        return self._add(located, germ) if known is None else known
+
+    def _add(
+        self,
+        located: LocatedPoint,
+        germ: Germ | None,
+        sections: Sections | None = None,
+    ) -> PointSighting:
+        """A located point, classified and recorded; its ``germ`` may be known, and some
+        ``sections`` made before."""
+        point = classify_singular_point(
+            self.problem, located, germ=germ, sections=sections
+        )
         return self.findings.add_point(point, germ)
 
     def _known(self, located: LocatedPoint) -> PointSighting | None:

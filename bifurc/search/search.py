@@ -19,21 +19,25 @@ from bifurc.decisions import (
 from bifurc.limits import Deadline, HeldInterrupt, until
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
+from bifurc.search.answer.completeness import asks_for_more_starts
 from bifurc.search.answer.meeting_points import ends_at
 from bifurc.search.branches.branch_examination import BranchExaminer
 from bifurc.search.branches.branch_parts import joined_through
 from bifurc.search.components import (
     components_of_seeds,
+    cover_components,
+    is_on_curve,
+    parts_through,
     singular_curve_through,
     singular_points_of,
 )
 from bifurc.search.findings import Findings, Run
 from bifurc.search.near_motion_search import NearMotionSearch
 from bifurc.search.point_search import BRANCH_REACH, SEED_REACH, PointSearch
+from bifurc.search.records import Start, half_branch_starts
 from bifurc.search.seed_book import Fate, SeedFate
 from bifurc.search.seed_fates import SeedJudge
 from bifurc.search.solutions import sharpened, with_weak_solutions
-from bifurc.search.starts import Start, asks_for_more_starts, half_branch_starts
 from bifurc.search.subdivision import (
     Subdivision,
     audit_of,
@@ -184,8 +188,12 @@ class Search:
         """Cover the surfaces with charts, and locate singular points on them."""
         findings, deadline = self.findings, self.run.deadline
         components = findings.components
-        refused = components.cover(
-            self.problem, findings.book.seeds.points, self.settings.charts, deadline
+        refused = cover_components(
+            components,
+            self.problem,
+            findings.book.seeds.points,
+            self.settings.charts,
+            deadline,
         )
         findings.book.reopen(refused)
         yield []
@@ -203,11 +211,11 @@ class Search:
         for number, point in reversed(list(self.findings.points.items())):
             if self.run.is_over or point.kind is not Kind.SURFACE:
                 continue
-            parts = components.parts_through(self.problem, point.u)
+            parts = parts_through(components, self.problem, point.u)
             if len(parts) != 1:
                 continue  # surfaces meet there
             curves = components.curves.setdefault(parts[0], [])
-            if not any(curve.holds(self.problem, point) for curve in curves):
+            if not any(is_on_curve(self.problem, curve, point) for curve in curves):
                 curve = singular_curve_through(
                     self.problem, point, self.settings.tracing, self.run.deadline
                 )

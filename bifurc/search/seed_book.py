@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass
-from enum import Enum
+from enum import StrEnum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from bifurc.problem import Problem
 from bifurc.seeds import Seeds
 
 
-class Fate(Enum):
+class Fate(StrEnum):
     """Where a seed lies."""
 
     # It lies on a traced branch.
@@ -33,8 +33,7 @@ class Fate(Enum):
     NO_SOLUTION = "no solution"
 
 
-@dataclass(frozen=True)
-class SeedFate:
+class SeedFate(NamedTuple):
     """What one seed lies on, and which one of these.
 
     ``number`` is that of a branch, a near motion, a singular point or a rigid assembly
@@ -65,6 +64,8 @@ class SeedBook:
     def open_seeds(self) -> list[int]:
         """Numbers of the seeds of which nothing is known yet, first those whose curve
         is far from singular."""
+        if len(self.fates) == len(self.seeds.points):
+            return []
         numbers = [k for k in range(len(self.seeds.points)) if k not in self.fates]
         values = self.values[numbers, max(self.problem.n - 2, 0)]
         return [numbers[k] for k in np.argsort(-values, kind="stable")]
@@ -97,7 +98,7 @@ class SeedBook:
 
     def random_hits(self) -> Counter[SeedFate]:
         """How many random starts came to each fate."""
-        is_random = self.seeds.random
+        is_random = self.seeds.random.tolist()
         return Counter(fate for k, fate in self.fates.items() if is_random[k])
 
 
@@ -108,9 +109,9 @@ def reach_of_places(
     the singular values there, where they are known."""
     if values is None:
         values = singular_values(problem, points)
-    reach = np.full(len(points), is_same_point.threshold)
-    weak = np.flatnonzero(may_be_weak(values[:, max(problem.n - 2, 0)]))
-    own = same_reach(problem, points[weak], values[weak])
-    reach[weak] = np.maximum(reach[weak], own)
-    within: np.ndarray = reach * problem.domain.scale
-    return within
+    reach = np.full(len(points), is_same_point.threshold * problem.domain.scale)
+    weak = may_be_weak(values[:, max(problem.n - 2, 0)])
+    if weak.any():
+        own = same_reach(problem, points[weak], values[weak]) * problem.domain.scale
+        reach[weak] = np.maximum(reach[weak], own)
+    return reach

@@ -24,9 +24,9 @@ from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.findings import Run
 from bifurc.search.point_search import SEED_REACH, PointSearch
+from bifurc.search.records import Start, half_branch_starts
 from bifurc.search.seed_book import SeedFate
 from bifurc.search.solutions import polished
-from bifurc.search.starts import Start, half_branch_starts
 from bifurc.search.tracing import Tracer
 
 log = logging.getLogger(__name__)

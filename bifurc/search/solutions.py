@@ -18,7 +18,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.curves.valley import correct_to_valley
 from bifurc.decisions import (
     closes_to_rounding,
     is_blurred,
@@ -30,10 +29,11 @@ from bifurc.decisions import (
 )
 from bifurc.numerics.blur import ROUNDING
 from bifurc.numerics.corrector import limited
-from bifurc.numerics.null_spaces import decompose, null_spaces
+from bifurc.numerics.null_spaces import correct_to_valley, decompose, null_spaces
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem, relative_gaps
+from bifurc.problem import Problem
 from bifurc.seeds import Seeds
+from bifurc.system import relative_gaps
 
 STEPS, FARTHEST = 4, 1e-2  # from a solution to its curve, and their length in scales
 LONG_STEPS, LONGEST = 30, 0.3  # from a start that missed, and the length of each

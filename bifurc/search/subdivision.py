@@ -26,11 +26,12 @@ from bifurc.curves.monitor import dead_points
 from bifurc.decisions import closes_to_rounding, is_same_point
 from bifurc.equations.tape import Operation
 from bifurc.function_problem import EquationProblem
-from bifurc.problem import Problem, relative_gaps
+from bifurc.problem import Problem
 from bifurc.search.answer.completeness import SearchClaim
-from bifurc.search.findings import TracedBranch
+from bifurc.search.records import TracedBranch
 from bifurc.seeds import Audit
 from bifurc.singular.point import CROSSING, LONE_POINT, SingularPoint
+from bifurc.system import relative_gaps
 
 MOST_UNKNOWNS = 4
 FIRST_BOXES = 64

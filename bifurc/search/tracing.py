@@ -24,10 +24,10 @@ from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.branches.branch_examination import BranchExaminer, ExaminedBranch
 from bifurc.search.branches.certification import finer_settings, may_be_mended
-from bifurc.search.findings import NO_DOUBT, Run
+from bifurc.search.findings import Run
 from bifurc.search.near_motion_search import NearMotionSearch
+from bifurc.search.records import NO_DOUBT, Start
 from bifurc.search.seed_book import Fate, SeedFate
-from bifurc.search.starts import Start
 from bifurc.settings import TraceSettings
 
 log = logging.getLogger(__name__)
@@ -66,6 +66,15 @@ class Tracer:
         queue = list(starts)
         while queue and not self.run.is_over:
             queue += self.trace(queue.pop()).starts
+            queue = self._beside_branches(queue)
+
+    def _beside_branches(self, starts: Sequence[Start]) -> list[Start]:
+        """Those of the starts that lie on no known branch."""
+        if not starts:
+            return []
+        points = np.array([start.point for start in starts])
+        are_on = self.findings.are_on_branches(points)
+        return [start for start, is_on in zip(starts, are_on, strict=True) if not is_on]
 
     def trace(self, start: Start, is_new: bool = False) -> Trace:
         """Trace the branch through a start, unless it is known; where the start ``is_new``

@@ -12,7 +12,7 @@ from bifurc.problem import Problem
 from bifurc.singular.locate import LocatedPoint
 from bifurc.singular.point import CROSSING, LONE_POINT, Invariants, SingularPoint
 from bifurc.singular.second_order import second_order_tangents
-from bifurc.singular.sphere import UNSEEN, Section, section
+from bifurc.singular.sphere import UNSEEN, Section, Sections
 
 if TYPE_CHECKING:
     from bifurc.singular.germ import Germ  # mpmath takes long to import
@@ -32,6 +32,7 @@ def classify_singular_point(
     located: LocatedPoint,
     within: float = np.inf,
     germ: Germ | None = None,
+    sections: Sections | None = None,
 ) -> SingularPoint:
     """The located point with its half-branches, tangents and local dimension, seen from
     no farther away than ``within``, where other singular points are.
@@ -40,10 +41,13 @@ def classify_singular_point(
     at half of it the same is seen; both are larger than the error of the point.
     Tangents of second order are kept where their number agrees with the section. Where
     exact equations give the ``germ``, the section shows its half-branches; where rounding
-    hides them from every section, they are those of the germ.
+    hides them from every section, they are those of the germ. Some ``sections`` about the
+    point may have been made before.
     """
+    if sections is None:
+        sections = Sections(problem, located.u, located.null_space)
     count = None if germ is None else len(germ.directions)
-    cut = _choose_sections(problem, located, within, count)
+    cut = _choose_sections(sections, located.error, within, count)
     no_directions = np.empty((0, problem.n))
     half_branches, dimension = no_directions, -1
     if germ is not None and not cut.are_clear:
@@ -111,7 +115,7 @@ def classify_from_nearby(
     return replace(crossing, invariants=_second_order_invariants(problem, crossing))
 
 
-class _Sections(NamedTuple):
+class _SectionPair(NamedTuple):
     """The sections with a sphere of ``radius`` and with one half as large.
 
     They ``agree`` where both show the same dimension and as many half-branches, and the
@@ -127,30 +131,32 @@ class _Sections(NamedTuple):
 
 
 def _choose_sections(
-    problem: Problem, located: LocatedPoint, within: float, count: int | None = None
-) -> _Sections:
+    sections: Sections, error: float, within: float, count: int | None = None
+) -> _SectionPair:
     """The first sections, of radii up to ``within``, that agree and are clear; else the
     first that agree; else those of the first radius. Where the ``count`` of half-branches
-    is known only those are clear that show it, and they are."""
+    is known only those are clear that show it, and they are. The exact point lies within
+    the ``error``."""
+    problem = sections.problem
     farther = FARTHER_RADII if problem.accuracy.is_exact else ()
     radii = [FIRST_RADIUS, *OTHER_RADII, *farther]
     largest = within / problem.domain.scale
     radii = [radius for radius in radii if radius <= largest]
     if len(radii) < 2:
         radii = [largest, largest / 4]
-    best = _cut(problem, located, radii[0], count)
+    best = _cut(sections, error, radii[0], count)
     for radius in radii[1:]:
         if best.agree and best.are_clear:
             break
-        if radius * problem.domain.scale / 2 < located.error:
+        if radius * problem.domain.scale / 2 < error:
             continue  # the exact point may lie outside of the smaller sphere
-        cut = _cut(problem, located, radius, count)
+        cut = _cut(sections, error, radius, count)
         if _is_better(cut, best):
             best = cut
     return best
 
 
-def _is_better(cut: _Sections, best: _Sections) -> bool:
+def _is_better(cut: _SectionPair, best: _SectionPair) -> bool:
     """Whether sections say more than the ``best`` ones so far.
 
     What fills a smaller sphere and not a larger one is rounding: a surface through the
@@ -167,24 +173,24 @@ def _is_better(cut: _Sections, best: _Sections) -> bool:
 
 
 def _cut(
-    problem: Problem, located: LocatedPoint, radius: float, count: int | None
-) -> _Sections:
-    """The sections at a ``radius`` over the problem's scale, and at half of it; the
-    ``count`` of half-branches may be known."""
-    size = radius * problem.domain.scale
-    outer = section(problem, located.u, located.null_space, size)
-    inner = section(problem, located.u, located.null_space, size / 2)
+    sections: Sections, error: float, radius: float, count: int | None
+) -> _SectionPair:
+    """Of the ``sections`` about a point with an ``error`` those at a ``radius`` over the
+    problem's scale, and at half of it; the ``count`` of half-branches may be known."""
+    size = radius * sections.problem.domain.scale
+    outer = sections.of_radius(size)
+    inner = sections.of_radius(size / 2)
     same_dimension = outer.dimension == inner.dimension
     same_count = len(outer.points) == len(inner.points)
-    holds_point = size / 2 > located.error
+    holds_point = size / 2 > error
     is_seen = outer.dimension != UNSEEN
     agree = is_seen and same_dimension and same_count and holds_point
     if count is None:
-        agree = agree and _settle(located.u, outer, inner)
+        agree = agree and _settle(sections.point, outer, inner)
         are_clear = not (outer.doubtful or inner.doubtful)
     else:
         are_clear = agree and len(outer.points) == count
-    return _Sections(size, outer, agree, are_clear)
+    return _SectionPair(size, outer, agree, are_clear)
 
 
 def _settle(point: np.ndarray, outer: Section, inner: Section) -> bool:

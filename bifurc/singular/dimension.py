@@ -29,7 +29,8 @@ from bifurc.limits import Deadline
 from bifurc.numerics.blur import rounding_unit
 from bifurc.numerics.corrector import correct_normal
 from bifurc.numerics.null_spaces import null_spaces
-from bifurc.problem import Problem, relative_gaps
+from bifurc.problem import Problem
+from bifurc.system import relative_gaps
 
 # Length of the probes, over the scale: at much less, degenerate singular points would
 # look like surfaces.

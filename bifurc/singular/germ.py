@@ -18,7 +18,6 @@ import mpmath
 import numpy as np
 
 from bifurc.errors import NOT_DEFINED
-from bifurc.problem import PreciseResidual, Problem, relative_jacobians
 from bifurc.singular.confirm import Differences
 from bifurc.singular.local_branches import (
     LiftedEquation,
@@ -35,6 +34,7 @@ from bifurc.singular.puiseux import (
     pairs_of,
     without_zeros,
 )
+from bifurc.system import PreciseResidual, System, relative_jacobians
 
 DEGREE = 13  # of the Taylor polynomial
 # Digits of the spacing of the grid, over the scale, in the rounds in which the place is
@@ -92,7 +92,7 @@ class Germ:
         return bool(one @ other < 0)
 
 
-def germ_at(problem: Problem, located: LocatedPoint) -> Germ | None:
+def germ_at(problem: System, located: LocatedPoint) -> Germ | None:
     """The germ at a located point; None where the equations are not known exactly, have
     more than `MOST_FOR_GERM`, leave more than one equation on the null space or have no
     singular point there, or where the terms of degree `DEGREE` and less do not separate
@@ -122,7 +122,7 @@ def placed_at(located: LocatedPoint, germ: Germ) -> LocatedPoint:
 
 
 def _germ(
-    problem: Problem, located: LocatedPoint, residual: PreciseResidual
+    problem: System, located: LocatedPoint, residual: PreciseResidual
 ) -> Germ | None:
     reduction = _Reduction(problem, located, residual)
     straight = _settled_terms(problem, located, reduction)
@@ -199,7 +199,7 @@ class _Reduction:
     """
 
     def __init__(
-        self, problem: Problem, located: LocatedPoint, residual: PreciseResidual
+        self, problem: System, located: LocatedPoint, residual: PreciseResidual
     ):
         self.null_space = located.null_space
         self.turn(ANGLE)
@@ -391,7 +391,7 @@ class _Multiplicity(NamedTuple):
 
 
 def _settled_terms(
-    problem: Problem, located: LocatedPoint, reduction: _Reduction
+    problem: System, located: LocatedPoint, reduction: _Reduction
 ) -> _Straightened | None:
     """The terms that do not vanish at the exact point, to which the ``reduction`` is
     moved; None where there is none."""

@@ -18,8 +18,8 @@ from numpy.polynomial import chebyshev
 
 from bifurc.decisions import is_lost_in_rounding
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import Problem
 from bifurc.singular.puiseux import HalfBranch
+from bifurc.system import System
 
 # Places on the half-branches at which F' is looked at, in the unit of the germ and in
 # scales: from the first on every next one twice as far away, up to the last.
@@ -104,7 +104,7 @@ UNKNOWN = Neighbourhood(0.0, ())
 
 
 def neighbourhood_of(
-    problem: Problem,
+    problem: System,
     point: np.ndarray,
     equation: LiftedEquation,
     halves: Sequence[HalfBranch],
@@ -133,7 +133,7 @@ def neighbourhood_of(
 
 
 def _regular_width(
-    problem: Problem,
+    problem: System,
     point: np.ndarray,
     equation: LiftedEquation,
     halves: Sequence[HalfBranch],

@@ -11,8 +11,8 @@ import numpy as np
 from bifurc.decisions import is_located, is_simple, is_singular_point
 from bifurc.numerics.null_spaces import newton_in_rank
 from bifurc.numerics.singular_values import factors_of, values_of
-from bifurc.problem import (
-    Problem,
+from bifurc.system import (
+    System,
     hessian_at,
     relative_gaps,
     relative_jacobians,
@@ -62,7 +62,7 @@ class LocatedPoint(NamedTuple):
 
 
 def locate_singular_point(
-    problem: Problem,
+    problem: System,
     start: np.ndarray,
     nullity: int,
     reach: float,
@@ -128,7 +128,7 @@ class _Step(NamedTuple):
 
 
 def _iterate(
-    problem: Problem, start: np.ndarray, nullity: int, reach: float
+    problem: System, start: np.ndarray, nullity: int, reach: float
 ) -> _Run | None:
     """Gauss-Newton on the augmented system until its steps are rounding or stagnate;
     None where it leaves the ``reach``, or comes to where F'' is not finite."""
@@ -166,7 +166,7 @@ def _is_stagnant(moves: list[float], scale: float) -> bool:
     return moves[-1] < 1e-7 * scale
 
 
-def _augmented_step(problem: Problem, u: np.ndarray, basis: np.ndarray) -> _Step | None:
+def _augmented_step(problem: System, u: np.ndarray, basis: np.ndarray) -> _Step | None:
     """The shortest step that solves the augmented system in the least-squares sense;
     None where that is not finite."""
     n, k = basis.shape
@@ -187,7 +187,7 @@ def _augmented_step(problem: Problem, u: np.ndarray, basis: np.ndarray) -> _Step
 
 
 def _augmented_system(
-    problem: Problem, u: np.ndarray, basis: np.ndarray
+    problem: System, u: np.ndarray, basis: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Matrix and right-hand side of a step for the point and its null space."""
     hessian = hessian_at(problem, u) / problem.magnitude
@@ -242,7 +242,7 @@ def _block(begin: int, number: int, size: int) -> slice:
     return slice(start, start + size)
 
 
-def _is_simple(problem: Problem, run: _Run, u: np.ndarray, reach: float) -> bool:
+def _is_simple(problem: System, run: _Run, u: np.ndarray, reach: float) -> bool:
     """Whether the iteration comes back to a point (n,) at once from beside it.
 
     At a point of higher order it gains a constant factor in each step. Beside a surface
@@ -263,7 +263,7 @@ def _is_simple(problem: Problem, run: _Run, u: np.ndarray, reach: float) -> bool
 
 
 def _with_error(
-    problem: Problem, run: _Run, u: np.ndarray, reach: float
+    problem: System, run: _Run, u: np.ndarray, reach: float
 ) -> LocatedPoint:
     """The point ``u`` (n,) of a run, or the middle of the stretch on which rounding
     hides it, with its error."""
@@ -286,7 +286,7 @@ def _with_error(
 
 
 def _largest_null_values(
-    problem: Problem, points: np.ndarray, nullity: int
+    problem: System, points: np.ndarray, nullity: int
 ) -> np.ndarray:
     """The largest (k,) of the ``nullity`` smallest singular values of F' at points
     (k, n), over the magnitude."""
@@ -322,7 +322,7 @@ class _Stretch(NamedTuple):
 
 
 def _hidden_stretch(
-    problem: Problem, u: np.ndarray, direction: np.ndarray, nullity: int, reach: float
+    problem: System, u: np.ndarray, direction: np.ndarray, nullity: int, reach: float
 ) -> _Stretch:
     """The stretch through ``u`` along ``direction`` (n,) on which the singular point
     cannot be told from rounding: the exact point lies on it."""
@@ -335,7 +335,7 @@ def _hidden_stretch(
 
 
 def _hidden_length(
-    problem: Problem, u: np.ndarray, direction: np.ndarray, nullity: int, reach: float
+    problem: System, u: np.ndarray, direction: np.ndarray, nullity: int, reach: float
 ) -> float:
     """How far from ``u`` along ``direction`` (n,) rounding hides that a point is no
     singular point: up to ``reach``.

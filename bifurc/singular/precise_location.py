@@ -16,9 +16,9 @@ import numpy as np
 from bifurc.curves.misclosure import misclosure_at
 from bifurc.decisions import misses_by_rounding, solves_exactly
 from bifurc.errors import NOT_DEFINED
-from bifurc.problem import Problem
 from bifurc.singular.confirm import Differences, as_precise, gauss_newton_step
 from bifurc.singular.locate import LocatedPoint
+from bifurc.system import System
 
 DIGITS = 40  # that are worked to; the derivatives are differences, at three times these
 ITERATIONS = 120
@@ -33,7 +33,7 @@ LEAST = 1e-26  # of F, over the magnitude and the scale, that counts as anything
 
 
 def held_to_exact_equations(
-    problem: Problem, located: LocatedPoint, misclosure: float = 0.0
+    problem: System, located: LocatedPoint, misclosure: float = 0.0
 ) -> LocatedPoint | None:
     """A located point where the exact equations have a solution of its rank, as far as
     its error and their rounded coefficients tell; None where they have none. On curves
@@ -61,7 +61,7 @@ def held_to_exact_equations(
     return None
 
 
-def _coefficient_rounding(problem: Problem, point: np.ndarray) -> float:
+def _coefficient_rounding(problem: System, point: np.ndarray) -> float:
     """How far off F is at a point (n,), over the magnitude, where the numbers in it are
     rounded."""
     accuracy = problem.accuracy
@@ -73,7 +73,7 @@ def _coefficient_rounding(problem: Problem, point: np.ndarray) -> float:
 
 
 def precisely_located(
-    problem: Problem, located: LocatedPoint, misclosure: float = 0.0
+    problem: System, located: LocatedPoint, misclosure: float = 0.0
 ) -> LocatedPoint | None:
     """A located point as the exact equations have it, where they are known; None where
     they have no singular point of this nullity at the place to which the search for

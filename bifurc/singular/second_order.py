@@ -11,9 +11,9 @@ from __future__ import annotations
 import numpy as np
 
 from bifurc.decisions import has_no_form, is_zero_form
-from bifurc.numerics.directions import unit_vectors
+from bifurc.numerics.binary_forms import unit_vectors
 from bifurc.numerics.singular_values import factors_of
-from bifurc.problem import Problem, hessian_at, relative_jacobians
+from bifurc.system import System, hessian_at, relative_jacobians
 
 # Singular value of the coefficients, over the largest, of a form that depends on
 # others.
@@ -21,7 +21,7 @@ DEPENDENT = 1e-6
 
 
 def second_order_tangents(
-    problem: Problem, point: np.ndarray, null_space: np.ndarray
+    problem: System, point: np.ndarray, null_space: np.ndarray
 ) -> np.ndarray | None:
     """Unit tangents (t, n) at a singular point of nullity 2 that second order allows;
     None where it does not decide.
@@ -68,7 +68,7 @@ def lines_of_form(form: np.ndarray) -> np.ndarray:
 
 
 def _reduced_forms(
-    problem: Problem, point: np.ndarray, null_space: np.ndarray
+    problem: System, point: np.ndarray, null_space: np.ndarray
 ) -> np.ndarray:
     """Coefficients (w, 3) of the quadratic forms W^T F''(V x, V x); not finite where
     F'' is not."""

@@ -9,6 +9,7 @@ which their tangents or curvatures separate.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -20,17 +21,21 @@ from bifurc.decisions import (
     is_on_circle,
     is_on_sphere,
     is_same_half_branch,
+    may_be_null,
 )
-from bifurc.numerics.directions import unit_vectors
-from bifurc.numerics.singular_values import factors_of, singular_values
-from bifurc.problem import Problem, relative_jacobians, relative_residuals
+from bifurc.numerics.binary_forms import unit_vectors
+from bifurc.numerics.singular_values import Factors, factors_of, singular_values
+from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions
+from bifurc.system import relative_jacobians, relative_residuals
 
 UNSEEN = -1  # dimension of a section that could not be made
 
 # Samples on the circle of a null space of dimension 2, and the angle of the first.
 COUNT, FIRST = 96, 0.01
 ANGLES = FIRST + 2 * np.pi * np.arange(COUNT) / COUNT
+CIRCLE = unit_vectors(ANGLES)
+BEFORE, AFTER = np.arange(COUNT) - 1, (np.arange(COUNT) + 1) % COUNT  # their neighbours
 # Rounding of the equations, of size 1, and how many times that counts as zero.
 ROUNDING, MARGIN = 4e-15, 8.0
 # Of the largest value on the circle: where a function touches zero, and what counts as
@@ -72,27 +77,57 @@ def section(
 ) -> Section:
     """Intersection of the solution set with a sphere of ``radius`` about a singular
     point (n,)."""
-    if null_space.shape[1] == 2:
-        return _circle_section(_ReducedEquations(problem, point, null_space, radius))
-    return _sphere_section(problem, point, null_space, radius)
+    return Sections(problem, point, null_space).of_radius(radius)
 
 
-def is_on_surface(problem: Problem, point: np.ndarray) -> bool:
-    """Whether a solution (n,) lies on a component of dimension 2 or more with the rank
-    that belongs to it.
+class Sections:
+    """The sections about a singular ``point`` (n,) with the ``null_space`` (n, k), each
+    made once."""
 
-    Where many branches meet, F is so flat that probes nearby look like solutions: the
-    section has the last word.
+    def __init__(self, problem: Problem, point: np.ndarray, null_space: np.ndarray):
+        self.problem = problem
+        self.point = point
+        self.null_space = null_space
+        self._by_radius: dict[float, Section] = {}
+
+    def of_radius(self, radius: float) -> Section:
+        """That with a sphere of a ``radius``."""
+        if radius not in self._by_radius:
+            self._by_radius[radius] = self._made(radius)
+        return self._by_radius[radius]
+
+    def _made(self, radius: float) -> Section:
+        if self.null_space.shape[1] == 2:
+            return _circle_section(_ReducedEquations(self, self._factors, radius))
+        return _sphere_section(self.problem, self.point, self.null_space, radius)
+
+    @cached_property
+    def _factors(self) -> Factors:
+        """Those of F' at the point."""
+        return factors_of(relative_jacobians(self.problem, self.point[None])[0])
+
+
+def is_on_surface(sections: Sections) -> bool:
+    """Whether the point of ``sections`` lies on a component of dimension 2 or more with
+    the rank that belongs to it.
+
+    A circle about the point of which only single places are solutions tells that it
+    does not. Where many branches meet, F is so flat that probes nearby look like
+    solutions: the section has the last word.
     """
-    local = local_dimensions(problem, point[None])
-    nullity = local.nullity[0]
-    if not local.dimension[0] == nullity > 1:
+    problem, place = sections.problem, sections.point[None]
+    nullity = int(np.count_nonzero(may_be_null(singular_values(problem, place))))
+    radius = SURFACE_RADIUS * problem.domain.scale
+    is_circle = nullity == sections.null_space.shape[1] == 2
+    if is_circle and 0 <= sections.of_radius(radius).dimension <= 1:
         return False
-    jacobian = problem.jacobians(point[None])[0]
-    _, _, right = factors_of(jacobian)
-    null_space = right[problem.n - nullity :].T
-    cut = section(problem, point, null_space, SURFACE_RADIUS * problem.domain.scale)
-    return cut.dimension > 1
+    if local_dimensions(problem, place).dimension[0] != nullity or nullity < 2:
+        return False
+    if nullity != sections.null_space.shape[1]:
+        right = factors_of(problem.jacobians(place)[0]).right
+        null_space = right[problem.n - nullity :].T
+        sections = Sections(problem, sections.point, null_space)
+    return sections.of_radius(radius).dimension > 1
 
 
 # --- the reduced equations ------------------------------------------------------------
@@ -104,20 +139,18 @@ class _ReducedEquations:
 
     For a unit vector x of the null space V (n, k) the point is u + radius V x + w(x),
     where w solves the independent equations; what is left is W^T F / radius^2, with W
-    the left null space. The chord iteration for w uses the one factorisation made here
+    the left null space. The chord iteration for w uses the ``factors`` of F' there
     and gains a factor of about the radius each time. ``noise`` is the rounding of the
     reduced equations.
     """
 
-    def __init__(
-        self, problem: Problem, point: np.ndarray, null_space: np.ndarray, radius: float
-    ):
-        jacobian = relative_jacobians(problem, point[None])[0]
-        left, sigma, right = factors_of(jacobian)
-        rank = problem.n - null_space.shape[1]
+    def __init__(self, sections: Sections, factors: Factors, radius: float):
+        left, sigma, right = factors
+        problem = sections.problem
+        rank = problem.n - sections.null_space.shape[1]
         self._problem = problem
-        self._point = point
-        self._null_space = null_space
+        self._point = sections.point
+        self._null_space = sections.null_space
         self._radius = radius
         row_space = right[:rank].T  # (n, rank)
         column_space = left[:, :rank]  # (m, rank)
@@ -159,8 +192,8 @@ def _circle_section(equations: _ReducedEquations) -> Section:
     """All zeros on the circle: those of the leading combination of the equations at
     which the other equations hold as well."""
     no_points = np.empty((0, equations.n))
-    values = equations(unit_vectors(ANGLES))
-    if not np.all(np.isfinite(values)):
+    values = equations(CIRCLE)
+    if not np.isfinite(values).all():
         return Section(no_points, UNSEEN, doubtful=True)  # nothing solves them there
     sizes = np.linalg.norm(values, axis=1)
     size = float(sizes.max())
@@ -179,12 +212,12 @@ def _circle_section(equations: _ReducedEquations) -> Section:
     points = equations.points(unit_vectors(angles))
     left_over = np.linalg.norm(equations.reduced(points), axis=1)
     in_doubt = is_crossing & (left_over > limit) & (left_over < TOUCH * size + noise)
-    if np.any(in_doubt):
+    if in_doubt.any():
         condition = _conditions(values, leading, angles[in_doubt])
         limit[in_doubt] += noise * condition
     is_solution = is_on_circle(left_over, limit)
     points = points[is_solution]
-    is_doubtful = bool(np.any(is_solution & ~is_crossing))
+    is_doubtful = bool((is_solution & ~is_crossing).any())
     return Section(points, 1 if len(points) else 0, is_doubtful)
 
 
@@ -257,7 +290,7 @@ def _find_zeros(function: _FourierSeries, zero: float) -> _Zeros:
     between samples reveal. A value below ``zero`` may be zero."""
     step = ANGLES[1] - ANGLES[0]
     signs = np.sign(function.samples)
-    changes = ANGLES[signs * np.roll(signs, -1) < 0]
+    changes = ANGLES[signs * signs[AFTER] < 0]
     low, high = changes, changes + step
     contacts = np.empty(0)
     dips = _dips(function.samples)
@@ -282,8 +315,7 @@ def _find_zeros(function: _FourierSeries, zero: float) -> _Zeros:
 def _dips(samples: np.ndarray) -> np.ndarray:
     """Numbers (d,) of the samples on the circle that are nearer to zero than their
     neighbours, which have the same sign."""
-    before = np.roll(samples, 1)
-    after = np.roll(samples, -1)
+    before, after = samples[BEFORE], samples[AFTER]
     size = np.abs(samples)
     is_lowest = (size <= np.abs(before)) & (size < np.abs(after))
     sign = np.sign(samples)

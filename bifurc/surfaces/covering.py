@@ -23,9 +23,13 @@ import numpy as np
 
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
+from bifurc.numerics.binary_forms import unit_vectors
 from bifurc.numerics.corrector import correct_normal
-from bifurc.numerics.directions import cosines_between_planes, unit_vectors
-from bifurc.numerics.null_spaces import null_spaces, tangent_planes
+from bifurc.numerics.null_spaces import (
+    cosines_between_planes,
+    null_spaces,
+    tangent_planes,
+)
 from bifurc.problem import Problem
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.complex import FlatCharts, assemble_charts

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.decisions import is_null
-from bifurc.numerics.directions import cosines_between_planes
+from bifurc.numerics.null_spaces import cosines_between_planes
 from bifurc.numerics.singular_values import factors_of
 from bifurc.problem import Problem
 from bifurc.singular.locate import LocatedPoint, locate_singular_point

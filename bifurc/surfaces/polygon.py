@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.numerics.directions import unit_vectors
+from bifurc.numerics.binary_forms import unit_vectors
 
 OUTLINE = -1  # label of an edge that nothing has cut yet
 

@@ -7,8 +7,11 @@ import numpy as np
 
 from bifurc.limits import Deadline
 from bifurc.numerics.corrector import correct_normal
-from bifurc.numerics.directions import cosines_between_planes
-from bifurc.numerics.null_spaces import null_spaces, tangent_planes
+from bifurc.numerics.null_spaces import (
+    cosines_between_planes,
+    null_spaces,
+    tangent_planes,
+)
 from bifurc.problem import Problem
 from bifurc.surfaces.chart_atlas import ChartAtlas
 

@@ -10,8 +10,8 @@ from linkages.app.choice import choose_held, require_table
 from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.options import AtlasOptions, SearchOptions
 from linkages.app.output import StatusLine
+from linkages.entry import Linkage
 from linkages.labels import NoLinkageError
-from linkages.linkage import Linkage
 from linkages.mapping import map_linkage
 from linkages.subject import as_subject, subject_at
 

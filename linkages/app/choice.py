@@ -14,9 +14,9 @@ import numpy as np
 from linkages.app.exit_codes import CommandError
 from linkages.app.options import HoldOptions
 from linkages.catalogue import entry
-from linkages.entry import Entry, Parameter, ParameterKind
+from linkages.entry import Entry, Linkage, Parameter, ParameterKind
 from linkages.file import read_precisely
-from linkages.linkage import Linkage, is_linkage_file, load
+from linkages.linkage import is_linkage_file, load
 from linkages.loop import LARGEST, SMALLEST, Loop
 from linkages.networks.entries import NETWORKS, NetworkEntry
 from linkages.values import GeometryError, check_angle, told_apart

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from bifurc.files.table import Variable
-    from linkages.linkage import Linkage
+    from linkages.entry import Linkage
     from linkages.mechanisms.mechanism import Mechanism
 
 

@@ -15,7 +15,9 @@ from bifurc.domain import Domain
 from bifurc.errors import ProblemError
 from bifurc.function_problem import EXACT_HESSIAN, NumericalProblem
 from bifurc.limits import Deadline
-from bifurc.problem import (
+from bifurc.seeding import random_seeds
+from bifurc.seeds import Seeds
+from bifurc.system import (
     Accuracy,
     Curvature,
     CurveNodes,
@@ -25,8 +27,6 @@ from bifurc.problem import (
     Shortcuts,
     SphereProjection,
 )
-from bifurc.seeding import random_seeds
-from bifurc.seeds import Seeds
 from linkages import _core
 from linkages.kinematics import Number
 from linkages.loop import Loop

@@ -18,8 +18,7 @@ from linkages.dyads.geometry import (
     TOUCHING,
     DegenerateDyadError,
 )
-from linkages.mechanisms.displacements import transforms
-from linkages.mechanisms.joint import Motion
+from linkages.mechanisms.joint import Motion, transforms
 
 
 class SpacePose(NamedTuple):

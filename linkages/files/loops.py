@@ -17,8 +17,7 @@ from linkages.decisions import is_parallel_axis, meets_in_one_point
 from linkages.files.figures import check_joined_names, joined_name
 from linkages.files.misfits import closed_near
 from linkages.loop import Loop
-from linkages.mechanisms.displacements import transforms
-from linkages.mechanisms.joint import Joint, JointKind, Motion
+from linkages.mechanisms.joint import Joint, JointKind, Motion, transforms
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.values import (
     SOME,

@@ -202,7 +202,7 @@ def _read_transform(cursor: Cursor) -> np.ndarray:
 
 def rotation(direction: Vector, angle: float) -> np.ndarray:
     """The turn (4, 4) about a unit vector (3,) through the origin."""
-    from linkages.mechanisms.displacements import turns
+    from linkages.mechanisms.joint import turns
 
     result = np.eye(4)
     result[:3, :3] = turns(np.array(direction), np.array([angle]))[0]

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linkages.mechanisms.displacements import transforms
+from linkages.mechanisms.joint import transforms
 from linkages.structure.rods import Rod
 from linkages.structure.structure import Structure
 

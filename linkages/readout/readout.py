@@ -14,7 +14,7 @@ from linkages.structure.single_loop import SingleLoop, as_single_loop
 from linkages.structure.structure import Structure
 
 if TYPE_CHECKING:
-    from linkages.closure.mechanism_closure import MechanismClosure
+    from linkages.closure.mechanism_system import MechanismSystem
 
 # A number for a joint of one variable, a list for another one: rad, the user's unit.
 JointVariables: TypeAlias = dict[str, float | list[float]]
@@ -31,12 +31,12 @@ class Readout:
         self.structure = Structure(mechanism)
 
     @cached_property
-    def closure(self) -> MechanismClosure:
+    def closure(self) -> MechanismSystem:
         """The closure equations of the mechanism, in the same unknowns."""
         # what writes equations is not imported where values are only read
-        from linkages.closure.mechanism_closure import MechanismClosure
+        from linkages.closure.mechanism_system import MechanismSystem
 
-        return MechanismClosure(self.mechanism, structure=self.structure)
+        return MechanismSystem(self.mechanism, structure=self.structure)
 
     @cached_property
     def single_loop(self) -> SingleLoop | None:

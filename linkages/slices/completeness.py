@@ -26,6 +26,7 @@ All this is checked in doubles, without interval arithmetic.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -33,7 +34,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc import torus
 from bifurc.branch import Branch
 from bifurc.completeness import Claim, Level, Scope
 from bifurc.curves.monitor import dead_points
@@ -319,7 +319,7 @@ def _ends_of_stretches(branch: Branch, dead: np.ndarray) -> np.ndarray:
         return np.array([0.0, *dead, branch.length])
     # a closed curve is cut at its dead points alone: its start is on a slice, as a rule
     first = dead if len(dead) else np.array([CUT * branch.length])
-    return np.append(first, first[0] + branch.length)
+    return np.concatenate([first, first[:1] + branch.length])
 
 
 # --- following configurations that are not real ---------------------------------------
@@ -410,10 +410,12 @@ def _sheets(cuts: list[Nonreal], passes: Passes) -> Iterator[tuple[np.ndarray, f
 
 def _folds_at(angle: float, joint: int, folds: Sequence[Fold]) -> list[Fold]:
     """The folds at which the joint has the ``angle``."""
-    angles = np.array([fold.configuration[joint] for fold in folds])
-    gaps = torus.difference(angles[:, None], np.array([angle]), np.array([TURN]))
-    is_near = is_same_dead_point(np.abs(gaps[:, 0]))
-    return [fold for fold, near in zip(folds, is_near, strict=True) if near]
+    gaps = [fold.configuration[joint] - angle for fold in folds]
+    return [
+        fold
+        for fold, gap in zip(folds, gaps, strict=True)
+        if is_same_dead_point(abs(math.remainder(gap, TURN)))
+    ]
 
 
 def _angles_between(critical: np.ndarray, angles: np.ndarray) -> np.ndarray:
@@ -432,7 +434,7 @@ def _angles_between(critical: np.ndarray, angles: np.ndarray) -> np.ndarray:
 
 def _following_angles(angles: np.ndarray) -> np.ndarray:
     """The next one (m,) of every one of the ``angles`` (m,) on the circle, in order."""
-    return np.append(angles[1:], angles[0] + TURN)
+    return np.concatenate([angles[1:], angles[:1] + TURN])
 
 
 def _largest_imaginary_parts(configurations: np.ndarray) -> np.ndarray:

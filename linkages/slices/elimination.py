@@ -133,7 +133,9 @@ def _check(loop: Loop, joint: int, angles: np.ndarray) -> None:
 
 def _reason(statuses: np.ndarray) -> str:
     """Why slices are not complete, and how many; empty where all are."""
-    reasons = []
+    reasons: list[str] = []
+    if (statuses == _Status.COMPLETE).all():
+        return ""
     for status, text in REASONS.items():
         count = np.sum(statuses == status)
         if count:

@@ -12,8 +12,8 @@ from bifurc.numerics.roots import bracketed_roots
 from bifurc.settings import SearchSettings
 from bifurc.torus import wrap
 from linkages.catalogue import entry
-from linkages.entry import ParameterKind
-from linkages.linkage import Linkage, load_linkage
+from linkages.entry import Linkage, ParameterKind
+from linkages.linkage import load_linkage
 from linkages.loop import Loop
 from linkages.mapping import map_linkage
 from linkages.source_figures.table import Content

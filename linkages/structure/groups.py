@@ -13,7 +13,7 @@ import numpy as np
 from networkx.utils import UnionFind
 
 from linkages.decisions import meets_in_one_point
-from linkages.mechanisms.displacements import displacement_of
+from linkages.mechanisms.joint import transforms
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.structure.cycles import Ends
 
@@ -217,3 +217,14 @@ def _turns_beside(mechanism: Mechanism, pair: int, is_moved: bool) -> list[int]:
         if is_free and variable.motion.is_turn and variable.motion.advance == 0.0:
             turns.append(number)
     return turns
+
+
+def displacement_of(mechanism: Mechanism, pair: int) -> np.ndarray:
+    """The displacement (4, 4) of the moved body of a pair whose variables are all
+    locked."""
+    result = np.eye(4)
+    for number in mechanism.pairs[pair].variables:
+        variable = mechanism.variables[number]
+        assert variable.locked is not None
+        result = result @ transforms(variable.motion, np.array([variable.locked]))[0]
+    return result

@@ -15,7 +15,7 @@ from scipy.sparse import csc_array, diags_array, hstack, issparse
 from bifurc import Branch, FunctionProblem, Problem, TraceSettings, trace_branch
 from bifurc.curves.monitor import dead_points
 from bifurc.numerics.null_spaces import null_vector
-from bifurc.problem import jacobian_at
+from bifurc.system import jacobian_at
 from linkages import Loop, LoopClosure
 from linkages.catalogue import entry
 

@@ -10,7 +10,7 @@ from scipy.sparse import csc_array, issparse
 
 from bifurc import Problem
 from bifurc.numerics.bordered import SparseBordered
-from bifurc.problem import jacobian_at
+from bifurc.system import jacobian_at
 
 Jacobian: TypeAlias = np.ndarray | csc_array
 

@@ -9,9 +9,9 @@ import pytest
 
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
-from bifurc.problem import hessian_at
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
+from bifurc.system import hessian_at
 
 BOX = [(-2.0, 2.0), (-2.0, 2.0)]
 

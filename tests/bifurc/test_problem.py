@@ -6,7 +6,7 @@ import pytest
 from bifurc.curves.continuation import trace_branch
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
-from bifurc.problem import March, MarchSettings, MarchStatus, Piece, relative_gaps
+from bifurc.system import March, MarchSettings, MarchStatus, Piece, relative_gaps
 
 BOX = [(-2.0, 2.0), (-2.0, 2.0)]
 

@@ -6,8 +6,9 @@ import pytest
 
 from bifurc.errors import BifurcError
 from linkages.catalogue import UnknownLinkageError, entry
+from linkages.entry import Linkage
 from linkages.file import LinkageFileError
-from linkages.linkage import Linkage, load
+from linkages.linkage import load
 from linkages.loop import Loop
 from linkages.values import GeometryError
 

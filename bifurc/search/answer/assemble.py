@@ -41,8 +41,9 @@ from bifurc.search.canonical_order import (
     order_surfaces,
     order_values,
 )
-from bifurc.search.findings import Findings, TracedBranch
+from bifurc.search.findings import Findings
 from bifurc.search.near_motion_search import closure_gap
+from bifurc.search.records import TracedBranch
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.torus import wrap, wrapped_periods
 

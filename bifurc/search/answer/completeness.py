@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from bifurc.atlas import Provenance
 from bifurc.completeness import (
     Claim,
@@ -188,3 +190,63 @@ def _claims(findings: Findings, provenance: Provenance, left: int) -> tuple[Clai
         kind = SearchClaim.CLOSING_TOLERANCE
         return (kind.claim(Scope.MOTIONS, Level.ESTIMATED, forms=loose),)
     return findings.audit.claims
+
+
+# --- whether more random starts are worth while ---------------------------------------
+
+# What was met by a few starts only has neighbours as small as it is that were met by none:
+# of an island with a share p of N starts none comes with a probability of exp(-p N). So
+# starts are drawn until each island was met some times. Where too many were met just once
+# there is no end in sight, and no more are drawn.
+#
+# Starts that meet an island: of one as large none comes in 5e-5 of searches.
+FEWEST = 10
+# Share of the starts that met what no other one met: of those to come about as many meet
+# something new (Good 1953).
+ENDLESS = 0.25
+
+
+def asks_for_more_starts(findings: Findings) -> bool:
+    """Whether some island was met by few random starts, and most by more. Islands are
+    forms, joined by singular points, isolated assemblies and near motions; what lies on
+    components of higher dimension says nothing of them."""
+    hits = _hits_of_islands(findings)
+    if not len(hits) or hits.min() >= FEWEST:
+        return False
+    singles = np.count_nonzero(hits == 1)
+    return bool(singles < ENDLESS * hits.sum())
+
+
+def _hits_of_islands(findings: Findings) -> np.ndarray:
+    """How many random starts (i,) met each island."""
+    islands = _islands_of_forms(findings)
+    rigid = [SeedFate(Fate.RIGID, k) for k in findings.rigid]
+    near = [SeedFate(Fate.ON_NEAR_MOTION, k) for k in findings.near_motions]
+    places: list[SeedFate | int] = [*islands.values(), *rigid, *near]
+    hits = dict.fromkeys(places, 0)
+    for fate, count in findings.book.random_hits().items():
+        island: SeedFate | int = islands.get(fate, fate)
+        if island in hits:
+            hits[island] += count
+    return np.array(list(hits.values()), dtype=int)
+
+
+def _islands_of_forms(findings: Findings) -> dict[SeedFate, int]:
+    """The number of the island that each traced branch lies on, by the fate of seeds on
+    the branch."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    points, branches = findings.points.values(), findings.branches
+    meet = np.zeros((len(points), len(branches)), dtype=bool)
+    for row, point in enumerate(points):
+        for column, branch in enumerate(branches):
+            distance, _ = branch.nearest(point.u, within=point.radius)
+            meet[row, column] = distance[0] <= point.radius
+    rows, columns = np.nonzero(meet)
+    size = len(points) + len(branches)
+    places = (rows + len(branches), columns)
+    links = coo_array((np.ones(len(rows)), places), shape=(size, size))
+    _, islands = connected_components(links, directed=False)
+    fates = [SeedFate(Fate.ON_FORM, number) for number in findings.traced]
+    return dict(zip(fates, islands.tolist(), strict=False))

@@ -11,7 +11,6 @@ from bifurc.atlas import Event, Form, MeetingPoint, Surface
 from bifurc.branch import Branch, Outcome
 from bifurc.completeness import Doubt
 from bifurc.curves.misclosure import misclosure_at
-from bifurc.curves.monitor import largest_rates
 from bifurc.decisions import (
     hangs_on_data,
     is_faint,
@@ -32,11 +31,13 @@ from bifurc.numerics.blur import (
     rounding_unit,
 )
 from bifurc.numerics.null_spaces import null_spaces
-from bifurc.problem import Problem, relative_gaps
+from bifurc.problem import Problem
 from bifurc.search.answer.completeness import SearchDoubt
-from bifurc.search.findings import Findings, RigidAssembly, TracedBranch
+from bifurc.search.findings import Findings
+from bifurc.search.records import RigidAssembly, TracedBranch
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
+from bifurc.system import relative_gaps
 
 RIM = 1e-4  # scales from a rim at which starts end where F vanishes slowly towards it
 MOST_SAMPLES = 200  # of a surface at which it is seen what it misses
@@ -209,7 +210,7 @@ def _doubts_of_form(
         yield SearchDoubt.CURVE_OR_SURFACE.doubt(name, traced.blur)
     if not traced.multiplicity:
         yield SearchDoubt.MULTIPLICITY.doubt(name, rank=profile.rank)
-    rates = largest_rates(branch)
+    rates = branch.largest_rates
     unit = unit_over_rounding(stands_still, change_by_blur(traced.blur))
     # larger than the rounding of an ordinary curve, and no larger than what this makes
     is_hidden = stands_still(rates, unit) & (rates >= stands_still.threshold)

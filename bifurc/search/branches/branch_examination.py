@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import Certificate
@@ -24,9 +23,9 @@ from bifurc.numerics.blur import blur_along
 from bifurc.numerics.singular_values import singular_values
 from bifurc.search.branches.canonical_course import canonical_course
 from bifurc.search.branches.certification import certificate_of
-from bifurc.search.findings import PointSighting, Run, TracedBranch
+from bifurc.search.findings import Run
 from bifurc.search.point_search import BRANCH_REACH, PointSearch
-from bifurc.search.starts import Start, half_branch_starts
+from bifurc.search.records import PointSighting, Start, TracedBranch, half_branch_starts
 from bifurc.singular.locate import LocatedPoint
 
 ABOUT = 16  # nodes before and after a deep place that are not lower: those of a piece
@@ -236,7 +235,7 @@ def _deep_places(profile: Profile, minima: np.ndarray) -> list[_Candidate]:
     values = profile.smallest.ravel()
     arclengths = profile.arclength.ravel()
     candidates = []
-    for k in np.flatnonzero(_are_lowest(values) & may_be_crossed(values)):
+    for k in _lowest(values, may_be_crossed(values)):
         before = values[max(k - BESIDE, 0) : k].max(initial=0.0)
         after = values[k + 1 : k + 1 + BESIDE].max(initial=0.0)
         beside = arclengths[max(k - 1, 0) : k + 2]
@@ -252,15 +251,17 @@ def _deep_places(profile: Profile, minima: np.ndarray) -> list[_Candidate]:
     return candidates
 
 
-def _are_lowest(values: np.ndarray) -> np.ndarray:
-    """Which of a row of values (k,) are the lowest of those about them; of equal ones
-    the last."""
-    walls = np.full(ABOUT, np.inf)
-    windows = sliding_window_view(np.concatenate([walls, values, walls]), 2 * ABOUT + 1)
-    is_lowest = np.all(values[:, None] <= windows, axis=1)
-    next_values = np.append(values[1:], np.inf)
-    lowest: np.ndarray = is_lowest & (values < next_values)
-    return lowest
+def _lowest(values: np.ndarray, is_small: np.ndarray) -> list[int]:
+    """Numbers of those of the small values in a row (k,) that are the lowest of those
+    about them; of equal ones the last."""
+    falls = np.concatenate([[True], values[1:] <= values[:-1]])
+    rises = np.concatenate([values[1:] > values[:-1], [True]])
+    bottoms = np.flatnonzero(is_small & falls & rises).tolist()
+    return [
+        k
+        for k in bottoms
+        if values[k] <= values[max(k - ABOUT, 0) : k + ABOUT + 1].min()
+    ]
 
 
 def _small_minima(arclengths: np.ndarray, values: np.ndarray) -> list[_Candidate]:

@@ -18,8 +18,9 @@ import numpy as np
 from bifurc.branch import Branch, Outcome
 from bifurc.decisions import is_same_point, is_solution
 from bifurc.numerics.collocation import piece_through, reparametrised
-from bifurc.problem import Piece, Problem, relative_gaps
+from bifurc.problem import Problem
 from bifurc.singular.point import SingularPoint
+from bifurc.system import Piece, relative_gaps
 
 if TYPE_CHECKING:
     # they import mpmath, which most searches do not need

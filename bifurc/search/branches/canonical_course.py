@@ -50,7 +50,7 @@ def canonical_course(problem: Problem, branch: Branch) -> Branch:
             branch = branch.reversed()
     elif _begins_at_the_lower_end(problem, branch):
         branch = branch.reversed()
-    start = branch(0.0)
+    start = branch.ends[0]
     periods = wrapped_periods(problem.domain.periods, problem.domain.bounds)
     wrapped = wrap(start, periods, within=SEAM)
     return branch.moved_by_periods(whole_turns(wrapped - start, periods))
@@ -119,8 +119,10 @@ class _Height:
         heights = self.at(points)
         extent = float(np.ptp(heights))
         is_high = heights > heights.max() - HIGH * extent
-        is_top = (heights >= np.roll(heights, 1)) & (heights > np.roll(heights, -1))
-        low, high = np.roll(samples, 1), np.roll(samples, -1)
+        numbers = np.arange(len(samples))
+        before, after = numbers - 1, (numbers + 1) % len(samples)
+        is_top = (heights >= heights[before]) & (heights > heights[after])
+        low, high = samples[before], samples[after]
         low[0] -= self.branch.length
         high[-1] += self.branch.length
         near = is_high & is_top
@@ -133,8 +135,8 @@ class _Height:
         margin = highest[-1] - highest[0] if len(tops) > 1 else np.inf
         step = BEND_STEP * self.branch.length
         beside = np.array([best - step, best + step])
-        before, after = self.branch.rates_of_height(self.coefficients, beside)
-        bend = (before - after) / (2 * step) * self.branch.length**2
+        rise, fall = self.branch.rates_of_height(self.coefficients, beside)
+        bend = (rise - fall) / (2 * step) * self.branch.length**2
         clarity = min(float(margin) / CLEAR_MARGIN, float(bend) / CLEAR_BEND)
         return _Top(best, clarity / extent)
 

@@ -22,7 +22,7 @@ from bifurc.curves.monitor import Profile
 from bifurc.errors import ProblemError
 from bifurc.numerics.blur import known_to
 from bifurc.problem import Problem
-from bifurc.search.findings import TracedBranch
+from bifurc.search.records import TracedBranch
 from bifurc.settings import TraceSettings
 
 CUSP_REACH = 0.2  # of a cusp, in scales: so far from it a branch may end

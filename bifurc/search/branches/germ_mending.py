@@ -36,8 +36,8 @@ from bifurc.search.branches.branch_parts import (
     joined_outcome,
     part_of,
 )
-from bifurc.search.findings import Run, TracedBranch
-from bifurc.search.starts import Start
+from bifurc.search.findings import Run
+from bifurc.search.records import Start, TracedBranch
 from bifurc.settings import TraceSettings
 from bifurc.singular.germ import Germ
 from bifurc.singular.local_branches import LocalBranch

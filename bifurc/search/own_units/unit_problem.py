@@ -40,11 +40,12 @@ from bifurc.function_problem import (
 )
 from bifurc.limits import Deadline
 from bifurc.numerics.singular_values import values_of
-from bifurc.problem import Accuracy, Curvature, PreciseResidual, Problem
+from bifurc.problem import Problem
 from bifurc.search.own_units.restated import restated_branch
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Audit, Seeds
 from bifurc.settings import TraceSettings
+from bifurc.system import Accuracy, Curvature, PreciseResidual
 from bifurc.units import Units
 
 if TYPE_CHECKING:

@@ -8,12 +8,12 @@ from collections.abc import Iterator, Sequence
 import mpmath
 
 from bifurc.atlas import Atlas, MeetingPoint
-from bifurc.problem import PreciseResidual
 from bifurc.singular.confirm import (
     Confirmation,
     Convergence,
     confirm_singular_point,
 )
+from bifurc.system import PreciseResidual
 from bifurc.tables import section_of
 from linkages.app.choice import choose_precisely
 from linkages.closure.precise import precise_residual

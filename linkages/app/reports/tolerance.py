@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas, MeetingPoint
 from bifurc.branch import Branch, Outcome
-from bifurc.curves.valley import Unfolding, correct_to_valley, unfold_crossing
+from bifurc.curves.valley import Unfolding, unfold_crossing
+from bifurc.numerics.null_spaces import correct_to_valley
 from bifurc.tables import count_of, section, section_of
 from linkages.app.texts.configurations import unit_of_arclengths
 from linkages.subject import subject_at

@@ -15,8 +15,8 @@ from urllib.parse import quote
 from linkages.app.choice import NO_NETWORK, check_limits, choose_linkage, require_kind
 from linkages.app.exit_codes import CommandError
 from linkages.catalogue import entry
-from linkages.entry import Parameter, ParameterKind
-from linkages.linkage import Linkage, is_linkage_file, load
+from linkages.entry import Linkage, Parameter, ParameterKind
+from linkages.linkage import is_linkage_file, load
 from linkages.networks.entries import LENGTHS, NETWORKS
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.chebyshev import NODE_COUNT
-from bifurc.problem import Curvature
+from bifurc.system import Curvature
 
 
 class Hyperbola(FunctionProblem):

@@ -10,9 +10,9 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.near_motion import trace_near_motion
 from bifurc.decisions import nearly_closes
 from bifurc.function_problem import FunctionProblem
-from bifurc.problem import relative_gaps
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings, TraceSettings
+from bifurc.system import relative_gaps
 
 SETTINGS = TraceSettings()
 

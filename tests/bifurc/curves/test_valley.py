@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from bifurc.branch import Outcome
-from bifurc.curves.valley import correct_to_valley, unfold_crossing
+from bifurc.curves.valley import unfold_crossing
 from bifurc.function_problem import FunctionProblem
+from bifurc.numerics.null_spaces import correct_to_valley
 
 BOX = [[-2.0, 2.0], [-2.0, 2.0]]
 

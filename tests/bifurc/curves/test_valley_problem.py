@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from bifurc import _core
-from bifurc.curves.valley import correct_to_valley
 from bifurc.curves.valley_problem import ValleyProblem
 from bifurc.function_problem import FunctionProblem
-from bifurc.problem import relative_gaps
+from bifurc.numerics.null_spaces import correct_to_valley
+from bifurc.system import relative_gaps
 from tests.bifurc.known_curves import contradictory
 
 

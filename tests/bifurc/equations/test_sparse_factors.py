@@ -7,7 +7,7 @@ from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.equations.system import ScaledTape
 from bifurc.function_problem import FunctionProblem
-from bifurc.problem import jacobian_at
+from bifurc.system import jacobian_at
 
 ROWS, COLUMNS = 6, 8  # of a lattice
 

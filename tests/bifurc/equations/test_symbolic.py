@@ -10,10 +10,10 @@ import sympy
 
 from bifurc.equations.symbolic import SymbolicProblem
 from bifurc.errors import ProblemError
-from bifurc.problem import jacobian_at
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from bifurc.singular.confirm import Convergence, confirm_singular_point
+from bifurc.system import jacobian_at
 
 X, Y, Z = sympy.symbols("x y z")
 BOX = [(-2.0, 2.0)] * 2

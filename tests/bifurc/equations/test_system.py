@@ -7,14 +7,8 @@ from scipy.sparse import issparse
 from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
 from bifurc.function_problem import FunctionProblem
-from bifurc.problem import (
-    Anchor,
-    MarchSettings,
-    MarchStatus,
-    jacobian_at,
-    relative_gaps,
-)
 from bifurc.settings import TraceSettings
+from bifurc.system import Anchor, MarchSettings, MarchStatus, jacobian_at, relative_gaps
 from tests.bifurc.known_curves import Bratu
 
 

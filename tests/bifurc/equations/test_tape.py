@@ -11,7 +11,7 @@ from bifurc import _core
 from bifurc.equations.recording import record
 from bifurc.equations.tape import FUNCTIONS, Operation, TapeWriter
 from bifurc.function_problem import FunctionProblem
-from bifurc.problem import MarchSettings
+from bifurc.system import MarchSettings
 
 ORDER = 12
 # u(s) and v(s), by powers of s

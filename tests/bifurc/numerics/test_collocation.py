@@ -6,7 +6,7 @@ import pytest
 from bifurc.branch import points_on_piece
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.collocation import bridge_by_collocation, march_by_collocation
-from bifurc.problem import MarchSettings, MarchStatus
+from bifurc.system import MarchSettings, MarchStatus
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from bifurc.numerics.corrector import (
     project_by_least_squares,
     project_to_sphere_by_newton,
 )
-from bifurc.problem import jacobian_at
+from bifurc.system import jacobian_at
 
 BOX = [(-2.0, 2.0)] * 3
 

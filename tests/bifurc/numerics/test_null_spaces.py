@@ -10,7 +10,7 @@ from bifurc.numerics.null_spaces import (
     null_vector,
     tangent_planes,
 )
-from bifurc.problem import relative_gaps
+from bifurc.system import relative_gaps
 
 BOX = [(-2.0, 2.0)] * 3
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from bifurc import FunctionProblem
-from bifurc.problem import relative_gaps
 from bifurc.search.subdivision import continuous_tape
+from bifurc.system import relative_gaps
 
 
 def quartic(u):

@@ -12,7 +12,8 @@ from bifurc.curves.minima import singular_value_minima
 from bifurc.curves.monitor import profile_branch
 from bifurc.decisions import is_same_point
 from bifurc.function_problem import FunctionProblem
-from bifurc.search.findings import Findings, TracedBranch
+from bifurc.search.findings import Findings
+from bifurc.search.records import TracedBranch
 from bifurc.search.seed_book import Fate, SeedFate
 from bifurc.seeds import Audit, Seeds
 from bifurc.singular.germ import Germ

@@ -9,7 +9,7 @@ import pytest
 from bifurc import FunctionProblem, explore
 from bifurc.errors import ProblemError
 from bifurc.numerics.singular_values import factors_of, singular_values
-from bifurc.problem import hessian_at
+from bifurc.system import hessian_at
 from tests.samples import one_in
 
 # name: equations, bounds, number of forms

@@ -6,9 +6,9 @@ import pytest
 from bifurc.decisions import is_solution
 from bifurc.function_problem import FunctionProblem
 from bifurc.numerics.singular_values import singular_values
-from bifurc.problem import relative_gaps
 from bifurc.search.solutions import polished, sharpened, with_weak_solutions
 from bifurc.seeds import Seeds
+from bifurc.system import relative_gaps
 from tests.bifurc.near_surfaces import CirclesBesideSphere
 
 

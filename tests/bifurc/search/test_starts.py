@@ -7,10 +7,10 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.minima import singular_value_minima
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
-from bifurc.search.components import Components
-from bifurc.search.findings import Findings, RigidAssembly, TracedBranch
+from bifurc.search.answer.completeness import FEWEST, asks_for_more_starts
+from bifurc.search.findings import Findings
+from bifurc.search.records import Components, RigidAssembly, TracedBranch
 from bifurc.search.seed_book import Fate, SeedFate
-from bifurc.search.starts import FEWEST, asks_for_more_starts
 from bifurc.seeds import Seeds
 from bifurc.singular.point import SingularPoint
 

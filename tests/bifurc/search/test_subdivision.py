@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bifurc import FunctionProblem, Level, SearchSettings, explore
-from bifurc.problem import relative_gaps
 from bifurc.search.subdivision import can_be_subdivided, subdivide
+from bifurc.system import relative_gaps
 
 MANY = 20_000
 PATIENT = SearchSettings(boxes=MANY)

@@ -5,9 +5,9 @@ import pytest
 
 from bifurc.decisions import is_lost_in_rounding
 from bifurc.function_problem import FunctionProblem
-from bifurc.problem import relative_gaps, relative_jacobians
 from bifurc.singular.germ import germ_at
 from bifurc.singular.locate import LocatedPoint
+from bifurc.system import relative_gaps, relative_jacobians
 
 BOX = [[-1.1, 1.0], [-1.05, 1.2]]
 CENTER = np.array([0.3, -0.2])

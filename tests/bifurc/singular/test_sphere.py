@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bifurc.function_problem import FunctionProblem
-from bifurc.singular.sphere import is_on_surface, section
+from bifurc.singular.sphere import Sections, is_on_surface, section
 
 
 def plane(function) -> FunctionProblem:
@@ -59,6 +59,21 @@ def test_of_a_plane_and_a_line_the_points_are_those_of_the_line():
 
 
 def test_regular_points_of_a_plane_are_on_a_surface_and_those_of_a_line_are_not():
-    assert is_on_surface(PLANE_AND_LINE, np.array([0.3, 0.2, 0.0]))
-    assert not is_on_surface(PLANE_AND_LINE, np.array([0.0, 0.0, 0.4]))
-    assert not is_on_surface(PLANE_AND_LINE, np.zeros(3))
+    def is_there(*point, null_space):
+        return is_on_surface(Sections(PLANE_AND_LINE, np.array(point), null_space))
+
+    assert is_there(0.3, 0.2, 0.0, null_space=np.eye(3)[:, :2])
+    assert not is_there(0.0, 0.0, 0.4, null_space=np.eye(3)[:, 2:])
+    assert not is_there(0.0, 0.0, 0.0, null_space=np.eye(3))
+    assert not is_there(0.0, 0.0, 0.0, null_space=np.eye(3)[:, :2])
+
+
+def test_two_lines_that_cross_are_no_surface():
+    crossing = plane(lambda x, y: x * (x - y))
+    assert not is_on_surface(Sections(crossing, np.zeros(2), np.eye(2)))
+
+
+def test_a_section_is_made_once():
+    sections = Sections(THREE_AXES, np.zeros(3), np.eye(3))
+    assert sections.of_radius(0.1) is sections.of_radius(0.1)
+    assert sections.of_radius(0.1) is not sections.of_radius(0.05)

@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 from click.testing import CliRunner
 
-from bifurc.problem import jacobian_at, relative_gaps
+from bifurc.system import jacobian_at, relative_gaps
 from bifurc.torus import SEAM
 from linkages.app.cli import main
 from linkages.closure.loop_closure import LoopClosure

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bifurc.problem import hessian_at, relative_gaps
+from bifurc.system import hessian_at, relative_gaps
 from linkages.closure.mechanism_closure import MechanismClosure
 from tests.linkages.mechanisms.frameworks import OCTAHEDRON, framework, places_of
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case

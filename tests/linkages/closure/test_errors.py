@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from bifurc.curves.valley import correct_to_valley
-from bifurc.problem import relative_gaps
+from bifurc.numerics.null_spaces import correct_to_valley
+from bifurc.system import relative_gaps
 from linkages.closure.errors import draw_errors, no_errors
 from linkages.closure.mechanism_closure import MechanismClosure
-from linkages.mechanisms.displacements import transforms
+from linkages.mechanisms.joint import transforms
 from linkages.structure.structure import ClosureKind, Structure
 from linkages.values import GeometryError
 from tests.linkages.mechanisms.known_mechanisms import cases, mechanism_of_case

@@ -8,10 +8,10 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.jumps import changes_of_course, kinks
 from bifurc.curves.misclosure import largest_misclosure
 from bifurc.function_problem import NumericalProblem
-from bifurc.problem import relative_gaps
 from bifurc.search.branches.canonical_course import canonical_course
 from bifurc.search.explore import explore
 from bifurc.settings import TraceSettings
+from bifurc.system import relative_gaps
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.loop import Loop

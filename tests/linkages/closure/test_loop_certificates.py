@@ -7,9 +7,9 @@ from bifurc import certify_atlas
 from bifurc.completeness import Level
 from bifurc.curves.certificate import CertificateStatus, certify_branch
 from bifurc.curves.monitor import profile_branch
-from bifurc.problem import hessian_at
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
+from bifurc.system import hessian_at
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure
 from linkages.families.bricard import bricard_line_symmetric

@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 
 from bifurc.branch import points_on_piece
-from bifurc.curves.valley import correct_to_valley
 from bifurc.curves.valley_problem import ValleyProblem
 from bifurc.noisy_problem import with_rounding_noise
 from bifurc.numerics.collocation import march_by_collocation
-from bifurc.numerics.null_spaces import null_vector
-from bifurc.problem import CurveNodes, MarchSettings
+from bifurc.numerics.null_spaces import correct_to_valley, null_vector
+from bifurc.system import CurveNodes, MarchSettings
 from linkages.closure.loop_closure import LoopClosure
 from linkages.linkage import load
 from linkages.loop import Loop

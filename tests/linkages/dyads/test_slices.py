@@ -7,8 +7,8 @@ import pytest
 
 import linkages
 from bifurc.completeness import Level
-from bifurc.problem import relative_gaps
 from bifurc.settings import SearchSettings
+from bifurc.system import relative_gaps
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.dyads.slices import SLICES, for_subject
 from linkages.files.arcs import read_arcs

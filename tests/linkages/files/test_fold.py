@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import linkages
-from bifurc.problem import jacobian_at
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
+from bifurc.system import jacobian_at
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.file import LinkageFileError
 from linkages.readout.poses import Poses

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import linkages
-from bifurc.problem import jacobian_at
 from bifurc.settings import SearchSettings
+from bifurc.system import jacobian_at
 from linkages.axes import loop_from_axes
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.file import LinkageFileError

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import linkages
-from bifurc.problem import hessian_at
 from bifurc.settings import SearchSettings
+from bifurc.system import hessian_at
 from linkages.closure.curvature import CurvatureBounds
 from linkages.closure.driving import joints_to_hold
 from linkages.closure.mechanism_closure import MechanismClosure

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from linkages.mechanisms.displacements import displacement_of
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.structure.groups import displacement_of
 from linkages.structure.structure import Structure
 from linkages.values import GeometryError
 

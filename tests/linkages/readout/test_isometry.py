@@ -7,7 +7,7 @@ import pytest
 
 from bifurc.errors import ProblemError
 from bifurc.isometry import Isometry, recount_atlas
-from bifurc.problem import jacobian_at, relative_gaps
+from bifurc.system import jacobian_at, relative_gaps
 from bifurc.torus import difference
 from linkages.catalogue import entry
 from linkages.closure.loop_closure import LoopClosure

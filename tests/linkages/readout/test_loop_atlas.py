@@ -8,8 +8,8 @@ import pytest
 
 import linkages
 from bifurc.files.dataset import load_atlas, save_atlas
-from bifurc.problem import jacobian_at, relative_gaps
 from bifurc.routes.route import find_route
+from bifurc.system import jacobian_at, relative_gaps
 from bifurc.torus import SEAM
 from linkages.closure.loop_closure import LoopClosure
 from linkages.closure.mechanism_closure import MechanismClosure

@@ -5,8 +5,8 @@ import itertools
 import numpy as np
 import pytest
 
-from bifurc.problem import relative_gaps
 from bifurc.settings import SearchSettings
+from bifurc.system import relative_gaps
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bifurc.problem import relative_gaps
 from bifurc.settings import SearchSettings
+from bifurc.system import relative_gaps
 from linkages.app.answer.verdict import judge
 from linkages.closure.mechanism_closure import MechanismClosure
 from linkages.mechanisms.couplings import Coupling

@@ -9,7 +9,7 @@ from bifurc.curves.continuation import trace_branch
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.answer.assemble import near_misses_of
-from bifurc.search.findings import TracedBranch
+from bifurc.search.records import TracedBranch
 from bifurc.singular.point import Kind, SingularPoint
 
 ERROR = 1e-2  # of a singular point that is hardly placed

@@ -17,7 +17,8 @@ from bifurc.search.answer.doubts import doubts_of
 from bifurc.search.answer.meeting_points import meeting_points
 from bifurc.search.branches.branch_parts import part_of
 from bifurc.search.explore import explore
-from bifurc.search.findings import Findings, TracedBranch
+from bifurc.search.findings import Findings
+from bifurc.search.records import TracedBranch
 from bifurc.seeds import Audit
 from bifurc.settings import SearchSettings
 from bifurc.singular.classify import classify_singular_point

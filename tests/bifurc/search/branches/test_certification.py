@@ -7,12 +7,12 @@ import pytest
 from bifurc.completeness import Claim, Level
 from bifurc.curves.certificate import CertificateStatus
 from bifurc.function_problem import FunctionProblem
-from bifurc.problem import Curvature
 from bifurc.search import tracing
 from bifurc.search.branches import branch_examination
 from bifurc.search.explore import explore
 from bifurc.seeds import Audit, Seeds
 from bifurc.settings import SearchSettings
+from bifurc.system import Curvature
 from tests.bifurc.curves.test_jumps import polyline
 
 SETTINGS = SearchSettings(starts=40)

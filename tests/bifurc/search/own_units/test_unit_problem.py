@@ -12,9 +12,9 @@ import bifurc
 from bifurc.branch import Outcome
 from bifurc.completeness import Claim
 from bifurc.curves.certificate import CertificateStatus
-from bifurc.problem import Curvature, jacobian_at
 from bifurc.search.own_units.unit_problem import in_own_units
 from bifurc.seeds import Audit
+from bifurc.system import Curvature, jacobian_at
 from bifurc.systems.equation_file import read_equations
 
 BOX = [(-2.0, 2.0), (-2.0, 2.0)]

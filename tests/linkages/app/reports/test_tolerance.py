@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from bifurc.problem import relative_gaps
+from bifurc.system import relative_gaps
 from linkages.app.cli import main
 from linkages.app.reports.tolerance import climb, half_branches, measure, slope
 from linkages.catalogue import entry

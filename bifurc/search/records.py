@@ -1,0 +1,217 @@
+"""What the steps of a search hand to one another: starts, branches, points, components."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from bifurc.atlas import Surface
+from bifurc.branch import Branch, Outcome
+from bifurc.curves.certificate import Certificate
+from bifurc.curves.monitor import Profile
+from bifurc.problem import Problem
+from bifurc.search.seed_book import Fate, SeedFate
+from bifurc.singular.point import SingularPoint
+from bifurc.surfaces.chart_atlas import ChartAtlas
+from bifurc.tables import count_of
+
+NO_DOUBT = (False, False, 0.0)
+SHAKY = "F' has a lower rank all over it"
+ON_CURVES = "singular points are samples of curves of such points"
+UNEXAMINED = "its singular points, and where forms meet it, are not looked for"
+# the same where curves of singular points were reached by chance
+UNEXAMINED_ELSE = "others, and where forms meet it, are not looked for"
+
+
+@dataclass(frozen=True, eq=False)
+class TracedBranch:
+    """A branch with what was seen along it.
+
+    ``minima`` are arclengths (k,) and values (k,) of the local minima of the smallest
+    regular singular value. ``located`` are the arclengths of minima that led to a
+    singular point, ``passes`` those at which the branch passes it, ``missing`` those
+    where one must be and none was located. ``misclosure`` is the largest along the
+    branch, ``blur`` the distance, over the scale, to which its points are known.
+    ``certificate`` says what is certified of it, None where that was not asked for or
+    the problem has no bounds. ``multiplicity``: 1 of an ordinary curve, 2 of one that
+    one step of deflation makes regular, 0 where it is not known.
+    """
+
+    branch: Branch
+    profile: Profile
+    minima: tuple[np.ndarray, np.ndarray]
+    located: tuple[float, ...]
+    misclosure: float = 0.0
+    blur: float = 0.0
+    passes: tuple[float, ...] = ()
+    missing: tuple[float, ...] = ()
+    certificate: Certificate | None = None
+    multiplicity: int = 1
+
+    @property
+    def is_refused(self) -> bool:
+        """Whether there is a certificate, and it does not hold."""
+        return self.certificate is not None and not self.certificate.holds
+
+    @property
+    def doubt(self) -> tuple[bool, bool, float]:
+        """Whether the branch is refused a certificate, whether it stalls, and the
+        arclength on which it is refused; less doubt is the smaller tuple."""
+        refused = 0.0
+        if self.certificate is not None and self.is_refused:
+            refused = self.certificate.refused_length
+        return self.is_refused, self.branch.outcome is Outcome.STALLED, refused
+
+
+class PointSighting(NamedTuple):
+    """A singular point that was looked at, its number, and whether it is new."""
+
+    point: SingularPoint
+    number: int
+    is_new: bool
+
+    @property
+    def fate(self) -> SeedFate:
+        """That of a seed there."""
+        return SeedFate(Fate.AT_SINGULAR_POINT, self.number)
+
+
+class RigidAssembly(NamedTuple):
+    """An isolated solution at a ``place`` (n,). It, or several, lie ``hidden`` by
+    rounding up to so far from there."""
+
+    place: np.ndarray
+    hidden: float
+
+
+class Start(NamedTuple):
+    """A solution (n,) to trace a branch from, first to the side of ``direction`` (n,)
+    where there is one."""
+
+    point: np.ndarray
+    direction: np.ndarray | None = None
+
+
+def half_branch_starts(point: SingularPoint) -> list[Start]:
+    """Starts on all half-branches of a singular point, a little off it."""
+    directions = point.half_branches
+    return [Start(point.u + point.radius * along, along) for along in directions]
+
+
+class SingularCurve(NamedTuple):
+    """A ``branch`` all along which F' has a ``rank``."""
+
+    branch: Branch
+    rank: int
+
+
+def describe_curves(curves: Sequence[SingularCurve]) -> str:
+    """How many of them there are of every rank, empty where there is none."""
+    kinds = Counter((curve.rank, curve.branch.closed) for curve in curves)
+    parts = []
+    for (rank, closed), count in sorted(kinds.items()):
+        noun = "closed curve" if closed else "open curve"
+        parts.append(f"singular points of rank {rank} form {count_of(count, noun)}")
+    return "; ".join(parts)
+
+
+@dataclass
+class Components:
+    """Numbers of the seeds on components of dimension 2 and more, by dimension, and
+    charts over the surfaces. The seeds ``on_shaky`` surfaces, on which F' has a lower
+    rank everywhere, are apart where one deflation does not make them regular: charts do
+    not fit there.
+
+    Parts of the charts that do not hang together are surfaces of their own: each but
+    the last was finished, as far as its singular points, before the next was begun.
+    ``part_of`` (k,) is the part that each seed of dimension 2 belongs to, -1 where none
+    is known. ``notes`` say what is known of a part, by its number. ``deflated`` is the
+    problem with which surfaces are corrected to along which F' has a lower rank; seeds
+    of dimension 2 lie on such surfaces then, and ``curves`` are those of singular points
+    on them, by the part of the charts, -1 where there are no charts.
+    """
+
+    seeds: dict[int, list[int]] = field(default_factory=dict)
+    on_shaky: list[int] = field(default_factory=list)
+    charts: ChartAtlas | None = None
+    part_of: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
+    notes: dict[int, str] = field(default_factory=dict)
+    deflated: Problem | None = None
+    curves: dict[int, list[SingularCurve]] = field(default_factory=dict)
+
+    def samples(self, points: np.ndarray, dimension: int) -> np.ndarray:
+        """The seeds (k, n) of a dimension, as exact as can be known."""
+        samples = points[self.seeds.get(dimension, [])]
+        if self.deflated is None or dimension != 2 or not len(samples):
+            return samples
+        return self.deflated.project(samples)[0]
+
+    def take_note(self, left_out: np.ndarray, on_curves: np.ndarray) -> None:
+        """Remember charts at which singular points were not looked for, and charts next
+        to curves of them."""
+        assert self.charts is not None
+        part = self.charts.part
+        for k in range(int(part.max()) + 1):
+            samples = int(np.count_nonzero(part[on_curves] == k))
+            places = int(np.count_nonzero(part[left_out] == k))
+            words = []
+            if samples:
+                words.append(f"{samples} of its {ON_CURVES}")
+            if places:
+                words.append(f"at {places} places singular points were not looked for")
+            self.notes[k] = "; ".join(words)
+
+    def _note_of_lower_rank(self, part: int) -> str:
+        """What is known of a part along which F' has a lower rank; -1: of seeds without
+        charts."""
+        parts = [SHAKY]
+        words = describe_curves(self.curves.get(part, []))
+        if words:
+            parts.append(words)
+        if part >= 0:
+            parts.append(UNEXAMINED_ELSE if words else UNEXAMINED)
+        return "; ".join(parts)
+
+    @property
+    def off_charts(self) -> int:
+        """How many seeds of dimension 2 lie on none of the charts, nor are joined to
+        any, although all surfaces on which charts fit are covered."""
+        if self.charts is None or not self.charts.complete:
+            return 0
+        return int(np.count_nonzero(self.part_of < 0))
+
+    def surfaces(self, points: np.ndarray) -> tuple[Surface, ...]:
+        """Connected surfaces as far as there are charts, then what none of them is
+        known to hold, by dimension; seeds `off_charts` show no surface."""
+        surfaces: list[Surface] = []
+        if self.on_shaky:
+            surfaces.append(Surface(2, points[self.on_shaky], note=SHAKY))
+        for dimension in sorted(self.seeds):
+            samples = self.samples(points, dimension)
+            if dimension == 2 and self.charts is not None:
+                surfaces += self._charted_surfaces(self.charts, samples)
+                samples = samples[(self.part_of < 0) & (not self.charts.complete)]
+            if len(samples):
+                is_shaky = dimension == 2 and self.deflated is not None
+                note = self._note_of_lower_rank(-1) if is_shaky else ""
+                surfaces.append(Surface(dimension, samples, note=note))
+        return tuple(surfaces)
+
+    def _charted_surfaces(
+        self, charts: ChartAtlas, samples: np.ndarray
+    ) -> list[Surface]:
+        """The surfaces that charts cover, with those of the samples (k, n) on them."""
+        surfaces = []
+        for k, part in enumerate(charts.parts()):
+            on_part = samples[self.part_of == k]
+            if not len(on_part):
+                on_part = part.centers[:1]
+            note = self.notes.get(k, "")
+            if self.deflated is not None:
+                note = self._note_of_lower_rank(k)
+            surfaces.append(Surface(2, on_part, charts=part, note=note))
+        return surfaces
