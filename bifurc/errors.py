@@ -23,3 +23,7 @@ class ProblemError(BifurcError, ValueError):
 
 class RouteError(BifurcError, LookupError):
     """There is no such form or surface, or no route from one to another."""
+
+
+# What F over many digits raises beyond the rim of where it is defined.
+NOT_DEFINED = (ZeroDivisionError, ValueError, OverflowError)

@@ -12,7 +12,9 @@ import numpy as np
 
 from bifurc.checks import check_callable, floats_of
 from bifurc.decisions import (
+    is_bearable_noise,
     is_derivative,
+    is_free_of_noise,
     is_period,
     is_solved_from_afar,
     is_whole_circle,
@@ -29,6 +31,7 @@ from bifurc.numerics.corrector import (
     project_by_least_squares,
     project_to_sphere_by_newton,
 )
+from bifurc.numerics.noise import noise_of
 from bifurc.problem import Problem
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds
@@ -55,6 +58,7 @@ CHECKS = 20  # more points at which a recording is compared with the function
 LARGEST_COMPARED = 200  # unknowns up to which a given derivative is compared
 START_SIZES = (1.0, 1e3, 1e-3, 1e6, 1e-6)  # of starts for unknowns without bounds
 FARTHEST = 100.0  # over the size of solutions, bounds where none are given
+NOISE_PROBES = 5  # points about which noise is measured
 HESSIAN_STEP = 1e-5  # third root of rounding: best for central differences of F'
 TINY = 1e-300  # keeps what is zero from being divided by
 NOT_RECORDED = Recording(None, "not asked for")
@@ -91,7 +95,8 @@ class NumericalProblem(Problem):
 
     def _hessian_by_differences(self, point: np.ndarray) -> np.ndarray:
         """F'' (m, n, n) at a point (n,)."""
-        steps = HESSIAN_STEP * (1.0 + np.abs(point))
+        size = max(HESSIAN_STEP, self.accuracy.noise ** (2.0 / 9.0))
+        steps = size * (1.0 + np.abs(point))
         shifts = np.diag(steps)
         upper = self.jacobians(point + shifts)
         lower = self.jacobians(point - shifts)
@@ -224,6 +229,7 @@ class FunctionProblem(EquationProblem):
         m = len(self.equations.value(probes[0]))
         recording = self._recorded(points) if is_recorded else NOT_RECORDED
         self.equations = replace(self.equations, m=m, recording=recording)
+        self._measure_noise(probes)
         self._measure(probes)
         self._check_periods(probes)
         self._settle_open_bounds()
@@ -307,6 +313,30 @@ class FunctionProblem(EquationProblem):
             allowed = "finite somewhere inside the bounds"
             raise ProblemError("derivative of the function", np.nan, allowed)
         self._take_magnitude(float(np.median(known)) or 1.0)
+
+    def _measure_noise(self, probes: np.ndarray) -> None:
+        """See how noisy the values are about the probes (k, n), where they are not
+        recorded; raises `ProblemError` where there is too much of it."""
+        if self.equations.tape is not None or self.n > LARGEST_COMPARED:
+            return
+        rng, value = np.random.default_rng(0), self.equations.value
+        with np.errstate(all="ignore"):
+            noise = noise_of(value, probes[:NOISE_PROBES], self.domain.scale, rng)
+            values = np.array([value(probe) for probe in probes])
+        if noise is None:
+            return
+        changes = np.ptp(values, axis=0) + np.abs(values).min(axis=0) + TINY
+        share = float((noise / changes).max())
+        if is_free_of_noise(share):
+            return
+        if not is_bearable_noise(share):
+            allowed = (
+                f"at most {is_bearable_noise.threshold:.0e} of what they change by within "
+                "the bounds, so that solutions can be told"
+            )
+            what = "noise of the values of the function"
+            raise ProblemError(what, f"{share:.1e}", allowed)
+        self.equations = replace(self.equations, noise=noise, noise_share=share)
 
     # --- checks -----------------------------------------------------------------------
 
@@ -406,9 +436,14 @@ def _require_derivative(
 def accuracy_of(equations: Equations) -> Accuracy:
     """How exactly the equations are known."""
     is_recorded = equations.tape is not None
+    origin = str(equations.recording)
+    if equations.noise_share:
+        noise = f"{equations.noise_share:.1e} of what they change by"
+        origin += f"; its values are noisy to {noise}"
     return Accuracy(
         derivatives=equations.derivatives,
-        equations=str(equations.recording),
+        equations=origin,
+        noise=equations.noise_share,
         is_exact=is_recorded,
         coefficient_rounding=equations.coefficient_rounding,
         hessian_error=EXACT_HESSIAN if is_recorded else HESSIAN_ERROR,

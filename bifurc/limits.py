@@ -13,6 +13,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 from functools import cache
 from types import FrameType, TracebackType
@@ -103,6 +104,31 @@ class Deadline:
     def passed(self) -> bool:
         """Whether the time is over."""
         return self.left == 0.0
+
+
+_deadline: ContextVar[Deadline | None] = ContextVar("deadline", default=None)
+
+
+@contextmanager
+def until(deadline: Deadline) -> Iterator[None]:
+    """Within it what may last ends soon after a ``deadline``, with what it has by
+    then."""
+    token = _deadline.set(deadline)
+    try:
+        yield
+    finally:
+        _deadline.reset(token)
+
+
+def current_deadline() -> Deadline:
+    """The deadline that what runs now has, one without end where there is none."""
+    return _deadline.get() or Deadline()
+
+
+def is_time_over() -> bool:
+    """Whether that deadline has passed; asked between any two steps that together may
+    take long."""
+    return current_deadline().passed
 
 
 # Unknowns up to which no matrix is shared between threads. Those that locate a singular

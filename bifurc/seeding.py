@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from bifurc.decisions import is_start_solved
-from bifurc.limits import Deadline
+from bifurc.limits import Deadline, current_deadline
 from bifurc.problem import Problem
 from bifurc.seeds import Seeds
 from bifurc.torus import wrap
@@ -58,11 +58,14 @@ def _projected(
 ) -> tuple[np.ndarray, np.ndarray]:
     """What `Problem.project` makes of the first of the starts (k, n), as many as there
     is time for, a few of them in any case."""
-    if deadline is None or deadline.is_endless or not len(starts):
+    deadline = deadline or current_deadline()
+    is_whole = deadline.is_endless and not problem.domain.is_large
+    if is_whole or not len(starts):
         return problem.project(starts)
+    at_once = 1 if problem.domain.is_large else AT_ONCE
     parts = []
-    for begin in range(0, len(starts), AT_ONCE):
-        parts.append(problem.project(starts[begin : begin + AT_ONCE]))
+    for begin in range(0, len(starts), at_once):
+        parts.append(problem.project(starts[begin : begin + at_once]))
         if deadline.passed:
             break
     points, gaps = zip(*parts, strict=True)

@@ -180,7 +180,8 @@ class Accuracy:
     scale, as those numbers are rounded; 0 where that is not known. ``coefficient_rounding``
     gives how far off F (m,) is at a point (n,) where the numbers in it are rounded;
     by the rounding of the data where it is None. ``hessian_error`` is how far off F'' may
-    be, over a bound on it.
+    be, over a bound on it. ``noise``: how noisy F is, over what it changes by within the
+    bounds; 0 where that is no more than rounding. Within it `System.residuals` are zero.
     """
 
     derivatives: str = "exact"
@@ -189,6 +190,7 @@ class Accuracy:
     data_rounding: float = 0.0
     coefficient_rounding: Callable[[np.ndarray], np.ndarray] | None = None
     hessian_error: float = 1e-6
+    noise: float = 0.0
 
 
 class Curvature(NamedTuple):

@@ -32,9 +32,8 @@ from bifurc import Atlas, FunctionProblem, Kind, Level, SearchSettings, explore
 BANK = Path(__file__).parent.parent / "data" / "curves.json"
 SCALES = (1e-6, 1e-3, 10.0, 1e3, 1e6)
 SLOW = 5.0  # s, from which on an answer is listed
-FUNCTIONS = {
-    name: getattr(np, name) for name in ("sin", "cos", "tan", "exp", "log", "sqrt")
-}
+NAMES = ("sin", "cos", "tan", "asin", "acos", "acosh", "exp", "log", "sqrt", "pi")
+FUNCTIONS = {name: getattr(np, name) for name in NAMES}
 
 
 class Answer(NamedTuple):

@@ -14,7 +14,7 @@ from bifurc.curves.ends import end_of_curve, same_place
 from bifurc.curves.track import CAUTIOUS, End, Place, Track
 from bifurc.decisions import is_solution
 from bifurc.errors import ProblemError
-from bifurc.limits import Deadline
+from bifurc.limits import Deadline, is_time_over
 from bifurc.numerics.null_spaces import null_vector
 from bifurc.problem import Problem
 from bifurc.settings import TraceSettings
@@ -156,7 +156,8 @@ def follow_curve(
         end = end_of_curve(problem, track, first, settings.tolerance)
         if end is None:
             end = _end_of_patience(problem, track, march, settings)
-        if end is None and deadline is not None and deadline.passed:
+        is_late = deadline is not None and deadline.passed
+        if end is None and (is_late or is_time_over()):
             end = End(Outcome.TIME_LIMIT, track.reached)
         if end is not None:
             return track.branch(end, problem.domain.periods)

@@ -167,7 +167,7 @@ def _exit(problem: System, piece: np.ndarray, low: float, high: float) -> float:
     already = problem.domain.excess(points_on_piece(piece, begin))[0]
     if already > problem.domain.slack:
         return low
-    level = 0.0 if already < 0.0 else problem.domain.slack
+    level = 0.0 if already < -problem.domain.slack else problem.domain.slack
 
     def outside(x: np.ndarray) -> np.ndarray:
         excess: np.ndarray = problem.domain.excess(points_on_piece(piece, x)) - level

@@ -19,6 +19,7 @@ import numpy as np
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.monitor import NODES
 from bifurc.decisions import closes_to_rounding, is_plainly_closed, is_same_point
+from bifurc.errors import NOT_DEFINED
 from bifurc.numerics.null_spaces import Decomposition, decompose
 from bifurc.numerics.singular_values import singular_values
 from bifurc.system import PreciseResidual, System, relative_gaps, relative_residuals
@@ -118,7 +119,7 @@ def _precise_misclosures(
         for point, inverse in zip(points, inverses, strict=True):
             try:
                 value = _after_steps(problem, residual, point, inverse)
-            except (ZeroDivisionError, ValueError, OverflowError):
+            except NOT_DEFINED:
                 value = relative_residuals(problem, point[None])[0]  # at a rim of F
             measured.append(float(np.linalg.norm(value)))
     return measured

@@ -15,6 +15,7 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.curves.misclosure import as_floats
+from bifurc.errors import NOT_DEFINED
 from bifurc.numerics.null_spaces import TINY, Decomposition, decompose
 from bifurc.system import PreciseResidual, System, hessian_at
 
@@ -89,7 +90,10 @@ def _refined(
     problem: System, branch: Branch, s: float, rough: NearMissValue
 ) -> NearMissValue:
     """The value in many digits, where it is within the error of that of doubles."""
-    precise = _precise_near_miss(problem, branch, problem.n - 1, s)
+    try:
+        precise = _precise_near_miss(problem, branch, problem.n - 1, s)
+    except NOT_DEFINED:
+        return rough  # it is beside a rim of where the function is defined
     if precise is None or abs(precise.value - rough.value) > rough.error:
         return rough
     return precise

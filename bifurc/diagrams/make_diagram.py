@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 from bifurc.atlas import Atlas
 from bifurc.checks import check_type
+from bifurc.decisions import is_same_point
 from bifurc.diagrams.diagram import (
     Branching,
     Diagram,
@@ -71,12 +73,13 @@ def diagram_of(
         for place in one.hopf_places
     ]
     stretches = tuple(stretch for one in along for stretch in one.stretches)
+    points = _named(problem, [*turnings.folds, *hopf_points, *found])
     return Diagram(
         parameter=parameter,
-        points=_named(problem, [*turnings.folds, *hopf_points, *found]),
+        points=points,
         stretches=stretches,
         branchings=_branchings(atlas, index, turnings, stretches),
-        remarks=tuple(remarks),
+        remarks=(*remarks, *_double_hopf_points(atlas, points)),
     )
 
 
@@ -130,7 +133,18 @@ def _stability(
 def _hopf_point(atlas: Atlas, form: int, place: HopfPlace) -> DiagramPoint:
     branch = atlas.forms[form].branch
     s = place.s % branch.length if branch.closed else place.s
-    return DiagramPoint("", Kind.HOPF, form, s, branch(s), place.frequency)
+    label = "becomes unstable" if place.is_unstable_after else "becomes stable"
+    return DiagramPoint("", Kind.HOPF, form, s, branch(s), place.frequency, label)
+
+
+def _double_hopf_points(atlas: Atlas, points: Sequence[DiagramPoint]) -> Iterator[str]:
+    """What is to be said of Hopf points, in the order of their names, at one place."""
+    of_kind = [point for point in points if point.kind is Kind.HOPF]
+    for one, other in pairwise(of_kind):
+        unit = atlas.forms[one.form].branch.length
+        if one.form == other.form and is_same_point(abs(one.s - other.s), unit):
+            places = f"{one.name} and {other.name}"
+            yield f"two pairs cross at one place, to 1e-6 of the form: {places}"
 
 
 def _named(
@@ -142,7 +156,10 @@ def _named(
     named = []
     for kind in Kind:
         of_kind = [point for point in points if point.kind is kind]
-        of_kind.sort(key=lambda point: (point.label, point.form, point.s))
+        of_events = kind in (Kind.EVENT, Kind.TOUCH)
+        of_kind.sort(
+            key=lambda point: (point.label if of_events else "", point.form, point.s)
+        )
         for number, point in enumerate(of_kind, start=1):
             name, u = f"{kind.initial}{number}", wrap(point.u, periods)
             named.append(replace(point, name=name, u=u))

@@ -23,8 +23,12 @@ from bifurc.problem import Problem
 
 CLEAR_OF_CUTS = 1e-4  # of a stretch: nearer to its ends an eigenvalue may be about zero
 INNER = np.linspace(0.1, 0.9, 9)  # places at which a short stretch is looked at as well
-HALVINGS = 70  # of a bracket, down to rounding
-ONE_CROSSING = 1e-6  # of a bracket: pairs that cross at less distance cross at once
+NARROW = 1e-6  # of a form: so near to where it crosses an eigenvalue moves straight
+UNEVEN = (
+    0.4631  # of the width between two places, where the next one is: on no symmetry
+)
+CLEARLY = 0.3  # of the distance to the next: an eigenvalue moved from where it was
+RATE = 1e-10  # of a form, over which it is seen how fast eigenvalues move
 STRIDE = 5  # of the nodes of a piece at which those of a large problem are computed
 RESIDUAL = 1e-12  # over F' along a form: how well F = 0 holds there
 LARGEST_ERROR = 1e-6  # of the sizes: a double curve is known to half of the digits
@@ -36,10 +40,12 @@ SEED = 1
 
 
 class HopfPlace(NamedTuple):
-    """An arclength at which a pair of eigenvalues +-i ``frequency`` is imaginary."""
+    """An arclength at which a pair of eigenvalues +-i ``frequency`` is imaginary; from
+    there on it is unstable where ``is_unstable_after``, and before that else."""
 
     s: float
     frequency: float
+    is_unstable_after: bool
 
 
 @dataclass(frozen=True)
@@ -79,9 +85,11 @@ def stability_along(
             stability = Stability.UNSTABLE if number else Stability.NEUTRAL
             stretches.append(Stretch(form, start, end, stability, number))
             continue
-        crossings = _crossings(spectrum, inner[is_clear], counts.unstable[is_clear])
-        places += [_hopf_place(spectrum, s) for s in crossings]
-        stretches += _between(spectrum, form, [start, *crossings, end])
+        clear, numbers = inner[is_clear], counts.unstable[is_clear]
+        crossings = _crossings(spectrum, clear, numbers)
+        places += crossings
+        between = sorted({place.s for place in crossings})
+        stretches += _between(spectrum, form, [start, *between, end])
     hopf_places = [place for place in places if place.frequency > 0.0]
     return FormStability(stretches, hopf_places)
 
@@ -143,45 +151,117 @@ def _places_between(
 
 def _crossings(
     spectrum: Spectrum, places: np.ndarray, numbers: np.ndarray
-) -> list[float]:
-    """Arclengths, in order, at which the number of unstable eigenvalues changes, which
-    is ``numbers`` (k,) at ``places`` (k,)."""
-    crossings: list[float] = []
-    for k in np.flatnonzero(np.diff(numbers)):
-        low, high = places[k : k + 2]
-        near = ONE_CROSSING * (high - low)
-        before = numbers[k]
-        while before != numbers[k + 1] and low < high:
-            crossing = _first_change(spectrum, low, high, before)
-            crossings.append(crossing)
-            low = min(crossing + near, high)
-            before = spectrum.numbers(np.array([low]))[0]
+) -> list[HopfPlace]:
+    """Where eigenvalues cross the axis, in order, between ``places`` (k,) at which so
+    many are unstable as ``numbers`` (k,) says.
+
+    Of a large problem only where that number changes: two that cross in opposite
+    directions between two of the places leave it as it is.
+    """
+    is_asked = np.diff(numbers) != 0
+    if not spectrum.problem.domain.is_large:
+        is_asked[:] = True
+    crossings: list[HopfPlace] = []
+    known: dict[int, MovingSet] = {}
+    for k in np.flatnonzero(is_asked).tolist():
+        for number in (k, k + 1):
+            if number not in known:
+                known[number] = spectrum.moving(float(places[number]))
+        crossings += _between_sets(spectrum, known.pop(k), known[k + 1])
     return crossings
 
 
-def _first_change(spectrum: Spectrum, low: float, high: float, before: int) -> float:
-    """The first arclength between two, to rounding, at which the number of unstable
-    eigenvalues is another than ``before``, which it is at ``low``."""
-    for _ in range(HALVINGS):
-        middle = 0.5 * (low + high)
-        if not low < middle < high:
-            break
-        if spectrum.numbers(np.array([middle]))[0] == before:
-            low = middle
-        else:
-            high = middle
-    return float(high)
+class MovingSet(NamedTuple):
+    """The eigenvalues (q,) at arclength ``s``, and their derivatives (q,) by it as seen
+    ``before`` and ``after``."""
+
+    s: float
+    values: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
 
 
-def _hopf_place(spectrum: Spectrum, s: float) -> HopfPlace:
-    """The pair of eigenvalues that crosses the axis at ``s``; frequency 0 for a real
-    one."""
+def _between_sets(
+    spectrum: Spectrum, low: MovingSet, high: MovingSet
+) -> list[HopfPlace]:
+    """Where eigenvalues cross the axis between two places, in order: between places as
+    near to each other as it takes."""
+    width = high.s - low.s
+    moved = _moved(low, high)
+    if width > NARROW * spectrum.branch.length:
+        if not np.any(moved.has_crossed) and not moved.is_open:
+            return []
+        middle = spectrum.moving(low.s + UNEVEN * width)
+        before = _between_sets(spectrum, low, middle)
+        return [*before, *_between_sets(spectrum, middle, high)]
+    places = []
+    for k in np.flatnonzero(moved.has_crossed & (moved.values.imag >= 0.0)):
+        slope = (moved.values[k] - low.values[k]) / width
+        s = low.s - float(low.values[k].real / slope.real)
+        value = low.values[k] + (s - low.s) * slope
+        places.append(_hopf_place(spectrum, s, value, slope))
+    return sorted(places)
+
+
+class _Moved(NamedTuple):
+    """What eigenvalues (q,) at a place are at the next one: their ``values`` (q,), which
+    of them have ``has_crossed`` (q,) the axis, and whether that ``is_open``."""
+
+    values: np.ndarray
+    has_crossed: np.ndarray
+    is_open: bool
+
+
+def _moved(low: MovingSet, high: MovingSet) -> _Moved:
+    """What the eigenvalues at one place are at another.
+
+    As a set they move steadily: each is followed to the next place along its
+    derivative, and back. Derivatives are those away from there: two eigenvalues may
+    meet between the places.
+    """
+    width = high.s - low.s
+    forth = low.values + width * low.before
+    back = high.values - width * high.after
+    distances = np.abs(forth[:, None] - high.values)
+    distances += np.abs(low.values[:, None] - back)
+    partners = _partners(distances)
+    values = high.values[partners]
+    has_crossed = (low.values.real > 0.0) != (values.real > 0.0)
+    return _Moved(values, has_crossed, _is_open(distances, partners, high.values))
+
+
+def _partners(distances: np.ndarray) -> np.ndarray:
+    """Which of the others (q,) each of some things is, so that the ``distances`` (q, q)
+    are small together."""
+    from scipy.optimize import linear_sum_assignment  # it takes long to import
+
+    partners: np.ndarray = linear_sum_assignment(distances)[1]
+    return partners
+
+
+def _is_open(distances: np.ndarray, partners: np.ndarray, values: np.ndarray) -> bool:
+    """Whether one of the eigenvalues may as well be one of the ``values`` (q,) on the
+    other side of the axis: it is at ``distances`` (q, q) from them, and is taken for
+    that of its ``partners`` (q,)."""
+    side = values.real > 0.0
+    is_other = side[partners][:, None] != side
+    nearest = np.where(is_other, distances, np.inf).min(axis=1)
+    own = distances[np.arange(len(partners)), partners]
+    return bool(np.any(own > CLEARLY * nearest))
+
+
+def _hopf_place(
+    spectrum: Spectrum, s: float, value: complex, slope: complex
+) -> HopfPlace:
+    """Where the eigenvalue next to a ``value`` at ``s``, that grows by a ``slope``,
+    crosses the axis; frequency 0 for a real one."""
     values, errors = spectrum.with_errors(np.array([s]))
-    nearest = int(np.argmin(np.abs(values[0].real)))
+    nearest = int(np.argmin(np.abs(values[0] - value)))
     frequency = float(abs(values[0, nearest].imag))
     if is_real_crossing(frequency, max(float(errors[0, nearest]), SMALLEST)):
         frequency = 0.0
-    return HopfPlace(s, frequency)
+    closer = s - float(values[0, nearest].real / slope.real)
+    return HopfPlace(closer, frequency, bool(slope.real > 0.0))
 
 
 def _between(spectrum: Spectrum, form: int, ends: Sequence[float]) -> list[Stretch]:
@@ -266,9 +346,14 @@ class Spectrum:
         unstable = (eigenvalues.values.real > 0.0) & ~on_axis
         return Counts(unstable.sum(axis=1), on_axis.sum(axis=1))
 
-    def numbers(self, s: np.ndarray) -> np.ndarray:
-        """How many are unstable (k,) by their signs alone."""
-        return np.asarray((self.eigenvalues(s).real > 0.0).sum(axis=1))
+    def moving(self, s: float) -> MovingSet:
+        """The eigenvalues at an arclength and how fast they move, as far as that is
+        seen next to it."""
+        step = RATE * self.branch.length
+        former, here, later = self.eigenvalues(s + step * np.array([-1.0, 0.0, 1.0]))
+        before = here - former[_partners(np.abs(here[:, None] - former))]
+        after = later[_partners(np.abs(here[:, None] - later))] - here
+        return MovingSet(s, here, before / step, after / step)
 
     def pair_product(self, s: np.ndarray) -> np.ndarray:
         """The product (k,) over all pairs of eigenvalues of their sum over their sizes:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 COMPLEX_STEP = 1e-100  # its square vanishes beside 1, and it costs no digits
 DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences of F
+SOLVED_IN_NOISE = 30.0  # times the noise, below which a value is zero
 
 # From a point (n,) to F (m,), and to F' (m, n), dense or sparse.
 Function: TypeAlias = Callable[[np.ndarray], "Sequence[float] | np.ndarray"]
@@ -34,7 +35,9 @@ class Equations:
 
     All values and derivatives come from the tape where there is one, compiled and
     exact. Otherwise F' comes from a ``given_jacobian``, which may make it sparse, by
-    complex step or by central differences; ``derivatives`` says which.
+    complex step or by central differences; ``derivatives`` says which. Values of the
+    function may be noisy by ``noise`` (m,), a share ``noise_share`` of what they change by;
+    what is within `SOLVED_IN_NOISE` of that is zero, and differences take longer steps.
     """
 
     function: Function
@@ -43,6 +46,8 @@ class Equations:
     recording: Recording
     derivatives: str = ""
     is_sparse: bool = False
+    noise: np.ndarray | None = None
+    noise_share: float = 0.0
 
     @property
     def tape(self) -> Tape | None:
@@ -72,6 +77,7 @@ class Equations:
             given_jacobian=None if self.given_jacobian is None else jacobian,
             m=len(units.weights),
             recording=recording,
+            noise=None if self.noise is None else units.weights * self.noise,
         )
 
     def with_derivatives_at(self, probe: np.ndarray) -> Equations:
@@ -105,7 +111,7 @@ class Equations:
 
     def value(self, point: np.ndarray) -> np.ndarray:
         """What the function gives at one point (n,), as an array."""
-        return floats_of("value of the function", self.function(point))
+        return floats_of("value of the function", self.function(point.copy()))
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
@@ -114,8 +120,14 @@ class Equations:
             return self.tape.compiled.residuals(_contiguous(points))
         function = self.function  # called thousands of times a curve
         with np.errstate(all="ignore"):  # beyond the rim of where it is defined
-            values = [function(point) for point in points]
-        return np.array(values, dtype=float).reshape(len(points), self.m)
+            # a copy: it may change its argument
+            values = [function(point.copy()) for point in points]
+        exact = np.array(values, dtype=float).reshape(len(points), self.m)
+        if self.noise is None:
+            return exact
+        floor = SOLVED_IN_NOISE * self.noise
+        beyond: np.ndarray = exact - np.clip(exact, -floor, floor)
+        return beyond
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' (k, m, n) at points (k, n), dense."""
@@ -153,9 +165,10 @@ class Equations:
     def central_difference(self, point: np.ndarray) -> np.ndarray:
         """F' (m, n) at one point (n,) by central differences."""
         columns = []
+        size = max(DIFFERENCE_STEP, self.noise_share ** (1.0 / 3.0))
         for i in range(len(point)):
             step = np.zeros(len(point))
-            step[i] = DIFFERENCE_STEP * (1.0 + abs(point[i]))
+            step[i] = size * (1.0 + abs(point[i]))
             upper = self.value(point + step)
             lower = self.value(point - step)
             width = 2 * step[i]

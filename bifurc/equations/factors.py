@@ -10,13 +10,15 @@ numbers that the constants of a tape are.
 from __future__ import annotations
 
 import math
-from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from bifurc.equations.rims import NO_RIMS, Rims, at_rim, rims_of, without_root
 from bifurc.equations.tape import PARTIAL, Node, Operation, Tape, TapeWriter
 
 if TYPE_CHECKING:
@@ -30,16 +32,20 @@ MOST_TERMS = 400  # of a polynomial whose factors are looked for
 @dataclass(frozen=True)
 class Factors:
     """The factors of m equations: those of equation ``rows[i]`` include number i of the
-    equations of ``tape``, to the power ``powers[i]``; both (k,), ordered by rows."""
+    equations of ``tape``, to the power ``powers[i]``; both (k,), ordered by rows. The
+    ``rims`` are those of the equations that the factors do not have. ``are_plain``:
+    their products are the equations."""
 
     tape: Tape
     rows: tuple[int, ...]
     powers: tuple[int, ...]
+    rims: Rims
+    are_plain: bool
 
     @property
-    def are_repeated(self) -> bool:
-        """Whether any factor has a power above one."""
-        return max(self.powers) > 1
+    def are_simpler(self) -> bool:
+        """Whether any factor has a power above one, or stands without a root."""
+        return max(self.powers) > 1 or not self.are_plain
 
     def radical(self) -> Tape:
         """The m equations with every factor once."""
@@ -54,18 +60,27 @@ class Factors:
 
 
 def written_factors(tape: Tape) -> Factors:
-    """The factors of the products and powers that the equations are written as."""
+    """The factors of the products and powers that the equations are written as.
+
+    A root is zero where what it is of is zero, and so is any chain of functions that
+    have an inverse on top of it: exp(sqrt(g)) - 1 has the factor g.
+    """
     writer = TapeWriter(tape.n)
     slots = tape.write_on(writer)
+    outputs = [slots[slot] for slot in tape.outputs.tolist()]
     entries: list[tuple[int, int, int]] = []
-    for row, slot in enumerate(tape.outputs.tolist()):
-        output = slots[slot]
-        powers = _powers_of(writer, output)
-        if any(writer.node(factor).operation in _ROOTS for factor in powers):
-            powers = Counter({output: 1})  # the square of a root is smoother than it
-        for factor in sorted(powers):
-            entries.append((row, factor, powers[factor]))
-    return _factors(writer, entries)
+    roots: list[int] = []
+    are_plain = True
+    for row, output in enumerate(outputs):
+        product = _product_of(writer, output)
+        roots += product.roots
+        are_plain = are_plain and product.is_plain
+        for factor in sorted(product.powers):
+            power = max(1, math.floor(product.powers[factor]))
+            entries.append((row, factor, power))
+    factors = _factors(writer, entries)
+    rims = rims_of(writer, outputs, [slot for _, slot, _ in entries], roots)
+    return replace(factors, rims=rims, are_plain=are_plain)
 
 
 def polynomial_factors(tape: Tape, rows: Sequence[int], region: np.ndarray) -> Factors:
@@ -84,40 +99,48 @@ def polynomial_factors(tape: Tape, rows: Sequence[int], region: np.ndarray) -> F
     origins = _origins(region)
     for row, slot in enumerate(tape.outputs.tolist()):
         found = None
-        if row in rows:
+        if row in rows and written.are_plain:
             found = _polynomial_powers(writer, slots[slot], origins)
         if found is None:
-            found = {
-                of_factors[output]: power
-                for output, number, power in zip(
-                    written.tape.outputs.tolist(),
-                    written.rows,
-                    written.powers,
-                    strict=True,
-                )
-                if number == row
-            }
+            found = {}
+            for output, number, power in zip(
+                written.tape.outputs.tolist(), written.rows, written.powers, strict=True
+            ):
+                if number == row:
+                    found[of_factors[output]] = power
+            if row in rows and not written.are_plain:
+                found = _polynomial_parts(writer, found, origins)
         for factor, power in found.items():
             entries.append((row, factor, power))
-    return _factors(writer, entries)
+    factors = _factors(writer, entries)
+    return replace(factors, rims=written.rims, are_plain=written.are_plain)
 
 
 def _factors(writer: TapeWriter, entries: Sequence[tuple[int, int, int]]) -> Factors:
     """Factors on a tape, each by its equation, its slot and its power."""
     rows, slots, powers = zip(*entries, strict=True)
-    return Factors(writer.tape(slots), rows, powers)
+    return Factors(writer.tape(slots), rows, powers, NO_RIMS, True)
 
 
 # --- as written -----------------------------------------------------------------------
 
-_ROOTS = (Operation.SQRT, Operation.CBRT, Operation.POWER)
+
+class _Product(NamedTuple):
+    """The slots whose product is zero where an equation is, and the ``powers`` of each;
+    ``is_plain``: but for a number the product is the equation. What stands in the slots
+    ``roots`` must not be negative."""
+
+    powers: Mapping[int, Fraction]
+    is_plain: bool
+    roots: Sequence[int]
 
 
-def _powers_of(writer: TapeWriter, output: int) -> Counter[int]:
-    """The slots whose product is the equation in slot ``output``, but for a number, and
-    the power of each."""
-    factors: Counter[int] = Counter()
-    pending: Counter[int] = Counter({output: 1})
+def _product_of(writer: TapeWriter, output: int) -> _Product:
+    """What the equation in slot ``output`` is a product of."""
+    is_plain = True
+    roots: list[int] = []
+    factors: dict[int, Fraction] = defaultdict(Fraction)
+    pending: dict[int, Fraction] = defaultdict(Fraction, {output: Fraction(1)})
     while pending:
         slot = max(pending)  # operands stand before what is made of them
         power = pending.pop(slot)
@@ -127,9 +150,28 @@ def _powers_of(writer: TapeWriter, output: int) -> Counter[int]:
             pending[node.right] += power
         elif node.operation in (Operation.SCALE, Operation.OVER):
             pending[node.left] += power
+        elif (rim := at_rim(writer, slot)) is not None:
+            pending[rim.slot] += rim.power * power
+            is_plain = False
+        elif (squared := without_root(writer, slot)) is not None:
+            pending[squared.slot] += power
+            roots.append(squared.root)
+            is_plain = False
         else:
             factors[slot] += power
-    return factors
+    defined = _where_defined(writer, output, factors)
+    return _Product(defined, is_plain and len(defined) == len(factors), roots)
+
+
+def _where_defined(
+    writer: TapeWriter, output: int, factors: Mapping[int, Fraction]
+) -> Mapping[int, Fraction]:
+    """The factors without those that are zero only where the equation in slot
+    ``output`` is not defined, as x is in x log(x)."""
+    nodes = [writer.node(slot) for slot in writer.needed_for(output)]
+    logarithms = {node.left for node in nodes if node.operation is Operation.LOG}
+    defined = {slot: factors[slot] for slot in factors if slot not in logarithms}
+    return defined or factors
 
 
 # --- of polynomials -------------------------------------------------------------------
@@ -144,7 +186,7 @@ _OF_POLYNOMIALS = (
     Operation.OVER,
 )
 # A quotient may be zero where what it is divided by is, and a root has no derivative.
-_REFUSED = (Operation.DIVIDE, *_ROOTS)
+_REFUSED = (Operation.DIVIDE, Operation.SQRT, Operation.CBRT, Operation.POWER)
 
 
 def _origins(region: np.ndarray) -> list[float]:
@@ -186,6 +228,19 @@ def _polynomial_powers(
         for slot, shift in zip(generators, shifts, strict=True)
     ]
     return {_written(writer, factor, shifted): int(power) for factor, power in factors}
+
+
+def _polynomial_parts(
+    writer: TapeWriter, factors: Mapping[int, int], origins: Sequence[float]
+) -> dict[int, int]:
+    """The same of each of the ``factors``, by their slots, with their powers; those that
+    are no polynomials as they are."""
+    parts: dict[int, int] = defaultdict(int)
+    for slot, power in factors.items():
+        found = _polynomial_powers(writer, slot, origins) or {slot: 1}
+        for part, multiplicity in found.items():
+            parts[part] += power * multiplicity
+    return parts
 
 
 def _shift_of(generator: Node, origins: Sequence[float]) -> float:

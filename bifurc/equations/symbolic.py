@@ -10,11 +10,20 @@ import numpy as np
 import sympy
 
 from bifurc.equations.recording import Recording
-from bifurc.equations.tape import FUNCTIONS, Operation, Tape, TapeWriter, TooLong
+from bifurc.equations.tape import (
+    FUNCTIONS,
+    Operation,
+    Tape,
+    TapeWriter,
+    TooLong,
+    real_values,
+)
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
 
 if TYPE_CHECKING:
+    import mpmath
+
     from bifurc.system import PreciseResidual
 
 # of one number, by their names in sympy
@@ -60,9 +69,13 @@ class SymbolicProblem(FunctionProblem):
         return Recording(self._tape)
 
     def precise_residual(self) -> PreciseResidual:
-        """F over mpmath numbers, to whatever precision is set."""
+        """F over mpmath numbers, to whatever precision is set; it raises `ValueError`
+        where it is not real."""
         function = sympy.lambdify([self.unknowns], self.expressions, modules="mpmath")
-        residual: PreciseResidual = function
+
+        def residual(unknowns: Sequence[mpmath.mpf]) -> list[mpmath.mpf]:
+            return real_values(function(unknowns))
+
         return residual
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from bifurc import _core
 from bifurc.checks import rows_of
 from bifurc.domain import Domain
-from bifurc.equations.tape import Tape
+from bifurc.equations.tape import Tape, real_values
 from bifurc.system import (
     CurveNodes,
     March,
@@ -201,10 +201,7 @@ class ScaledTape:
         Raises `ValueError` where F is not real."""
         import mpmath  # it takes long to import
 
-        values: list[mpmath.mpf] = self.tape.over(unknowns, mpmath)
-        if any(isinstance(value, mpmath.mpc) for value in values):
-            raise ValueError("F is not real there")
-        return values
+        return real_values(self.tape.over(unknowns, mpmath))
 
     def bordered_solver(self, point: np.ndarray, tangent: np.ndarray) -> Solver | None:
         """What solves systems with F' (m, n) at a point (n,), over the magnitude, and

@@ -169,7 +169,7 @@ class Tape:
                 continue
             left, right, _ = operands[slot]
             needed.add(left)
-            if operation in _BINARY:
+            if operation in BINARY:
                 needed.add(right)
         return sorted(needed)
 
@@ -182,7 +182,7 @@ class Tape:
                 values[slot] = unknowns[left]
             elif operation is Operation.CONSTANT:
                 values[slot] = library.mpf(constant)
-            elif operation in _BINARY:
+            elif operation in BINARY:
                 second = values[right]
                 values[slot] = _binary(operation, library)(values[left], second)
             elif operation in _WITH_CONSTANT:
@@ -212,7 +212,7 @@ class Tape:
         for _, (operation, left, right, constant) in self._program:
             if operation > Operation.CONSTANT:
                 left = numbers[left]
-            right = numbers[right] if operation in _BINARY else 0
+            right = numbers[right] if operation in BINARY else 0
             nodes.append(Node(operation, left, right, constant))
         return nodes, [numbers[slot] for slot in self.outputs.tolist()]
 
@@ -245,7 +245,7 @@ class Tape:
                 slots[slot] = unknowns[left]
                 continue
             first = slots[left] if operation > Operation.CONSTANT else left
-            second = slots[right] if operation in _BINARY else right
+            second = slots[right] if operation in BINARY else right
             node = Node(operation, first, second, constant)
             slots[slot] = writer.copy(_with_one_shift(node, writer))
         return slots
@@ -267,7 +267,7 @@ def _with_one_shift(node: Node, writer: TapeWriter) -> Node:
     return Node(Operation.SHIFT, before.left, before.right, total)
 
 
-_BINARY = {
+BINARY = {
     Operation.ADD: operator.add,
     Operation.SUBTRACT: operator.sub,
     Operation.MULTIPLY: operator.mul,
@@ -282,8 +282,19 @@ _WITH_CONSTANT: Mapping[Operation, Callable[[Any, Any], Any]] = {
 }
 
 
+def real_values(values: Sequence[Any]) -> list[Any]:
+    """The values (m,) of equations over mpmath numbers, in which powers and logarithms of
+    negative numbers are complex. Raises `ValueError` where one is, or is no number."""
+    import mpmath  # it takes long to import
+
+    for value in values:
+        if isinstance(value, mpmath.mpc) or not mpmath.isfinite(value):
+            raise ValueError("F is no real number there")
+    return list(values)
+
+
 def _binary(operation: Operation, library: Any) -> Callable[[Any, Any], Any]:
-    function = _BINARY[operation]
+    function = BINARY[operation]
     return library.atan2 if function is None else function
 
 
@@ -364,7 +375,7 @@ class TapeWriter:
             if earlier not in needed or node.operation <= Operation.CONSTANT:
                 continue
             needed.add(node.left)
-            if node.operation in _BINARY:
+            if node.operation in BINARY:
                 needed.add(node.right)
         return sorted(needed)
 

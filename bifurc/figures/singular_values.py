@@ -296,6 +296,7 @@ def _draw_form_against(
             axes.plot(place, event.value, "v", color="black", markersize=4, zorder=4)
             least = min(least, event.value)
     axes.set(yscale="log", ylim=(min(least / 10, top * 10.0**-DECADES), 2 * top))
+    axes.yaxis.set_major_formatter(FuncFormatter(_power_of_ten))
     if scale.is_periodic:
         axes.set_xlim(-scale.half, scale.half)
     if scale.half == 180.0:

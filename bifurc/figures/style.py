@@ -30,6 +30,7 @@ RC: dict[Any, Any] = {
     "svg.hashsalt": "bifurc",
     "svg.fonttype": "path",
     "text.usetex": False,
+    "text.parse_math": False,  # names of the user's may hold a dollar sign
     "path.simplify": True,
     "lines.dash_capstyle": "butt",
     "lines.solid_capstyle": "butt",

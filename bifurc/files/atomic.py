@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import errno
 import os
+import shutil
 import tempfile
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 HIDDEN = ".writing-"  # how the names of the temporary folders begin
+LEFT = 86400.0  # s, after which such a folder is no longer being written
 Writer = Callable[[Path], object]
 
 
@@ -62,7 +65,14 @@ def replace_files(folder: str | os.PathLike[str], write: Writer) -> list[Path]:
 
 
 def _hidden_folder(folder: Path) -> tempfile.TemporaryDirectory[str]:
-    """A new folder on the same disk, so that its files can be renamed into place."""
+    """A new folder on the same disk, so that its files can be renamed into place; what
+    programs left there that were killed long ago goes."""
+    for other in folder.glob(f"{HIDDEN}*"):
+        try:
+            if time.time() - other.stat().st_mtime > LEFT:
+                shutil.rmtree(other)
+        except OSError:
+            continue  # it belongs to somebody else
     return tempfile.TemporaryDirectory(prefix=HIDDEN, dir=folder)
 
 

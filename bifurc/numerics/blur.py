@@ -41,7 +41,8 @@ def known_to(
 
     ``values`` (k, n) are the singular values there, where they are known. That equation
     may be small because somebody scaled it, and its rounding with it: the rounding is
-    measured. 0 where F says nothing of a direction.
+    measured. 0 where F says nothing of a direction, and where F' is not finite: at the
+    rim of where F is defined.
     """
     distances = np.zeros(len(points))
     if problem.n < 2 or not len(points):
@@ -49,7 +50,7 @@ def known_to(
     if values is None:
         values = singular_values(problem, points)
     sigma = values[:, problem.n - 2]
-    is_clear = ~may_be_scaled_down(sigma)
+    is_clear = np.isfinite(sigma) & ~may_be_scaled_down(sigma)
     if is_clear.all():
         return np.asarray(ROUNDING / sigma)
     distances[is_clear] = ROUNDING / sigma[is_clear]
@@ -65,7 +66,8 @@ def _rounding_of_weakest(problem: System, points: np.ndarray) -> np.ndarray:
     left, _, _ = factors_of(relative_jacobians(problem, points))
     weakest = left[:, :, problem.n - 2]
     parts = np.einsum("pkm,km->pk", _rounding(problem, points), weakest)
-    rounding: np.ndarray = np.abs(parts).max(axis=0)
+    # beyond the rim of where F is defined there is none to measure
+    rounding: np.ndarray = np.fmax.reduce(np.abs(parts), axis=0, initial=0.0)
     return rounding
 
 

@@ -8,10 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bifurc.limits import is_time_over
 from bifurc.numerics.bordered import Bordered, bordered_at, bordered_matrix
 from bifurc.system import (
     SphereProjection,
     System,
+    jacobian_at,
     relative_gaps,
     relative_jacobians,
     relative_residuals,
@@ -20,6 +22,7 @@ from bifurc.system import (
 ACROSS_STEPS = 30  # of one point onto a curve
 NORMAL_STEPS = 10  # of points onto a surface
 LEAST_SQUARES_STEPS = 80  # of one random start
+LEAST_WEIGHT = 1e-15  # on the length of a step, at which what it solves is regular
 SPHERE_STEPS = 25  # of one start on a small sphere
 DAMPING = 1e-14  # of normal equations, over the largest squared singular value
 # residual left by one step, as a share, above which a factorisation made elsewhere is
@@ -165,7 +168,8 @@ def project_by_least_squares(
     problem: System, starts: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Solutions (k, n) reached from every start (k, n), and the relative residual (k,)
-    left at each, infinite where F is not defined."""
+    left at each, infinite where F is not defined; where the time is over, from the first
+    of them."""
     points = np.array(starts, dtype=float)
     gaps = np.empty(len(points))
     for k, start in enumerate(points):
@@ -184,15 +188,11 @@ def _least_squares(problem: System, start: np.ndarray) -> _Iterate:
     best = _iterate(problem, start)
     damping = 1e-2  # over the residual
     for _ in range(LEAST_SQUARES_STEPS):
-        if not best.gap > 1e-15 or damping > 1e9:
+        if not best.gap > 1e-15 or damping > 1e9 or is_time_over():
             break
-        jacobian = relative_jacobians(problem, best.point[None])[0]
-        if not np.all(np.isfinite(jacobian)):
+        step = _damped_step(problem, best, damping * best.gap)
+        if step is None:
             break
-        weight = damping * best.gap
-        normal = jacobian.T @ jacobian + weight * np.eye(problem.n)
-        right = jacobian.T @ best.residual
-        step, *_ = np.linalg.lstsq(normal, right, rcond=None)
         trial = _iterate(problem, best.point - step)
         if trial.gap < best.gap:
             is_fast = trial.gap < 0.5 * best.gap
@@ -201,6 +201,29 @@ def _least_squares(problem: System, start: np.ndarray) -> _Iterate:
         else:
             damping *= 8.0
     return best
+
+
+def _damped_step(problem: System, at: _Iterate, weight: float) -> np.ndarray | None:
+    """What to subtract (n,) from a point, with a ``weight`` on its length; None where
+    F' is not finite there."""
+    jacobian = jacobian_at(problem, at.point)
+    if isinstance(jacobian, np.ndarray):
+        jacobian = jacobian / problem.magnitude
+        if not np.all(np.isfinite(jacobian)):
+            return None
+        normal = jacobian.T @ jacobian + weight * np.eye(problem.n)
+        step, *_ = np.linalg.lstsq(normal, jacobian.T @ at.residual, rcond=None)
+        return np.asarray(step)
+    from scipy.sparse import csc_array, eye_array
+    from scipy.sparse.linalg import splu
+
+    matrix = csc_array(jacobian) / problem.magnitude
+    if not np.all(np.isfinite(matrix.data)):
+        return None
+    # (J^T J + w)^-1 J^T = J^T (J J^T + w)^-1, which is as sparse as the equations
+    normal = matrix @ matrix.T + max(weight, LEAST_WEIGHT) * eye_array(matrix.shape[0])
+    sparse_step: np.ndarray = matrix.T @ splu(csc_array(normal)).solve(at.residual)
+    return sparse_step
 
 
 def project_to_sphere_by_newton(

@@ -15,19 +15,20 @@ from bifurc.checks import check_callable, check_type
 from bifurc.diagrams.events import EventRequests, events_of
 from bifurc.diagrams.make_diagram import diagram_of, parameter_index
 from bifurc.errors import ProblemError
-from bifurc.limits import Deadline, one_thread
+from bifurc.limits import Deadline, one_thread, until
 from bifurc.problem import Problem
 from bifurc.search.answer.assemble import assemble_atlas
 from bifurc.search.own_units.restated import restated
 from bifurc.search.own_units.unit_problem import UnitProblem, in_one_size, in_own_units
 from bifurc.search.search import Search
 from bifurc.seeds import Seeds
-from bifurc.settings import SearchSettings
+from bifurc.settings import LOOSEST, SearchSettings
 
 DEFAULT_SEARCH = SearchSettings()
 
 log = logging.getLogger(__name__)
 
+PIECES_IN_NOISE = 100.0  # times the noise: how well pieces of curves meet them
 LARGEST_SEED = 2**63 - 1  # what a dataset can hold
 
 
@@ -71,7 +72,10 @@ def explore(
         parameter_index(problem.domain.names, parameter)
     events_of({} if events is None else events, problem.domain.names)
     request = _Request(settings, int(seed), seeds, progress)
-    with one_thread(problem.n):
+    deadline = Deadline(settings.budget)
+    # beside a rim of where equations are defined there are values that are no numbers
+    quiet = np.errstate(all="ignore")
+    with one_thread(problem.n), until(deadline), quiet:
         atlas = _explored_in_any_units(problem, request)
         if parameter is None and not events:
             return atlas
@@ -104,10 +108,15 @@ def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
         atlas = _explored_in_units(own, request, time.perf_counter())
         whole = first + atlas.provenance.seconds
         atlas = replace(atlas, provenance=replace(atlas.provenance, seconds=whole))
-    multiplicities = [
-        form.multiplicity * own.multiplicity_along(form.branch) for form in atlas.forms
+    forms = [
+        replace(
+            form,
+            multiplicity=form.multiplicity * own.multiplicity_along(form.branch),
+            labels=own.labels_along(form.branch),
+        )
+        for form in atlas.forms
     ]
-    return restated(atlas, problem, own.own_units, multiplicities)
+    return restated(replace(atlas, forms=tuple(forms)), problem, own.own_units)
 
 
 def _explored_in_units(own: UnitProblem, request: _Request, began: float) -> Atlas:
@@ -117,8 +126,19 @@ def _explored_in_units(own: UnitProblem, request: _Request, began: float) -> Atl
     return _explored(own, request, began)
 
 
+def _in_noise(problem: Problem, request: _Request) -> _Request:
+    """The request with curves followed no closer than values of a problem are good."""
+    tolerance = min(PIECES_IN_NOISE * problem.accuracy.noise, LOOSEST)
+    tracing = request.settings.tracing
+    if tolerance <= tracing.tolerance:
+        return request
+    coarser = replace(tracing, tolerance=tolerance)
+    return request._replace(settings=replace(request.settings, tracing=coarser))
+
+
 def _explored(problem: Problem, request: _Request, began: float) -> Atlas:
     """The atlas of a problem, in the units in which it stands."""
+    request = _in_noise(problem, request)
     deadline = Deadline(request.settings.budget, began)
     search = Search(problem, *request, deadline)
     interrupted = False

@@ -56,13 +56,15 @@ def valley_points(
 
     Gauss-Newton steps of rank n - 1 run down to the valley in which the system is
     nearly solved but not along it, so that an isolated solution at its end does not
-    hide the gap.
+    hide the gap. Points of a large problem stay where they are when the time is over.
     """
     at_once = max(1, int(WORK_AT_ONCE / problem.n**3))
     lowest = []
     for begin in range(0, len(points), at_once):
         part = points[begin : begin + at_once]
         for _ in range(STEPS):
+            if problem.domain.is_large and deadline.passed:
+                break
             part = part - limited(
                 _steps_across(problem, part), LONGEST * problem.domain.scale
             )

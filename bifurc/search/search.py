@@ -16,7 +16,7 @@ from bifurc.decisions import (
     may_be_crossed,
     stops_short,
 )
-from bifurc.limits import Deadline, HeldInterrupt
+from bifurc.limits import Deadline, HeldInterrupt, until
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.answer.completeness import asks_for_more_starts
@@ -105,7 +105,7 @@ class Search:
 
     def take_steps(self) -> None:
         """Take all steps, each until it leads to nothing new."""
-        with self.run.interrupt:
+        with self.run.interrupt, until(self.run.deadline):
             for step in STEPS:
                 for starts in step(self):
                     self.tracer.branch_off(starts)

@@ -17,6 +17,7 @@ from typing import NamedTuple
 import mpmath
 import numpy as np
 
+from bifurc.errors import NOT_DEFINED
 from bifurc.singular.confirm import Differences
 from bifurc.singular.local_branches import (
     LiftedEquation,
@@ -105,7 +106,7 @@ def germ_at(problem: System, located: LocatedPoint) -> Germ | None:
         return None
     try:
         return _germ(problem, located, residual)
-    except (ZeroDivisionError, ValueError, OverflowError):
+    except NOT_DEFINED:
         return None  # the grid leaves where the function is defined
 
 

@@ -99,7 +99,7 @@ class Kind(Enum):
         Mark("^"),
         "Hopf points",
         "Hopf points",
-        ("unknowns", "frequency"),
+        ("unknowns", "frequency", "pair"),
     )
     # A function of the user's takes a value.
     EVENT = "event", "E", SQUARE, "Events", "events", ("event", "unknowns")

@@ -15,6 +15,7 @@ import numpy as np
 
 from bifurc.curves.misclosure import misclosure_at
 from bifurc.decisions import misses_by_rounding, solves_exactly
+from bifurc.errors import NOT_DEFINED
 from bifurc.singular.confirm import Differences, as_precise, gauss_newton_step
 from bifurc.singular.locate import LocatedPoint
 from bifurc.system import System
@@ -48,7 +49,7 @@ def held_to_exact_equations(
     left = misclosure_at(problem, located.u, rank)
     try:
         rounding = _coefficient_rounding(problem, located.u)
-    except (ZeroDivisionError, ValueError, OverflowError):
+    except NOT_DEFINED:
         return located  # it is at a rim of where the function is defined
     allowed = rounding + misclosure
     error = located.error / problem.domain.scale
@@ -89,7 +90,7 @@ def precisely_located(
         derivatives = Differences(residual, mpmath.mpf(10) ** -DIGITS)
         try:
             end = _iterate(derivatives, located, reach)
-        except (ZeroDivisionError, ValueError, OverflowError):
+        except NOT_DEFINED:
             return located  # it left where the function is defined
     if end is None:
         return located._replace(is_confirmed=False)

@@ -70,6 +70,7 @@ def _of_form(atlas: Atlas, form: Form) -> dict[str, Json]:
         "ends": ends,
         "sample": _values(atlas, branch(0.5 * branch.length)),
         "certificate": None if certificate is None else certificate.status.value,
+        "rims": list(form.labels.get("rims", ())),
     }
 
 

@@ -26,6 +26,7 @@ def make_summary(atlas: Atlas) -> str:
         f"{atlas.subject.get('name', 'equations')}\n{verdict_of(atlas)}",
         _equations(atlas),
         _forms(atlas),
+        _rims(atlas),
         _surfaces(atlas),
         _points(atlas),
         *_along_parameter(atlas),
@@ -70,6 +71,14 @@ def _forms(atlas: Atlas) -> str:
         heads.insert(3, "winding")
     rows = [_form_row(form, is_periodic) for form in atlas.forms]
     return section("Forms", heads, rows, SHOWN)
+
+
+def _rims(atlas: Atlas) -> str:
+    """The forms along which the equations are defined on one side only."""
+    rows = [
+        (form.name, rim) for form in atlas.forms for rim in form.labels.get("rims", ())
+    ]
+    return section("Forms on a rim", ("form", "where"), rows, SHOWN)
 
 
 def _end(branch: Branch) -> str:
@@ -140,6 +149,7 @@ def _diagram_points(atlas: Atlas, diagram: Diagram, kind: Kind) -> str:
             "event": [point.label],
             "unknowns": _numbers(point.u),
             "frequency": [f"{point.value:.10g}"],
+            "pair": [point.label],
             "error": [f"{point.error:.0e}"],
         }
         own = chain.from_iterable(cells[column] for column in kind.columns)

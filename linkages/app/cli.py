@@ -35,11 +35,14 @@ COMMANDS = (
 )
 
 
+LONGEST = 300  # characters of an error
+
+
 class Failure(click.ClickException):
     """The end of a command: one line on standard error, and an exit code."""
 
     def __init__(self, message: str, code: ExitCode):
-        super().__init__(" ".join(message.splitlines()))
+        super().__init__(in_one_line(message))
         self.code = code
 
     @property
@@ -98,6 +101,18 @@ class Commands(click.Group):
         nearest = difflib.get_close_matches(name, names, n=1)
         hint = f"the nearest is {nearest[0]}" if nearest else "see bifurc --help"
         return f"there is no command {name!r}; {hint}"
+
+
+def in_one_line(message: str) -> str:
+    """A message in one line of `LONGEST` characters at most, what cannot be printed by
+    its number; of a long one the middle is left out, as the beginning says where
+    something is wrong and the end what."""
+    words = " ".join(message.splitlines())
+    shown = "".join(one if one.isprintable() else ascii(one)[1:-1] for one in words)
+    if len(shown) <= LONGEST:
+        return shown
+    half = LONGEST // 2 - 3
+    return f"{shown[:half]} ... {shown[-half:]}"
 
 
 def _failure_of(error: BifurcError | click.UsageError | OSError) -> Failure:

@@ -38,6 +38,9 @@ SAMPLE = [
     ("double Viviani curve", "mixed equations"),
     ("a plane on a torus", "turned 2"),
     ("double curves on a torus", "first equation 1e-06"),
+    ("rim and two rays outside it", "unknowns 1e-06"),
+    ("rim of a power and a line that ends on it", "last unknown 10"),
+    ("rim of an inverse cosine", "shifted"),
 ]
 
 

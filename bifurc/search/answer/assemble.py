@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import compress
 
 import numpy as np
 
@@ -27,6 +28,7 @@ from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.answer.completeness import judge_completeness
 from bifurc.search.answer.doubts import (
+    are_on_rim,
     doubts_of,
     doubts_of_findings,
     doubts_of_near_misses,
@@ -75,7 +77,9 @@ def assemble_atlas(
     ]
     met = meeting_points(problem, located, branches, surfaces, periods)
     points = tuple(_with_misclosure(point, traced) for point in met)
-    places = [assembly.place for assembly in findings.rigid.values()]
+    assemblies = list(findings.rigid.values())
+    is_inner = ~are_on_rim(problem, assemblies)
+    places = [assembly.place for assembly in compress(assemblies, is_inner)]
     rigid = wrap(np.array(places).reshape(-1, problem.n), periods)
     is_mobile = bool(traced or surfaces)
     forms = _forms(problem, traced, points)

@@ -111,10 +111,19 @@ class SearchDoubt(DoubtKind):
     UNDECIDED = "{subject} is undecided: {reason}"
     NOT_WHOLE = "{subject} ({point_kind}) is not whole: {reason}"
     UNCONFIRMED = "{subject} is seen in doubles, and more digits do not show it"
+    # --- of the values of a function
+    NOISE = (
+        "the values of the function are noisy to {amount:.1e} of their typical change: it is "
+        "solved to within that, and what is smaller is not told from it"
+    )
     # --- of isolated solutions
     HIDDEN_ASSEMBLIES = (
         "rounding does not tell how many isolated solutions lie together, up to "
         "{amount:.1e} of the scale apart, at {count} of the places listed"
+    )
+    ON_RIM = (
+        "starts end at {count:place} on the rim of where the equations are defined, and F' "
+        "is not finite there: these may be isolated solutions, or lie on curves"
     )
     SHORT_STOPS = (
         "starts end where the equations are solved to {amount:.1e}, about nothing that is "

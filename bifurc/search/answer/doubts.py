@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
@@ -34,11 +34,12 @@ from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.search.answer.completeness import SearchDoubt
 from bifurc.search.findings import Findings
-from bifurc.search.records import TracedBranch
+from bifurc.search.records import RigidAssembly, TracedBranch
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.system import relative_gaps
 
+RIM = 1e-4  # scales from a rim at which starts end where F vanishes slowly towards it
 MOST_SAMPLES = 200  # of a surface at which it is seen what it misses
 
 
@@ -110,6 +111,8 @@ def doubts_of_findings(
 ) -> Iterator[Doubt]:
     """What is open about the ``findings`` of a search besides forms, surfaces and the
     singular ``points`` listed."""
+    if problem.accuracy.noise:
+        yield SearchDoubt.NOISE.doubt(amount=problem.accuracy.noise)
     others = _others(problem, findings, points)
     if others:
         yield SearchDoubt.HIDDEN_POINTS.doubt(count=others)
@@ -130,11 +133,22 @@ def doubts_of_findings(
     if len(hidden):
         reach = hidden.max() / problem.domain.scale
         yield SearchDoubt.HIDDEN_ASSEMBLIES.doubt(amount=reach, count=len(hidden))
+    on_rim = int(np.count_nonzero(are_on_rim(problem, findings.rigid.values())))
+    if on_rim:
+        yield SearchDoubt.ON_RIM.doubt(count=on_rim)
     off_charts = findings.components.off_charts
     if off_charts:
         yield SearchDoubt.UNCHARTED.doubt(starts=off_charts)
     if findings.gaps_of_stops:
         yield SearchDoubt.SHORT_STOPS.doubt(amount=min(findings.gaps_of_stops))
+
+
+def are_on_rim(problem: Problem, assemblies: Collection[RigidAssembly]) -> np.ndarray:
+    """Which of the assemblies (k,) lie on a rim of where the equations are defined: F'
+    is not finite beside them, and does not tell whether they are isolated."""
+    reach = RIM * problem.domain.scale
+    rough = [not _is_smooth_within(problem, one.place, reach) for one in assemblies]
+    return np.array(rough, dtype=bool)
 
 
 def _others(

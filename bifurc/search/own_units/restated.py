@@ -7,7 +7,6 @@ again, short enough for the new arclength.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -38,11 +37,8 @@ POWERS = np.array(
 )
 
 
-def restated(
-    atlas: Atlas, problem: Problem, units: Units, multiplicities: Sequence[int]
-) -> Atlas:
-    """An atlas in ``units`` as one of the ``problem``, which is the user's, with the
-    forms of these ``multiplicities``."""
+def restated(atlas: Atlas, problem: Problem, units: Units) -> Atlas:
+    """An atlas in ``units`` as one of the ``problem``, which is the user's."""
     unknowns = Unknowns(
         names=problem.domain.names,
         units=problem.domain.units,
@@ -54,12 +50,7 @@ def restated(
         index=lambda index: index,
         size=float(units.sizes.max()),
     )
-    own = atlas_in(atlas, unknowns)
-    forms = [
-        replace(form, multiplicity=multiplicity)
-        for form, multiplicity in zip(own.forms, multiplicities, strict=True)
-    ]
-    return replace(own, forms=tuple(forms))
+    return atlas_in(atlas, unknowns)
 
 
 def _restated_bases(bases: np.ndarray, units: Units) -> np.ndarray:

@@ -29,6 +29,7 @@ from bifurc.decisions import (
 from bifurc.domain import Domain
 from bifurc.equations.differentiation import with_gradients
 from bifurc.equations.factors import Factors, polynomial_factors, written_factors
+from bifurc.equations.rims import NO_RIMS, Rims
 from bifurc.equations.system import LARGEST_DENSE
 from bifurc.equations.tape import Tape
 from bifurc.function_problem import (
@@ -50,6 +51,7 @@ from bifurc.units import Units
 if TYPE_CHECKING:
     import mpmath
 
+    from bifurc.atlas import JsonObject
     from bifurc.branch import Branch
 
 STARTS, STARTS_OF_CALLABLE = 100, 24  # from which it is seen where solutions are
@@ -143,7 +145,39 @@ class UnitProblem(EquationProblem):
             bounds=bounds,
             scale=scale,
             reach=max(1.0, widest / 4.0 / scale),
+            rim=self._beyond_rims if self._rims else None,
         )
+
+    @property
+    def _rims(self) -> Rims:
+        """The rims of the user's equations that the simplified ones do not have."""
+        return NO_RIMS if self.simplified is None else self.simplified.factors.rims
+
+    def _depths(self, points: np.ndarray) -> np.ndarray:
+        """How far inside every rim (k, r) points (k, n) are."""
+        return self._rims.depths(self.own_units.outwards(points), self.own_units.sizes)
+
+    def _beyond_rims(self, points: np.ndarray) -> np.ndarray:
+        """How far beyond a rim (k,) points (k, n) are; some are not defined beyond
+        others."""
+        beyond: np.ndarray = -np.fmin.reduce(self._depths(points), axis=1)
+        return np.where(np.isnan(beyond), -np.inf, beyond)
+
+    def labels_along(self, branch: Branch) -> JsonObject:
+        """What is to be said of a ``branch`` in these units besides: the rims on which
+        it lies."""
+        if not self._rims:
+            return {}
+        depths = np.abs(self._depths(branch(branch.length * PLACES)))
+        distances = np.median(depths, axis=0).tolist()
+        texts = self._rims.texts(self.domain.names)
+        scale = self.domain.scale
+        on = [
+            text
+            for distance, text in zip(distances, texts, strict=True)
+            if is_factor_of_form(distance, scale)
+        ]
+        return {"rims": on} if on else {}
 
     def _own_accuracy(self) -> Accuracy:
         """What is known of the accuracy of these equations, from that of the problem."""
@@ -453,13 +487,17 @@ def _widened(own: UnitProblem, region: np.ndarray, is_point: np.ndarray) -> np.n
 
 
 def _with_written_factors(problem: FunctionProblem) -> Simplified | None:
-    """The equations with every factor once; None where they are written so, and where
-    they are not recorded."""
+    """The equations with every factor once, and without roots that are zero; None where
+    they are written so, and where they are not recorded."""
     tape = problem.recording.tape
     if tape is None or problem.n < 2:
         return None
     factors = written_factors(tape)
-    return Simplified(factors.radical(), factors) if factors.are_repeated else None
+    if not factors.are_plain:
+        # what a root leaves may be a square, along which starts seem to shrink to a point
+        rows = sorted(set(factors.rows))
+        factors = polynomial_factors(tape, rows, _first_region(problem))
+    return Simplified(factors.radical(), factors) if factors.are_simpler else None
 
 
 def _deflated(own: UnitProblem) -> UnitProblem:
@@ -477,7 +515,7 @@ def _deflated(own: UnitProblem) -> UnitProblem:
     if not len(rows):
         return own
     factors = polynomial_factors(tape, rows.tolist(), region)
-    if factors.are_repeated:
+    if factors.are_simpler:
         simplified = Simplified(factors.radical(), factors)
         own = _problem_on(own.problem, region, simplified)
         flatness = _flatness(own)

@@ -102,16 +102,42 @@ def test_the_brusselator_loses_stability_where_b_is_1_plus_a_squared() -> None:
     assert sorted(one.unstable for one in diagram.stretches) == [0, 2]
 
 
-def test_two_pairs_that_cross_at_once_are_one_point() -> None:
+@pytest.mark.parametrize("frequency", [1.0, 1.001, 2.0])
+@pytest.mark.parametrize("rate", [1.0, -1.0, -3.0])
+@pytest.mark.parametrize("center", [0.0, 0.3])
+def test_every_pair_that_crosses_at_one_place_is_a_point(
+    frequency, rate, center
+) -> None:
     def two_oscillators(u):
         x, y, z, w, p = u
-        return [p * x - y, x + p * y, p * z - 2 * w, 2 * z + p * w]
+        first, second = p - center, rate * (p - center)
+        return [
+            first * x - y,
+            x + first * y,
+            second * z - frequency * w,
+            frequency * z + second * w,
+        ]
 
     problem = bifurc.FunctionProblem(two_oscillators, [(-1, 1)] * 4 + [(-1.1, 1)])
     diagram = bifurc.explore(problem, parameter="u5").diagram
-    (hopf,) = diagram.hopf_points
-    assert abs(hopf.u[4]) < 1e-14
-    assert sorted(one.unstable for one in diagram.stretches) == [0, 4]
+    assert [point.u[4] for point in diagram.hopf_points] == pytest.approx([center] * 2)
+    frequencies = sorted(point.value for point in diagram.hopf_points)
+    assert frequencies == pytest.approx([1.0, frequency])
+    changes = {point.label for point in diagram.hopf_points}
+    assert len(changes) == (1 if rate > 0 else 2)
+    unstable = sorted({one.unstable for one in diagram.stretches})
+    assert unstable == ([0, 4] if rate > 0 else [2])
+    assert any("two pairs cross at one place" in one for one in diagram.remarks)
+
+
+def test_pairs_that_touch_the_axis_or_pass_beside_it_are_no_points() -> None:
+    def two_oscillators(u):
+        x, y, z, w, p = u
+        near, far = p**2 + 1e-3, -(p**2) - 1e-3
+        return [near * x - y, x + near * y, far * z - w, z + far * w]
+
+    problem = bifurc.FunctionProblem(two_oscillators, [(-1, 1)] * 4 + [(-1.1, 1)])
+    assert not bifurc.explore(problem, parameter="u5").diagram.hopf_points
 
 
 def test_a_center_is_neutral() -> None:

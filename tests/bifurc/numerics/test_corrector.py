@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bifurc.function_problem import FunctionProblem
+from bifurc.limits import Deadline, until
 from bifurc.numerics.corrector import (
     correct_across,
     correct_normal,
@@ -11,6 +12,7 @@ from bifurc.numerics.corrector import (
     project_by_least_squares,
     project_to_sphere_by_newton,
 )
+from bifurc.system import jacobian_at
 
 BOX = [(-2.0, 2.0)] * 3
 
@@ -161,3 +163,25 @@ def test_points_onto_a_surface_settle_each_for_itself():
     for start, plane, point in zip(starts[:3], planes, points, strict=False):
         alone, _ = correct_normal(problem, start[None], plane[None])
         assert alone[0] == pytest.approx(point, abs=1e-15)
+
+
+def test_no_step_is_taken_once_the_time_is_over():
+    problem = FunctionProblem(lambda u: [u[0] ** 2 + u[1] ** 2 - 1], [(-2, 2)] * 2)
+    starts = np.array([[1.5, 0.7], [0.3, 0.1]])
+    with until(Deadline(0.0)):
+        points, gaps = project_by_least_squares(problem, starts)
+    assert np.array_equal(points, starts) and np.all(gaps > 1e-3)
+
+
+def test_sparse_equations_are_solved_as_dense_ones_are():
+    n = 120
+
+    def function(u):
+        return 0.3 * u[:-1] ** 2 + u[1:] - 0.2
+
+    problem = FunctionProblem(function, [(-3, 3)] * n)
+    start = np.random.default_rng(0).uniform(-1, 1, (1, n))
+    points, gaps = project_by_least_squares(problem, start)
+    assert not isinstance(jacobian_at(problem, start[0]), np.ndarray)
+    assert gaps[0] < 1e-14
+    assert np.abs(problem.residuals(points)).max() < 1e-13
