@@ -563,14 +563,15 @@ def _flatness(own: UnitProblem) -> np.ndarray:
 
 def _has_curves(own: UnitProblem) -> bool:
     """Whether the solutions that random starts reach lie on curves of full rank, as a
-    rule."""
+    rule; where there are fewer equations, on components of their full rank."""
     seeds = random_seeds(own, np.random.default_rng(1), STARTS, own.region)
     if len(seeds.points) < FEWEST:
         return False
     matrices = own.jacobians(seeds.points) / own.magnitude
     values = values_of(matrices)
-    regular = np.median(values[:, own.n - 2])
-    left = np.median(values[:, own.n - 1]) if values.shape[1] >= own.n else 0.0
+    rank = min(values.shape[1], own.n - 1)
+    regular = np.median(values[:, rank - 1])
+    left = np.median(values[:, rank]) if values.shape[1] > rank else 0.0
     return bool(regular > OF_CURVES and left < OF_CURVES * regular)
 
 

@@ -456,3 +456,22 @@ def test_flat_places_that_are_not_settled_are_in_doubt() -> None:
     atlas = bifurc.explore(problem, settings=settings)
     assert not atlas.forms and not atlas.points
     assert "about nothing that is listed" in atlas.completeness.statement
+
+
+@pytest.mark.parametrize("room", [33.0, 1e2, 1e4])
+def test_a_surface_far_smaller_than_its_bounds_is_counted_in_its_own_units(
+    room,
+) -> None:
+    def sphere(u):
+        return [u[0] ** 2 + u[1] ** 2 + u[2] ** 2 - 1.0]
+
+    own = in_own_units(bifurc.FunctionProblem(sphere, [(-room, room)] * 3))
+    assert own is not None
+    assert np.abs(own.own_units.outwards(own.region.T)).max() < 4.0
+
+
+def test_two_planes_next_to_each_other_are_counted_in_units_of_their_distance() -> None:
+    planes = bifurc.FunctionProblem(lambda u: [u[2] * (u[2] - 0.01)], [(-2, 2)] * 3)
+    own = in_own_units(planes)
+    assert own is not None
+    assert own.own_units.sizes[2] < 0.01 < own.own_units.sizes[0]
