@@ -11,6 +11,7 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.decisions import is_start_solved
+from bifurc.equations.system import ScaledTape
 from bifurc.limits import Deadline
 from bifurc.problem import Problem
 from bifurc.seeding import random_seeds, start_region
@@ -120,7 +121,9 @@ def _from_beyond_limits(
     missed = drawn.missed[is_start_solved(drawn.gaps)]
     is_beyond = ~problem.domain.are_inside(solutions)
     beyond = np.concatenate([solutions[is_beyond], missed])[:MOST_BEYOND]
-    return brought_within_limits(problem, problem.compiled.project, beyond, rng)
+    tape = problem.compiled
+    assert isinstance(tape, ScaledTape)  # that of a loop holds no unknowns
+    return brought_within_limits(problem, tape.project, beyond, rng)
 
 
 def _drawn(
