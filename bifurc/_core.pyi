@@ -46,7 +46,7 @@ class Brackets:
     def roots(self) -> np.ndarray: ...
 
 class Chebyshev:
-    """What Chebyshev nodes determine: `bifurc.numerics.chebyshev`."""
+    """What Chebyshev nodes determine: `bifurc.curves.kantorovich`."""
 
     def __init__(
         self,

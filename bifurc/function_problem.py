@@ -20,7 +20,7 @@ from bifurc.decisions import (
     is_whole_circle,
 )
 from bifurc.domain import Domain
-from bifurc.equations.evaluation import Equations
+from bifurc.equations.evaluation import Equations, noise_of
 from bifurc.equations.recording import Recording, record
 from bifurc.equations.system import CompiledSystem, ScaledTape
 from bifurc.errors import ProblemError
@@ -31,7 +31,6 @@ from bifurc.numerics.corrector import (
     project_by_least_squares,
     project_to_sphere_by_newton,
 )
-from bifurc.numerics.noise import noise_of
 from bifurc.problem import Problem
 from bifurc.seeding import random_seeds
 from bifurc.seeds import Seeds

@@ -21,7 +21,7 @@ from bifurc.isometry import Isometry, recount_atlas
 from bifurc.numerics.blur import change_by_rounding
 from bifurc.problem import Problem
 from bifurc.torus import wrap
-from linkages.closure.closure import Closure
+from linkages.closure.system import ClosureSystem
 from linkages.decisions import keeps_angle
 from linkages.entry import Linkage
 from linkages.forms import name_forms
@@ -33,7 +33,7 @@ SAMPLES = 400  # of a form, to name it and to see what stands still
 def name_atlas(atlas: Atlas, linkage: Linkage) -> Atlas:
     """The atlas of a linkage with the names of its forms, their labels, and the loop as
     its subject."""
-    problem = Closure(linkage.loop)
+    problem = ClosureSystem(linkage.loop)
     branches = [form.branch for form in atlas.forms]
     samples = [branch.sample(SAMPLES) for branch in branches]
     changes = [change_by_rounding(problem, branch) for branch in branches]
@@ -46,7 +46,9 @@ def name_atlas(atlas: Atlas, linkage: Linkage) -> Atlas:
     return replace(named, subject=subject_of(linkage.loop))
 
 
-def label_atlas(atlas: Atlas, problem: Closure, subject: Mapping[str, Any]) -> Atlas:
+def label_atlas(
+    atlas: Atlas, problem: ClosureSystem, subject: Mapping[str, Any]
+) -> Atlas:
     """The atlas of a mechanism with labels on its forms, and what is its ``subject``."""
     from linkages.turns.translates import with_translates
 

@@ -1,4 +1,4 @@
-// Interpolants at Chebyshev nodes and bounds on them: `bifurc.numerics.chebyshev` says why these hold.
+// Interpolants at Chebyshev nodes and bounds on them: `bifurc.curves.kantorovich` says why these hold.
 #pragma once
 
 #include <algorithm>

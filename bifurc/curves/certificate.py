@@ -39,9 +39,8 @@ from typing import TypedDict
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.curves.kantorovich import Joints, check_arcs
+from bifurc.curves.kantorovich import NODE_COUNT, Joints, check_arcs
 from bifurc.curves.monitor import Profile
-from bifurc.numerics.chebyshev import NODE_COUNT
 from bifurc.system import System
 
 # distance, in scales, at which an arc is handed over to a located singular point

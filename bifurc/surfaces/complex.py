@@ -1,4 +1,6 @@
-"""The polygons of overlapping charts put together to one closed complex."""
+"""Convex polygons about the origins of the tangent planes of charts, each of whose edges
+knows what made it, and those of overlapping charts put together to one closed
+complex."""
 
 from __future__ import annotations
 
@@ -7,10 +9,68 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc import torus
+from bifurc.numerics.binary_forms import unit_vectors
 from bifurc.numerics.corrector import correct_normal
 from bifurc.problem import Problem
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
-from bifurc.surfaces.polygon import Polygon
+
+OUTLINE = -1  # label of an edge that nothing has cut yet
+
+
+class Polygon(NamedTuple):
+    """Vertices (v, 2), counterclockwise, and the labels (v,) of the edges: edge i runs
+    from vertex i to the next one."""
+
+    vertices: np.ndarray
+    labels: np.ndarray
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing is left of it."""
+        return len(self.vertices) == 0
+
+    def clip(self, normal: np.ndarray, offset: float, label: int) -> Polygon:
+        """The part where ``normal . y <= offset``; the edge along the cut gets
+        ``label``.
+
+        The same polygon where the line misses it, an empty one where nothing is left.
+        """
+        if self.is_empty:
+            return self
+        height: list[float] = (self.vertices @ normal - offset).tolist()
+        if max(height) <= 0.0:
+            return self
+        if min(height) > 0.0:
+            return Polygon(self.vertices[:0], self.labels[:0])
+        count = len(height)
+        next_height = height[1:] + height[:1]
+        edges = range(count)
+        leaves = next(i for i in edges if height[i] <= 0.0 < next_height[i])
+        enters = next(i for i in edges if next_height[i] <= 0.0 < height[i])
+        count_inside = (leaves - enters) % count
+        inside = [(enters + 1 + i) % count for i in range(count_inside)]
+        begin = self._crossing(leaves, height[leaves], next_height[leaves])
+        end = self._crossing(enters, height[enters], next_height[enters])
+        new_labels = [label, self.labels[enters]]
+        return Polygon(
+            np.concatenate([self.vertices[inside], [begin, end]]),
+            np.concatenate([self.labels[inside], new_labels]),
+        )
+
+    def _crossing(self, edge: int, begin: float, end: float) -> np.ndarray:
+        """The point (2,) of an edge on the line, from the heights of its two ends."""
+        first = self.vertices[edge]
+        last = self.vertices[(edge + 1) % len(self.vertices)]
+        point: np.ndarray = first + begin / (begin - end) * (last - first)
+        return point
+
+
+def octagon(radius: float) -> Polygon:
+    """The octagon around the circle of ``radius``."""
+    angles = np.pi / 4 * (np.arange(8) + 0.5)
+    size = radius / np.cos(np.pi / 8)
+    return Polygon(size * unit_vectors(angles), np.full(8, OUTLINE))
+
 
 # Corners of neighbouring polygons closer than this, over their charts' radius, are one
 # vertex.

@@ -32,9 +32,8 @@ from bifurc.numerics.null_spaces import (
 )
 from bifurc.problem import Problem
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
-from bifurc.surfaces.complex import FlatCharts, assemble_charts
+from bifurc.surfaces.complex import FlatCharts, Polygon, assemble_charts, octagon
 from bifurc.surfaces.crossing_sheets import has_uncovered_crossing
-from bifurc.surfaces.polygon import Polygon, octagon
 
 # Largest height of the surface above a chart's disk, over its radius.
 BEND = 0.12

@@ -2,72 +2,28 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from linkages.closure.loop_parts import parts_of_loop
-from linkages.closure.parts import ClosureOfParts, ClosureParts
+from bifurc.limits import Deadline
+from bifurc.seeds import Seeds
+from linkages.closure.system import ClosureSystem
 from linkages.loop import Loop
-
-if TYPE_CHECKING:
-    # they import networkx, which a loop does not need
-    from linkages.closure.errors import JointErrors
-    from linkages.mechanisms.mechanism import Mechanism
-    from linkages.structure.structure import Structure
-    from linkages.turns.turn_lattice import TurnLattice
+from linkages.slices.completeness import sliced_seeds
 
 
-class Closure(ClosureOfParts):
-    """The closure equations of a ``subject``: of a loop in its joint angles, of a
-    mechanism in the variables of its joints.
+class Closure(ClosureSystem):
+    """The closure equations of a subject, and where a search of them begins: a loop at
+    complete slices of its joints, a mechanism where the first source begins that applies
+    to it."""
 
-    Angles are in radians, lengths in characteristic lengths. All derivatives are exact.
-    A mechanism with ``errors`` is that as it is made, in the same unknowns, and need not
-    close anywhere; ``structure`` is that of the mechanism, where it is there already.
-    """
+    def seeds(
+        self, rng: np.random.Generator, count: int, deadline: Deadline | None = None
+    ) -> Seeds:
+        """Closed configurations to start from, ``count`` random starts among what they
+        come of, and what judges the branches that are traced from them."""
+        if isinstance(self.subject, Loop):
+            return sliced_seeds(self.subject, self, rng, count, deadline)
+        # it imports networkx, which a loop does not need
+        from linkages.closure.mechanism_seeds import mechanism_seeds
 
-    def __init__(
-        self,
-        subject: Loop | Mechanism,
-        errors: JointErrors | None = None,
-        structure: Structure | None = None,
-    ):
-        super().__init__(_parts_of(subject, errors, structure))
-        self.subject = subject
-
-    @property
-    def structure(self) -> Structure:
-        """What is unknown in a mechanism, and which chains have to close; a loop has
-        none."""
-        assert self.parts.structure is not None
-        return self.parts.structure
-
-    @property
-    def reference(self) -> np.ndarray:
-        """The reference configuration (n,) of a mechanism: all variables 0. Where joints
-        are locked elsewhere it need not be closed."""
-        return self.structure.reference
-
-    @cached_property
-    def lattice(self) -> TurnLattice:
-        """The whole turns after which every closed configuration of a mechanism is closed
-        again."""
-        from linkages.turns.turn_lattice import turn_lattice
-
-        return turn_lattice(self.structure)
-
-
-def _parts_of(
-    subject: Loop | Mechanism,
-    errors: JointErrors | None,
-    structure: Structure | None,
-) -> ClosureParts:
-    """What the closure of a ``subject`` is made of."""
-    if isinstance(subject, Loop):
-        return parts_of_loop(subject)
-    from linkages.closure.mechanism_parts import parts_of_structure
-    from linkages.structure.structure import Structure
-
-    return parts_of_structure(structure or Structure(subject), errors)
+        return mechanism_seeds(self, rng, count, deadline)

@@ -25,8 +25,8 @@ from bifurc.problem import Problem
 from bifurc.seeds import Audit
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
-from linkages.closure.loop_parts import parts_of_loop
-from linkages.closure.parts import ClosureOfParts
+from linkages.closure.system import ClosureSystem
+from linkages.slices.completeness import sliced_seeds
 from linkages.slices.elimination import LONGEST
 from linkages.statements import LinkageClaim, estimated
 from linkages.structure.single_loop import SingleLoop, as_single_loop
@@ -130,8 +130,9 @@ class CutMotions:
             prove=seconds > 0.0,
             near_motions=False,
         )
-        problem = ClosureOfParts(parts_of_loop(self.single.loop))
-        seeds = problem.seeds(np.random.default_rng(self.seed), self.count)
+        loop, rng = self.single.loop, np.random.default_rng(self.seed)
+        problem = ClosureSystem(loop)
+        seeds = sliced_seeds(loop, problem, rng, self.count)
         judge = seeds.audit
         audits: list[Audit] = []
 

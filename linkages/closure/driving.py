@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from bifurc.decisions import is_start_solved
-from linkages.closure.closure import Closure
+from linkages.closure.system import ClosureSystem
 from linkages.decisions import is_dependent_constraint, is_stopped
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.values import GeometryError, quoted
@@ -23,7 +23,7 @@ def joints_to_hold(mechanism: Mechanism, driver: str) -> dict[str, float]:
     next to the reference configuration where that is singular. Raises `GeometryError` for a driver that is no
     free variable or stands still.
     """
-    problem = Closure(mechanism)
+    problem = ClosureSystem(mechanism)
     unknowns = problem.structure.unknowns
     labels = [unknown.label for unknown in unknowns if unknown.variable >= 0]
     free = problem.structure.column_of
@@ -57,7 +57,7 @@ def joints_to_hold(mechanism: Mechanism, driver: str) -> dict[str, float]:
     return held
 
 
-def _motions_near(problem: Closure, point: np.ndarray) -> np.ndarray:
+def _motions_near(problem: ClosureSystem, point: np.ndarray) -> np.ndarray:
     """An orthonormal basis (n, k) of the motions at a regular configuration: ``point``
     (n,) where it is one, else a configuration next to it.
 
@@ -73,7 +73,7 @@ def _motions_near(problem: Closure, point: np.ndarray) -> np.ndarray:
     return motions
 
 
-def _next_to(problem: Closure, point: np.ndarray) -> np.ndarray:
+def _next_to(problem: ClosureSystem, point: np.ndarray) -> np.ndarray:
     """Closed configurations (k, n) next to a point (n,)."""
     rng = np.random.default_rng(0)
     starts = point + NEARBY * rng.normal(size=(STARTS, problem.n))
@@ -87,7 +87,7 @@ def _next_to(problem: Closure, point: np.ndarray) -> np.ndarray:
 def _moves(mechanism: Mechanism, held: dict[str, float], driver: str) -> bool:
     """Whether a driver leaves the reference configuration with these variables held: at
     a singular one a joint may be held where it stops the others."""
-    problem = Closure(mechanism.with_locks(held))
+    problem = ClosureSystem(mechanism.with_locks(held))
     column = [unknown.label for unknown in problem.structure.unknowns].index(driver)
     points, _ = problem.project(problem.reference[None])
     ends = _next_to(problem, points[0])

@@ -9,14 +9,22 @@ displacements at both ends of every joint.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain
+from functools import partial
+from itertools import chain, pairwise
 
 import numpy as np
 
+from bifurc.domain import Domain
 from bifurc.equations.recorded import RecordedNumber, Recorder
+from bifurc.equations.system import ScaledTape
 from bifurc.equations.tape import Tape
+from bifurc.function_problem import EXACT_HESSIAN
+from bifurc.problem import Problem
+from bifurc.system import Accuracy, Curvature
+from linkages.closure.curvature import CurvatureBounds
 from linkages.closure.errors import JointErrors, no_errors
 from linkages.closure.motors import (
     IDENTITY,
@@ -28,11 +36,17 @@ from linkages.closure.motors import (
     slide,
     turn,
 )
+from linkages.closure.parts import NEARLY_CLOSED, ClosureParts
 from linkages.decisions import is_rounding_of_zero
 from linkages.mechanisms.joint import Motion
 from linkages.structure.cycles import Step
 from linkages.structure.placement import Placement
 from linkages.structure.structure import Closure, ClosureKind, Share, Structure
+
+# unknowns up to which compiled methods with dense matrices take no longer than those in
+# Python: for sections with spheres, and for curves of equations that are not sparse
+LARGEST_COMPILED = 250
+STRIDE_OF = 12  # joints, the most of a loop: up to there a stride is the scale
 
 
 @dataclass(frozen=True)
@@ -41,6 +55,57 @@ class Equations:
 
     tape: Tape
     counts: tuple[int, ...]
+
+
+def parts_of_structure(
+    structure: Structure, errors: JointErrors | None = None
+) -> ClosureParts:
+    """The closure equations of the mechanism of a ``structure`` in the variables of its
+    joints, with ``errors`` as it is made.
+
+    Angles are in radians, slides in characteristic lengths. All derivatives are exact.
+    """
+    unknowns = structure.unknowns
+    # in a step of the same angles more joints make it longer, by the root of their number
+    stride = math.sqrt(max(1.0, len(unknowns) / STRIDE_OF))
+    domain = Domain(
+        names=tuple(unknown.label for unknown in unknowns),
+        units=tuple(unknown.unit for unknown in unknowns),
+        periods=np.array([unknown.period for unknown in unknowns]),
+        bounds=np.array([[one.low, one.high] for one in unknowns]),
+        stride=stride,
+    )
+    equations = write_equations(structure, errors)
+    tape = equations.tape
+    accuracy = Accuracy(
+        derivatives="recorded",
+        equations=f"recorded ({tape.size} operations)",
+        data_rounding=structure.mechanism.coordinate_rounding / structure.unit,
+        hessian_error=EXACT_HESSIAN,
+    )
+    compiled = ScaledTape(
+        tape,
+        Problem.magnitude,
+        domain,
+        largest_dense=LARGEST_COMPILED,
+        largest_sparse=math.inf,
+        is_bordered=True,
+    )
+    ends = np.cumsum([0, *equations.counts]).tolist()
+    return ClosureParts(
+        domain=domain,
+        accuracy=accuracy,
+        compiled=compiled,
+        bounds=partial(bounds_of_structure, structure),
+        structure=structure,
+        rows=tuple(slice(first, last) for first, last in pairwise(ends)),
+    )
+
+
+def bounds_of_structure(structure: Structure) -> Curvature:
+    """Bounds on F'' from the geometry."""
+    bounds = CurvatureBounds(structure, NEARLY_CLOSED)
+    return Curvature(bounds.near_solutions, bounds.at_complex_points, NEARLY_CLOSED)
 
 
 def write_equations(

@@ -1,22 +1,16 @@
-"""The parts of the closure of a loop: the screws of its joints in compiled code, bounds
-from the lengths of its links, complete slices."""
+"""The parts of the closure of a loop: the screws of its joints in compiled code, and
+bounds from the lengths of its links."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property, partial
 
 import numpy as np
 
 from bifurc.checks import check_number, point_of, rows_of
-from bifurc.decisions import is_start_solved
 from bifurc.domain import Domain
 from bifurc.errors import ProblemError
 from bifurc.function_problem import EXACT_HESSIAN
-from bifurc.limits import Deadline
-from bifurc.problem import Problem
-from bifurc.seeding import random_seeds
-from bifurc.seeds import Seeds
 from bifurc.system import (
     Accuracy,
     Curvature,
@@ -31,7 +25,6 @@ from bifurc.system import (
 from linkages import _core
 from linkages.closure.parts import NEARLY_CLOSED, ClosureParts
 from linkages.loop import Loop
-from linkages.slices.completeness import slice_all_joints
 
 ROUNDING = 4e-16  # below this residual norm a projection has nothing left to gain
 PROJECTION_STEPS = 60
@@ -59,32 +52,6 @@ def parts_of_loop(loop: Loop) -> ClosureParts:
         accuracy=accuracy,
         compiled=ScrewSystem(loop, domain),
         bounds=partial(bounds_of_loop, loop),
-        starts=partial(seeds_of_loop, loop),
-    )
-
-
-def seeds_of_loop(
-    loop: Loop,
-    problem: Problem,
-    rng: np.random.Generator,
-    count: int,
-    deadline: Deadline | None,
-) -> Seeds:
-    """Closed configurations to start from: complete slices of every joint of a 4R,
-    5R or 6R loop, and what is reached from ``count`` random starts."""
-    drawn = random_seeds(problem, rng, count, deadline=deadline)
-    slices = slice_all_joints(loop, rng)
-    if slices is None:
-        return drawn
-    near, gaps = problem.project(slices.nearly_real)
-    closed = near[is_start_solved(gaps)]
-    constructed = np.concatenate([slices.configurations, closed])
-    is_random = np.zeros(len(constructed), dtype=bool)
-    return replace(
-        drawn,
-        points=np.concatenate([constructed, drawn.points]),
-        random=np.concatenate([is_random, drawn.random]),
-        audit=slices,
     )
 
 

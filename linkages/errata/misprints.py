@@ -21,8 +21,23 @@ from pkgutil import resolve_name
 from types import MappingProxyType
 from typing import Any
 
-from linkages.errata import conditions, equations, forms
-from linkages.errata.erratum import Amounts, Erratum, WordErratum
+import numpy as np
+
+from linkages.catalogue import entry
+from linkages.closed_forms.closed_form import ClosedForm
+from linkages.closed_forms.form_table import (
+    FormTable,
+    changed,
+    closed_form,
+    form_tables,
+)
+from linkages.construction.equations import evaluate, numbers_of
+from linkages.errata import equations
+from linkages.errata.equations import FUNCTIONS, define
+from linkages.errata.erratum import Amounts, Erratum, WordErratum, median_and_largest
+from linkages.identification.equivalence import as_loop, table
+from linkages.loop import Loop
+from linkages.mobility import held_gap, survey
 
 TABLE = "errata.toml"
 NOTHING: Mapping[str, Any] = MappingProxyType({})
@@ -62,9 +77,9 @@ def _measure(
             function: Callable[[], Amounts] = resolve_name(f"linkages.errata.{what}")
             return function
         case "closed_form":
-            return partial(forms.compare_closed_forms, linkage, form, what)
+            return partial(compare_closed_forms, linkage, form, what)
         case "table":
-            return partial(conditions.compare_mobility, linkage, what, where)
+            return partial(compare_mobility, linkage, what, where)
         case "gaps":
             names = {**_tables()["definitions"].get(given, {}), **where}
             return partial(equations.compare_equations, linkage, names, **what)
@@ -86,3 +101,59 @@ def _word_erratum(see: str = "", seen: str = "", **fields: str) -> WordErratum:
     if seen:
         return WordErratum(**fields, see=lambda: seen)
     return WordErratum(**fields, see=resolve_name(f"linkages.errata.words:{see}"))
+
+
+def compare_mobility(
+    linkage: str, changes: Mapping[str, str], where: Mapping[str, str]
+) -> Amounts:
+    """What keeps the default member from moving that has other numbers: formulas of
+    those that it has, and of names defined ``where``; and what keeps it as it is."""
+    right = entry(linkage).build()
+    numbers = numbers_of(table(right))
+    names = {**FUNCTIONS, **numbers}
+    define(names, where)
+    others = numbers | {name: evaluate(text, names) for name, text in changes.items()}
+    printed = as_loop(np.reshape(list(others.values()), (-1, 3)).T)
+    return Amounts(immobility(printed), immobility(right))
+
+
+def immobility(loop: Loop) -> float:
+    """0 if the loop moves; else its smallest singular value at a rigid assembly, or
+    `held_gap`."""
+    motion = survey(loop)
+    if motion.mobility:
+        return 0.0
+    return motion.stiffness if motion.rigid else held_gap(loop)
+
+
+INPUTS = 60  # input angles along a form
+
+
+def compare_closed_forms(linkage: str, number: int, printed: FormTable) -> Amounts:
+    """Amounts for the closed form ``number`` of a linkage with what is ``printed`` in
+    place of the entries of its table, and for the form as it is."""
+    owner = entry(linkage)
+    form = owner.closed_forms[number]
+    right = form_tables(owner.family)[linkage][number]
+    misprint = closed_form(linkage, changed(right, printed))
+    parameters = owner.defaults
+    rng = np.random.default_rng(0)
+    while True:
+        of_print = _defects(misprint, parameters)
+        corrected = _defects(form, parameters)
+        if len(of_print) and len(corrected):
+            return median_and_largest(of_print, corrected)
+        parameters = owner.draw(rng)  # no real configuration
+
+
+def _defects(form: ClosedForm, parameters: Mapping[str, float]) -> np.ndarray:
+    """Closure defects along the form, at all inputs and both roots."""
+    loop = entry(form.linkage).build(**parameters)
+    inputs = np.linspace(-3.0, 3.0, INPUTS)
+    paths = [form.configurations(inputs, parameters, root) for root in form.roots]
+    theta = np.concatenate(paths)
+    theta = theta[np.isfinite(theta).all(axis=1)]
+    product = loop.frames(theta)[:, -1]
+    gap = np.abs(product - np.eye(4))
+    gap[:, :3, 3] /= loop.characteristic_length
+    return np.asarray(gap.max(axis=(1, 2)))

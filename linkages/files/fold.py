@@ -16,7 +16,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from networkx.utils import UnionFind
 
-from linkages.closure.closure import Closure
+from linkages.closure.system import ClosureSystem
 from linkages.decisions import is_parallel_axis
 from linkages.files.misfits import closed_near
 from linkages.mechanisms.joint import Joint, JointKind
@@ -138,7 +138,7 @@ def read_fold(text: str, name: str) -> Mechanism:
 def _folded(mechanism: Mechanism, angles: Mapping[str, float]) -> Mechanism:
     """The mechanism in the closed state nearest to fold ``angles`` (rad), by joint,
     from the flat one."""
-    problem = Closure(mechanism)
+    problem = ClosureSystem(mechanism)
     start = np.array([angles[name] for name in problem.domain.names])
     far = "folded such that a gap of {:.3g} is left; near a closed state"
     point = closed_near(problem, "edges_foldAngle", start, problem.domain.names, far)

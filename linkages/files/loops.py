@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from linkages.closure.closure import Closure
+from linkages.closure.system import ClosureSystem
 from linkages.decisions import is_parallel_axis, meets_in_one_point
 from linkages.files.figures import check_joined_names, joined_name
 from linkages.files.misfits import closed_near
@@ -231,7 +231,7 @@ def _read_ring(what: str, table: object, unit: float, known: Sequence[str]) -> _
     shown = np.degrees(given).round(6).tolist()
     far = f"{shown} degrees, from which a gap of {{:.3g}} is left,; near a closed one"
     where = f"configuration of {what}"
-    angles = closed_near(Closure(loop), where, given, joints, far)
+    angles = closed_near(ClosureSystem(loop), where, given, joints, far)
     return _Ring(
         what,
         joints,

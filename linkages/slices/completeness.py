@@ -37,10 +37,12 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.completeness import Claim, Level, Scope
 from bifurc.curves.monitor import dead_points
-from bifurc.decisions import is_tied
+from bifurc.decisions import is_start_solved, is_tied
 from bifurc.limits import Deadline
+from bifurc.problem import Problem
 from bifurc.search.canonical_order import order_values
-from bifurc.seeds import Audit
+from bifurc.seeding import random_seeds
+from bifurc.seeds import Audit, Seeds
 from linkages.decisions import is_same_dead_point
 from linkages.loop import Loop
 from linkages.slices.assemblies import Assemblies, isolated_assemblies
@@ -73,6 +75,31 @@ def slice_all_joints(loop: Loop, rng: np.random.Generator) -> SliceAudit | None:
         slice_configurations(loop, joint, own) for joint, own in enumerate(angles, 1)
     ]
     return SliceAudit(loop, tuple(slices))
+
+
+def sliced_seeds(
+    loop: Loop,
+    problem: Problem,
+    rng: np.random.Generator,
+    count: int,
+    deadline: Deadline | None = None,
+) -> Seeds:
+    """Closed configurations to start from: complete slices of every joint of a 4R,
+    5R or 6R loop, and what is reached from ``count`` random starts."""
+    drawn = random_seeds(problem, rng, count, deadline=deadline)
+    slices = slice_all_joints(loop, rng)
+    if slices is None:
+        return drawn
+    near, gaps = problem.project(slices.nearly_real)
+    closed = near[is_start_solved(gaps)]
+    constructed = np.concatenate([slices.configurations, closed])
+    is_random = np.zeros(len(constructed), dtype=bool)
+    return replace(
+        drawn,
+        points=np.concatenate([constructed, drawn.points]),
+        random=np.concatenate([is_random, drawn.random]),
+        audit=slices,
+    )
 
 
 @dataclass(frozen=True)

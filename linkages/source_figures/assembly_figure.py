@@ -28,6 +28,7 @@ from linkages.source_figures.drawing import (
     clarity,
     clearest_of,
     draw_assembly,
+    draw_row,
     look_along,
     symmetry_line,
 )
@@ -220,19 +221,3 @@ def draw_motion(source: SourceFigure) -> Figure:
     titles = [f"({number + 1})" for number in range(count)]
     draw_row(list(grid.flat), assemblies, titles, 8)
     return figure
-
-
-def draw_row(
-    panels: Sequence[Axes],
-    assemblies: Sequence[Assembly],
-    titles: Sequence[str],
-    size: float,
-) -> None:
-    """Assemblies in the first of the panels, all seen from the side from which they are
-    clearest, with titles in letters of a ``size``."""
-    look = best_look(*assemblies)
-    for axes in panels:
-        axes.set_axis_off()
-    for axes, assembly, title in zip(panels, assemblies, titles, strict=False):
-        draw_assembly(axes, assembly, look, pen=SMALL)
-        axes.set_title(title, fontsize=size, pad=2)

@@ -298,3 +298,19 @@ def _to_spots(places: np.ndarray, spots: np.ndarray) -> np.ndarray:
     distances = np.linalg.norm(places[:, None] - spots, axis=2)
     nearest: np.ndarray = distances.min(axis=1, initial=np.inf)
     return nearest
+
+
+def draw_row(
+    panels: Sequence[Axes],
+    assemblies: Sequence[Assembly],
+    titles: Sequence[str],
+    size: float,
+) -> None:
+    """Assemblies in the first of the panels, all seen from the side from which they are
+    clearest, with titles in letters of a ``size``."""
+    look = best_look(*assemblies)
+    for axes in panels:
+        axes.set_axis_off()
+    for axes, assembly, title in zip(panels, assemblies, titles, strict=False):
+        draw_assembly(axes, assembly, look, pen=SMALL)
+        axes.set_title(title, fontsize=size, pad=2)

@@ -17,13 +17,12 @@ from bifurc.figures.planes import Plane, plane_of
 from bifurc.figures.plotting import plot_transition_map
 from bifurc.figures.style import form_style
 from linkages.source_figures.assembly import loop_assembly
-from linkages.source_figures.assembly_figure import draw_row
 from linkages.source_figures.configurations import (
     atlas_of,
     form_named,
     loop_of_content,
 )
-from linkages.source_figures.drawing import write_beside
+from linkages.source_figures.drawing import draw_row, write_beside
 from linkages.source_figures.table import Content, SourceFigure
 
 ALONG = (0.25, 0.5, 0.75)  # of an arc: where a form is shown

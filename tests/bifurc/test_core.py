@@ -12,8 +12,8 @@ import pytest
 from bifurc import _core
 from bifurc.branch import Branch, Outcome
 from bifurc.curves.continuation import trace_branch
+from bifurc.curves.kantorovich import CHEBYSHEV, NODE_COUNT, RHOS
 from bifurc.function_problem import FunctionProblem
-from bifurc.numerics.chebyshev import CHEBYSHEV, NODE_COUNT, RHOS
 from bifurc.system import Anchor, MarchSettings
 from tests.bifurc.known_curves import WindingCurve
 

@@ -5,8 +5,8 @@ import pytest
 
 from bifurc.curves.certificate import certify_branch
 from bifurc.curves.continuation import trace_branch
+from bifurc.curves.kantorovich import NODE_COUNT
 from bifurc.curves.monitor import profile_branch
-from bifurc.numerics.chebyshev import NODE_COUNT
 from studies.hard_cases import crossings, ladders, near_parallelogram, pitchfork
 from studies.methods.counted import Counted
 from studies.methods.detection import by_determinant, by_singular_value

@@ -13,9 +13,9 @@ from bifurc.curves.certificate import (
     certify_branch,
 )
 from bifurc.curves.continuation import trace_branch
+from bifurc.curves.kantorovich import NODE_COUNT
 from bifurc.curves.monitor import profile_branch
 from bifurc.function_problem import FunctionProblem
-from bifurc.numerics.chebyshev import NODE_COUNT
 from bifurc.system import Curvature
 
 

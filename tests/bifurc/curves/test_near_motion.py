@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bifurc.curves import bridges, near_motion
+from bifurc.curves import continuation, near_motion
 from bifurc.curves.continuation import trace_branch
 from bifurc.curves.near_motion import trace_near_motion
 from bifurc.decisions import nearly_closes
@@ -107,8 +107,8 @@ def test_a_near_motion_needs_no_bridge_where_forms_crossed(monkeypatch):
     def no_bridge(*arguments):
         raise AssertionError("a bridge was tried")
 
-    monkeypatch.setattr(bridges, "locate_singular_point", no_bridge)
-    monkeypatch.setattr(bridges, "bridge_by_collocation", no_bridge)
+    monkeypatch.setattr(continuation, "locate_singular_point", no_bridge)
+    monkeypatch.setattr(continuation, "bridge_by_collocation", no_bridge)
     near = trace_near_motion(crossing_missed(1e-10), np.array([1.0, -1e-10]), SETTINGS)
     assert not near.has_loose_end
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bifurc.numerics.chebyshev import CELL_EDGES, CHEBYSHEV, ERRORS, NODES, RHOS
+from bifurc.curves.kantorovich import CELL_EDGES, CHEBYSHEV, ERRORS, NODES, RHOS
 
 X = np.linspace(-1.0, 1.0, 5001)
 CIRCLE = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 2000))

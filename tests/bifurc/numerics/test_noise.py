@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bifurc import FunctionProblem, ProblemError, explore
-from bifurc.numerics.noise import noise_of
+from bifurc.equations.evaluation import noise_of
 
 BOUNDS = [(-2.0, 2.0), (-2.0, 2.1)]
 

@@ -39,7 +39,7 @@ def loop(request):
 
 
 def geometry(loop):
-    return Closure(loop)._geometry
+    return Closure(loop).compiled.geometry
 
 
 def march(start, tangent, geometry, order, tolerance, shortest, longest, count):

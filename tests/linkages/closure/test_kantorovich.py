@@ -8,8 +8,7 @@ import pytest
 from bifurc import _core
 from bifurc.curves import kantorovich
 from bifurc.curves.continuation import trace_branch
-from bifurc.curves.kantorovich import Joints, check_arcs
-from bifurc.numerics.chebyshev import CHEBYSHEV
+from bifurc.curves.kantorovich import CHEBYSHEV, Joints, check_arcs
 from linkages.catalogue import entry
 from linkages.closure.closure import Closure
 from linkages.loop import Loop

@@ -206,7 +206,7 @@ def test_mirror_images_and_events_of_a_loop_keep_their_places(seed):
     for left, right in zip(one.forms, other.forms, strict=True):
         assert right.branch.nearest(left.branch.sample(9))[0].max() < 1e-9
     for left, right in zip(one.points, other.points, strict=True):
-        gap = Closure(loop).difference(left.point.u, right.point.u)
+        gap = Closure(loop).domain.difference(left.point.u, right.point.u)
         assert (left.name, left.kind) == (right.name, right.kind)
         assert np.abs(gap).max() < 1e-9
         assert [form for form, _ in left.passes] == [form for form, _ in right.passes]

@@ -1,0 +1,145 @@
+"""Where a search of a mechanism begins, and what judges the motions that it finds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Protocol, TypeAlias
+
+import numpy as np
+
+from bifurc.branch import Branch
+from bifurc.decisions import is_start_solved
+from bifurc.equations.system import ScaledTape
+from bifurc.limits import Deadline
+from bifurc.problem import Problem
+from bifurc.seeding import random_seeds, start_region
+from bifurc.seeds import Audit, Seeds
+from linkages.closure import cut_at_limits
+from linkages.closure.system import ClosureSystem
+from linkages.closure.within_limits import brought_within_limits
+from linkages.dyads import slices as dyads
+from linkages.structure.structure import Structure
+from linkages.turns import whole_turns
+from linkages.turns.whole_turns import TurnedEnds
+
+MOST_BEYOND = 60  # solutions beyond the limits that are brought back to them
+
+
+class Source(Protocol):
+    """Points ``starts`` (k, n) near solutions, and how sure it is that ``branches`` are
+    all motions, judged in about so many ``seconds``."""
+
+    @property
+    def starts(self) -> np.ndarray:
+        """Points near solutions."""
+
+    def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
+        """What is said of the branches."""
+
+
+# The source of a problem of a structure, drawn with a generator beside so many random
+# starts; None where the method says nothing of such a mechanism.
+ForSubject: TypeAlias = Callable[
+    [Problem, Structure, np.random.Generator, int], Source | None
+]
+
+
+# what gives starts and judges what is traced: the first that applies to a mechanism
+SOURCES: tuple[ForSubject, ...] = (
+    dyads.for_subject,
+    whole_turns.for_subject,
+    cut_at_limits.for_subject,
+)
+
+
+def mechanism_seeds(
+    problem: ClosureSystem,
+    rng: np.random.Generator,
+    count: int,
+    deadline: Deadline | None,
+) -> Seeds:
+    """The closed configuration of a mechanism nearest to the reference, what the starts
+    of a source lead to and what ``count`` random starts do or, where these lead beyond
+    given limits, others within, and those that the mechanism knows itself."""
+    drawn = _drawn(problem, rng, count, deadline)
+    lattice = problem.lattice
+    judge = _judge(problem, rng, count)
+    starts = problem.reference[None]
+    if judge is not None:
+        starts = np.concatenate([starts, judge.starts])
+    points, gaps = problem.project(starts)
+    solutions = points[is_start_solved(gaps)]
+    brought = _from_beyond_limits(problem, solutions, drawn, rng)
+    solutions = np.concatenate([solutions, brought])
+    if lattice:
+        # what is outside the limits may have a translate inside
+        solutions = lattice.homes(solutions)
+    is_inside = problem.domain.are_inside(solutions)
+    seeds = drawn.with_constructed(solutions[is_inside])
+    if judge is None:
+        seeds = replace(seeds, more=partial(_drawn, problem))
+    seeds = replace(seeds, audit=judge)
+    if lattice:
+        ends = TurnedEnds(problem, lattice, judge)
+        seeds = replace(seeds, home=lattice.home, audit=ends)
+    return seeds.with_constructed(_assemblies(problem))
+
+
+def _judge(
+    problem: ClosureSystem, rng: np.random.Generator, count: int
+) -> Source | None:
+    """The first of the sources that applies to the mechanism; None where none does."""
+    for for_subject in SOURCES:
+        source = for_subject(problem, problem.structure, rng, count)
+        if source is not None:
+            return source
+    return None
+
+
+def _assemblies(problem: ClosureSystem) -> np.ndarray:
+    """Closed configurations (k, n) that the mechanism knows."""
+    known = problem.structure.mechanism.assemblies()
+    if not len(known):
+        return np.empty((0, problem.n))
+    points, _ = problem.project(known[:, list(problem.structure.column_of)])
+    return points
+
+
+def _from_beyond_limits(
+    problem: ClosureSystem,
+    solutions: np.ndarray,
+    drawn: Seeds,
+    rng: np.random.Generator,
+) -> np.ndarray:
+    """Closed configurations (k, n) within limits that are given, from those of the
+    ``solutions`` (j, n) beyond them and some that random starts reached there: narrow
+    limits leave few that are reached else."""
+    if all(one.limits is None for one in problem.structure.mechanism.variables):
+        return np.empty((0, problem.n))
+    missed = drawn.missed[is_start_solved(drawn.gaps)]
+    is_beyond = ~problem.domain.are_inside(solutions)
+    beyond = np.concatenate([solutions[is_beyond], missed])[:MOST_BEYOND]
+    tape = problem.compiled
+    assert isinstance(tape, ScaledTape)  # that of a loop holds no unknowns
+    return brought_within_limits(problem, tape.project, beyond, rng)
+
+
+def _drawn(
+    problem: ClosureSystem,
+    rng: np.random.Generator,
+    count: int,
+    deadline: Deadline | None,
+) -> Seeds:
+    """What is reached from random starts before a deadline; where whole turns lead to
+    the same again, half of them from a region that holds a translate of everything."""
+    lattice = problem.lattice
+    if not lattice:
+        return random_seeds(problem, rng, count, deadline=deadline)
+    region = lattice.region(start_region(problem), problem.reference)
+    homes = lattice.homes
+    anywhere = random_seeds(problem, rng, count // 2, None, deadline, homes)
+    rest = count - count // 2
+    near = random_seeds(problem, rng, rest, region, deadline, homes)
+    return anywhere.and_random(near)

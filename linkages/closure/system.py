@@ -1,0 +1,94 @@
+"""The closure equations of what moves: values, derivatives, domain."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bifurc.checks import rows_of
+from bifurc.equations.system import CompiledSystem
+from bifurc.function_problem import NumericalProblem
+from bifurc.system import Curvature
+from linkages.closure.loop_parts import parts_of_loop
+from linkages.closure.parts import ClosureParts
+from linkages.loop import Loop
+
+if TYPE_CHECKING:
+    # they import networkx, which a loop does not need
+    from linkages.closure.errors import JointErrors
+    from linkages.mechanisms.mechanism import Mechanism
+    from linkages.structure.structure import Structure
+    from linkages.turns.turn_lattice import TurnLattice
+
+
+class ClosureSystem(NumericalProblem):
+    """The closure equations of a ``subject``: of a loop in its joint angles, of a
+    mechanism in the variables of its joints.
+
+    Angles are in radians, lengths in characteristic lengths. All derivatives are exact.
+    A mechanism with ``errors`` is that as it is made, in the same unknowns, and need not
+    close anywhere; ``structure`` is that of the mechanism, where it is there already.
+    """
+
+    compiled: CompiledSystem
+
+    def __init__(
+        self,
+        subject: Loop | Mechanism,
+        errors: JointErrors | None = None,
+        structure: Structure | None = None,
+    ):
+        self.subject = subject
+        self.parts = parts = _parts_of(subject, errors, structure)
+        self.domain, self.accuracy = parts.domain, parts.accuracy
+        self.compiled = parts.compiled
+
+    def residuals(self, points: np.ndarray) -> np.ndarray:
+        """F (k, m) at points (k, n)."""
+        return self.compiled.residuals(rows_of("points", points, self.n))
+
+    def jacobians(self, points: np.ndarray) -> np.ndarray:
+        """F' (k, m, n) at points (k, n)."""
+        return self.compiled.jacobians(rows_of("points", points, self.n))
+
+    @cached_property
+    def curvature(self) -> Curvature:
+        """Bounds on F'' from the geometry."""
+        return self.parts.bounds()
+
+    @property
+    def structure(self) -> Structure:
+        """What is unknown in a mechanism, and which chains have to close; a loop has
+        none."""
+        assert self.parts.structure is not None
+        return self.parts.structure
+
+    @property
+    def reference(self) -> np.ndarray:
+        """The reference configuration (n,) of a mechanism: all variables 0. Where joints
+        are locked elsewhere it need not be closed."""
+        return self.structure.reference
+
+    @cached_property
+    def lattice(self) -> TurnLattice:
+        """The whole turns after which every closed configuration of a mechanism is closed
+        again."""
+        from linkages.turns.turn_lattice import turn_lattice
+
+        return turn_lattice(self.structure)
+
+
+def _parts_of(
+    subject: Loop | Mechanism,
+    errors: JointErrors | None,
+    structure: Structure | None,
+) -> ClosureParts:
+    """What the closure of a ``subject`` is made of."""
+    if isinstance(subject, Loop):
+        return parts_of_loop(subject)
+    from linkages.closure.equations import parts_of_structure
+    from linkages.structure.structure import Structure
+
+    return parts_of_structure(structure or Structure(subject), errors)
