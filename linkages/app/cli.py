@@ -35,7 +35,7 @@ COMMANDS = (
 )
 
 
-LONGEST = 300  # characters of an error
+LONGEST = 500  # characters of an error: none of the program's own texts has more
 
 
 class Failure(click.ClickException):
@@ -112,7 +112,11 @@ def in_one_line(message: str) -> str:
     if len(shown) <= LONGEST:
         return shown
     half = LONGEST // 2 - 3
-    return f"{shown[:half]} ... {shown[-half:]}"
+    beginning, end = shown[:half], shown[-half:]
+    # between words, where there are any
+    beginning = beginning.rpartition(" ")[0] or beginning
+    end = end.partition(" ")[2] or end
+    return f"{beginning} ... {end}"
 
 
 def _failure_of(error: BifurcError | click.UsageError | OSError) -> Failure:
