@@ -73,7 +73,7 @@ def test_cranks_geared_one_to_minus_one_keep_a_five_bar_symmetric():
 # turns of the faster crank
 def test_a_form_closes_when_all_gears_are_back():
     mechanism = five_bar(E=Coupling("A", 0.5, 0.3))
-    assert Closure(mechanism).periods[0] == pytest.approx(4 * np.pi)
+    assert Closure(mechanism).domain.periods[0] == pytest.approx(4 * np.pi)
     atlas = map_of(mechanism, settings=FEW)
     assert len(atlas.forms) == 2
     for number, form in enumerate(atlas.forms):
