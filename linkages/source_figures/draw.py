@@ -31,13 +31,15 @@ DRAWINGS: dict[Kind, Callable[[SourceFigure], Figure]] = {
     Kind.TRANSLATOR: translator_figure.draw,
     Kind.TORI: tori_figure.draw,
 }
+# sources write formulas, and no user's name stands in their figures
+OF_SOURCES = {"text.parse_math": True}
 LETTER_WIDTH = 0.068  # inches of a letter of the caption, on average
 LINE_HEIGHT = 0.155  # inches
 
 
 def draw_source_figure(source: SourceFigure) -> Figure:
     """The figure with its caption below."""
-    with rc_context(RC):
+    with rc_context(RC | OF_SOURCES):
         figure = DRAWINGS[source.kind](source)
         _add_caption(figure, source.caption)
     return figure

@@ -58,7 +58,9 @@ def test_a_curve_is_followed_up_to_a_rim(name: str, seed: int) -> None:
 @pytest.mark.parametrize("is_recorded", [True, False])
 def test_the_statement_says_that_the_derivative_is_not_finite(is_recorded) -> None:
     root = FunctionProblem(
-        lambda u: [np.sqrt(u[0]) - u[1]], [(-1, 4), (-3, 3)], is_recorded=is_recorded
+        lambda u: [np.sqrt(u[0]) * (1.0 + u[0]) - u[1]],
+        [(-1, 4), (-3, 3)],
+        is_recorded=is_recorded,
     )
     statement = explore(root).completeness.statement
     assert "F' is not finite beside 1 of them" in statement
