@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from bifurc.branch import Branch
 
@@ -136,6 +135,8 @@ def _least_end(intervals: _Intervals, width: float) -> _Sample:
 
 def _polished(distance: Distance, best: _Sample, width: float, length: float) -> float:
     """The arclength of the minimum within a ``width`` of a sample, to rounding."""
+    from scipy.optimize import minimize_scalar  # it takes longer to import than a map
+
     low, high = max(best.s - width, 0.0), min(best.s + width, length)
 
     def value(x: float) -> float:
