@@ -302,7 +302,7 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
         lambda: linkages.loop_from_axes(np.full((4, 3), NAN), np.ones((4, 3))),
         "points",
     ),
-    "no loop to close": (lambda: Closure(None), "loop"),
+    "no loop to close": (lambda: Closure(None), "subject"),
     "no linkage to map": (lambda: linkages.map_linkage(None), "linkage"),
     "a name to map": (lambda: linkages.map_linkage("bennett"), "linkage"),
     "settings of another type for a map": (

@@ -9,6 +9,7 @@ import numpy as np
 
 from bifurc.checks import rows_of
 from bifurc.equations.system import CompiledSystem
+from bifurc.errors import ProblemError
 from bifurc.function_problem import NumericalProblem
 from bifurc.system import Curvature
 from linkages.closure.loop_parts import parts_of_loop
@@ -30,6 +31,7 @@ class ClosureSystem(NumericalProblem):
     Angles are in radians, lengths in characteristic lengths. All derivatives are exact.
     A mechanism with ``errors`` is that as it is made, in the same unknowns, and need not
     close anywhere; ``structure`` is that of the mechanism, where it is there already.
+    Raises `ProblemError` for a subject that is neither.
     """
 
     compiled: CompiledSystem
@@ -89,6 +91,9 @@ def _parts_of(
     if isinstance(subject, Loop):
         return parts_of_loop(subject)
     from linkages.closure.equations import parts_of_structure
+    from linkages.mechanisms.mechanism import Mechanism
     from linkages.structure.structure import Structure
 
+    if not isinstance(subject, Mechanism):
+        raise ProblemError("subject", repr(subject), "a Loop or a Mechanism")
     return parts_of_structure(structure or Structure(subject), errors)
