@@ -326,7 +326,7 @@ def test_a_march_says_the_smallest_regular_singular_value():
     point = points[np.argmin(singular_values(problem, points)[:, 4])]
     tangent = null_vector(problem, point)
     _, pieces, _, _, _, sigmas = march(
-        point, tangent, problem._geometry, 16, 1e-13, 1e-9, 0.5, 40
+        point, tangent, problem.compiled.geometry, 16, 1e-13, 1e-9, 0.5, 40
     )
     expected = singular_values(problem, pieces[:, 0])[:, 4]
     is_small = expected < 0.05
