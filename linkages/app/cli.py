@@ -35,7 +35,7 @@ COMMANDS = (
 )
 
 
-LONGEST = 500  # characters of an error: none of the program's own texts has more
+LONGEST = 500  # characters of an error
 
 
 class Failure(click.ClickException):
