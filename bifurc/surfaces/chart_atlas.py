@@ -84,6 +84,11 @@ class ChartAtlas:
         """Whether the whole surface inside the bounds is covered."""
         return self.outcome is Covering.COMPLETE
 
+    @property
+    def is_short_of_charts(self) -> bool:
+        """Whether the charts ran out before the surface was covered."""
+        return self.outcome is Covering.CHART_LIMIT
+
     def difference(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         """a - b (..., n) with periodic unknowns taken to within half a period of 0."""
         return torus.difference(a, b, self.periods)
@@ -121,6 +126,12 @@ class ChartAtlas:
         """Area of the triangles: below that of a surface all covered by a share of
         (radius x curvature)^2 / 8."""
         return float(self.triangle_areas.sum())
+
+    @property
+    def area_words(self) -> str:
+        """The area as text; of an unfinished covering it says that there is more."""
+        words = f"{self.area:.6g}"
+        return words if self.complete else f"more than {words}"
 
     @cached_property
     def border(self) -> int:

@@ -63,6 +63,10 @@ class SearchDoubt(DoubtKind):
         "no charted surface is known to hold {starts:start}, at which no chart fits: there "
         "may be more surfaces, or small parts of them"
     )
+    CHARTS_RAN_OUT = (
+        "charts ran out before all surfaces were covered, and {starts:start} on surfaces lie "
+        "beyond them: there is more area, and surfaces listed apart may be one"
+    )
     # --- of forms
     CURVE_OR_SURFACE = (
         "{subject} may be a curve or a part of a surface: its place is known to "

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
-from bifurc.atlas import Event, Form, MeetingPoint, Surface
+from bifurc.atlas import Event, Form, MeetingPoint, Surface, samples_beyond_charts
 from bifurc.branch import Branch, Outcome
 from bifurc.completeness import Doubt
 from bifurc.curves.misclosure import misclosure_at
@@ -51,13 +51,17 @@ def doubts_of(
     surfaces: Sequence[Surface],
     of_surfaces: Problem | None = None,
 ) -> Iterator[Doubt]:
-    """One doubt for each thing that doubles do not decide: surfaces that may be
-    curves, curves that may be surfaces, stretches of forms that are not certified, ends
-    of forms at nothing known, singular points of no certain kind.
+    """One doubt for each thing that is not decided: surfaces for which charts ran out,
+    surfaces that may be curves, curves that may be surfaces, stretches of forms that
+    are not certified, ends of forms at nothing known, singular points of no certain
+    kind.
 
     The ``forms`` are those of the branches ``traced``. Solutions on the ``surfaces``
     are regular ones of the problem ``of_surfaces``, where it is another one.
     """
+    if any(surface.is_short_of_charts for surface in surfaces):
+        starts = samples_beyond_charts(surfaces)
+        yield SearchDoubt.CHARTS_RAN_OUT.doubt(starts=starts)
     for surface in surfaces:
         missed = _misclosure(of_surfaces or problem, surface)
         samples = surface.samples[:MOST_SAMPLES]
