@@ -37,6 +37,10 @@ class Covering(Enum):
         "incomplete: no chart fits at some places, or a sheet that is not covered "
         "crosses; look for singular points of the surface there"
     )
+    UNDECIDED = (
+        "incomplete: at some places sheets lie nearer to one another than can be told "
+        "apart, and may be one"
+    )
     CHART_LIMIT = (
         "incomplete: the largest number of charts is reached; allow more of them, or a "
         "larger radius"

@@ -67,6 +67,10 @@ class SearchDoubt(DoubtKind):
         "charts ran out before all surfaces were covered, and {starts:start} on surfaces lie "
         "beyond them: there is more area, and surfaces listed apart may be one"
     )
+    SHEETS_TOGETHER = (
+        "at some places of {subject} sheets lie nearer to one another than can be told "
+        "apart, and may be one"
+    )
     # --- of forms
     CURVE_OR_SURFACE = (
         "{subject} may be a curve or a part of a surface: its place is known to "

@@ -37,6 +37,7 @@ from bifurc.search.findings import Findings
 from bifurc.search.records import RigidAssembly, TracedBranch
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
+from bifurc.surfaces.chart_atlas import Covering
 from bifurc.system import relative_gaps
 
 RIM = 1e-4  # scales from a rim at which starts end where F vanishes slowly towards it
@@ -63,6 +64,9 @@ def doubts_of(
         starts = samples_beyond_charts(surfaces)
         yield SearchDoubt.CHARTS_RAN_OUT.doubt(starts=starts)
     for surface in surfaces:
+        charts = surface.charts
+        if charts is not None and charts.outcome is Covering.UNDECIDED:
+            yield SearchDoubt.SHEETS_TOGETHER.doubt(surface.name)
         missed = _misclosure(of_surfaces or problem, surface)
         samples = surface.samples[:MOST_SAMPLES]
         if not _is_rounding(of_surfaces or problem, missed, samples):
