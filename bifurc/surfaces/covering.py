@@ -64,6 +64,8 @@ TOWARDS = 0.97
 ON_DISK, HOLE = 1e-9, 1e-3
 # Distance, over the scale, below which the end of a ray is a solution that is known.
 SAME = 1e-7
+# Pairs of charts of which it is not known whether they are on one sheet, at most.
+MOST_UNDECIDED = 20
 # Label of the edges along the bounds.
 BORDER = -2
 
@@ -156,8 +158,8 @@ class _Cover:
         self._open: deque[int] = deque()
         # number of charts from which other sheets have been looked for
         self._looked_from = 0
-        # whether somewhere two sheets could not be told apart
-        self._is_undecided = False
+        # how many pairs of charts could not be told to be on one sheet or on two
+        self._undecided = 0
 
     @property
     def charts(self) -> FlatCharts:
@@ -261,6 +263,8 @@ class _Cover:
         while self._open:
             if deadline.passed:
                 return Covering.OUT_OF_TIME
+            if self._undecided > MOST_UNDECIDED:
+                return Covering.UNDECIDED
             i = self._open[0]
             y = self._open_vertex(i)
             if y is None:
@@ -284,7 +288,7 @@ class _Cover:
         seeds = np.array(self._unfit_seeds).reshape(-1, self._problem.n)
         if not np.all(self.are_covered(seeds)):
             return Covering.SINGULAR
-        return Covering.UNDECIDED if self._is_undecided else Covering.COMPLETE
+        return Covering.UNDECIDED if self._undecided else Covering.COMPLETE
 
     def _is_hole(self, place: _UnfitPlace) -> bool:
         """Whether the polygon of a chart has a vertex outside the disk there."""
@@ -439,7 +443,7 @@ class _Cover:
             self._problem, starts, planes, near.positions[is_open]
         )
         is_same = self._are_same(ends, self._centers[numbers], planes)
-        self._is_undecided = self._is_undecided or not np.all(are_reached)
+        self._undecided += int(np.count_nonzero(~are_reached))
         is_on_sheet = np.ones(len(near.numbers), dtype=bool)
         is_on_sheet[is_open] = ~are_reached | is_same
         return near.part(is_on_sheet)
