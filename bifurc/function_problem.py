@@ -362,8 +362,7 @@ class FunctionProblem(EquationProblem):
                 f"of {len(probes)} random points"
             )
             raise ProblemError("value of the function", values[0], allowed)
-        finite: np.ndarray = probes[is_finite]
-        return finite
+        return probes[is_finite]
 
     def _check_periods(self, probes: np.ndarray) -> None:
         """Raise `ProblemError` unless the equations are the same one period on from the

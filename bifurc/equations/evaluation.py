@@ -223,8 +223,7 @@ def noise_of(
             estimates.append(np.where(is_smooth, over_short, over_long))
     if not estimates:
         return None
-    median: np.ndarray = np.median(estimates, axis=0)
-    return median
+    return np.median(estimates, axis=0)
 
 
 def _along(

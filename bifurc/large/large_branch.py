@@ -83,8 +83,7 @@ class LargeBranch:
 
     def __call__(self, s: float) -> np.ndarray:
         """u (n,) at an arclength."""
-        point: np.ndarray = self.units.outwards(self.branch(s))
-        return point
+        return self.units.outwards(self.branch(s))
 
     def tangent(self, s: float) -> np.ndarray:
         """du/ds (n,) at an arclength."""

@@ -131,8 +131,7 @@ def _box(problem: Problem) -> np.ndarray:
     periods = problem.domain.periods
     turn = np.column_stack([-WIDER * periods, (1.0 + WIDER) * periods])
     is_circle = np.isfinite(periods) & np.isinf(problem.domain.bounds[:, 0])
-    box: np.ndarray = np.where(is_circle[:, None], turn, problem.domain.bounds)
-    return box
+    return np.where(is_circle[:, None], turn, problem.domain.bounds)
 
 
 class _Boxes(NamedTuple):

@@ -248,14 +248,12 @@ class _FourierSeries:
 
     def __call__(self, angles: np.ndarray) -> np.ndarray:
         """Values at angles (...)."""
-        values: np.ndarray = (self._waves(angles) @ self._coefficients).real
-        return values
+        return (self._waves(angles) @ self._coefficients).real
 
     def rates(self, angles: np.ndarray) -> np.ndarray:
         """Derivatives at angles (...)."""
         terms = 1j * self._orders * self._coefficients
-        rates: np.ndarray = (self._waves(angles) @ terms).real
-        return rates
+        return (self._waves(angles) @ terms).real
 
     def _waves(self, angles: np.ndarray) -> np.ndarray:
         """The terms of the series (..., k) at angles (...), without coefficients."""
@@ -371,8 +369,7 @@ def _without_duplicates(points: np.ndarray, radius: float) -> np.ndarray:
     graph = csr_array((links, tuple(pairs.T)), shape=(count, count))
     _, cluster = connected_components(graph, directed=False)
     _, first = np.unique(cluster, return_index=True)
-    distinct: np.ndarray = points[first]
-    return distinct
+    return points[first]
 
 
 def _separate_surfaces(problem: Problem, points: np.ndarray) -> Section:
