@@ -92,14 +92,9 @@ class LargeBranch:
 
     def parameters(self, s: np.ndarray) -> np.ndarray:
         """The parameter (k,) at arclengths (k,)."""
-        in_units = self.parameter_curve(s)[:, 0]
+        in_units = last_unknown(self.branch)(s)[:, 0]
         values: np.ndarray = self.units.sizes[-1] * in_units
         return values
-
-    @property
-    def parameter_curve(self) -> Branch:
-        """The parameter alone, in units, as a branch of one unknown."""
-        return last_unknown(self.branch)
 
     @property
     def folds(self) -> tuple[LargePoint, ...]:

@@ -247,7 +247,7 @@ class _Division:
         """The arclength at which a branch does not hand over from one piece to the next,
         or from the last one of a closed curve to the first; None where it does, but
         beside singular points."""
-        begins, ends = branch.ends_of_pieces()
+        begins, ends = branch.compiled.ends_of_pieces(0)
         following = np.roll(begins, -1, axis=0)
         gaps = np.linalg.norm(self.problem.domain.difference(following, ends), axis=1)
         if not branch.closed:

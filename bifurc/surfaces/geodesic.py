@@ -226,7 +226,7 @@ def _spread(
 ) -> np.ndarray:
     """A path (intervals + 1, n) on the surface, evenly spread along the chords between
     ``points`` (k, n), after up to so many rounds of pulling."""
-    path = _place_evenly(points, intervals)
+    path = _place_along(points, np.linspace(0.0, 1.0, intervals + 1))
     _lift(problem, charts, path)
     if len(path) < 3 or _chord_lengths(path).mean() == 0:
         return path
@@ -373,12 +373,6 @@ def _count_intervals(points: np.ndarray, spacing: float) -> int:
     """How many intervals of about ``spacing`` the chords make: an even number."""
     length = float(_chord_lengths(points).sum())
     return 2 * max(1, round(length / (2.0 * spacing)))
-
-
-def _place_evenly(points: np.ndarray, intervals: int) -> np.ndarray:
-    """Points (intervals + 1, n) evenly spread along the chords between ``points`` (k,
-    n), the ends included."""
-    return _place_along(points, np.linspace(0.0, 1.0, intervals + 1))
 
 
 def _place_along(points: np.ndarray, shares: np.ndarray) -> np.ndarray:

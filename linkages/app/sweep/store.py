@@ -117,7 +117,7 @@ class SweepStore:
         indices = block.indices.tolist()
         shape = tuple(along.stop - along.start for along in block.region)
         for name, kind in FIELDS.items():
-            missing = self._missing(kind)
+            missing = [kind.missing] * self.joints if kind.per_joint else kind.missing
             column = [records[index].get(name, missing) for index in indices]
             values = np.array(column, dtype=kind.dtype)
             self._array(name)[block.region] = values.reshape(*shape, *values.shape[1:])
@@ -131,10 +131,6 @@ class SweepStore:
         array = self._group[name]
         assert isinstance(array, zarr.Array)
         return array
-
-    def _missing(self, kind: Field) -> float | list[float]:
-        """What stands where a member has no value."""
-        return [kind.missing] * self.joints if kind.per_joint else kind.missing
 
     def _create(self) -> None:
         """Make all arrays; what an earlier attempt left half-made is replaced."""
