@@ -24,7 +24,7 @@ from PIL import Image
 
 POINTS = 72  # of an inch, the unit of SVG
 # Settings of matplotlib for all figures, which the user's own must not disturb.
-RC = rc_params_from_file(
+RC: dict[Any, Any] = rc_params_from_file(
     pathlib.Path(__file__).with_name("bifurc.mplstyle"), use_default_template=False
 )
 # No dates, no names of programs, so that the same figure gives the same bytes.
