@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bifurc.errors import BifurcError
+from bifurc.errors import PathError
 from linkages.app.sweep.member import FIELDS, Field, Record, Status
 from linkages.app.sweep.plan import Block, Plan
 from linkages.app.sweep.subjects import JointName, Quantity
@@ -26,12 +26,8 @@ MADE_AGAIN = (
 )
 
 
-class StoreError(BifurcError):
+class StoreError(PathError):
     """A place where the dataset of a sweep cannot be written: ``path`` and why."""
-
-    def __init__(self, path: Path, why: str):
-        self.path = path
-        super().__init__(f"{path}: {why}")
 
 
 UNSETTLED = "is_being_made"  # an attribute while blocks of the journal may be missing
