@@ -124,7 +124,9 @@ class Equations:
         """F (k, m) at points (k, n)."""
         points = np.atleast_2d(points)
         if self.tape is not None:
-            return self.tape.compiled.residuals(_contiguous(points))
+            return self.tape.compiled.residuals(
+                np.ascontiguousarray(points, dtype=float)
+            )
         function = self.function  # called thousands of times a curve
         with np.errstate(all="ignore"):  # beyond the rim of where it is defined
             # a copy: it may change its argument
@@ -140,7 +142,9 @@ class Equations:
         """F' (k, m, n) at points (k, n), dense."""
         points = np.atleast_2d(points)
         if self.tape is not None:
-            return self.tape.compiled.jacobians(_contiguous(points))
+            return self.tape.compiled.jacobians(
+                np.ascontiguousarray(points, dtype=float)
+            )
         jacobians = [as_dense(self.jacobian_by_calls(point)) for point in points]
         return np.array(jacobians).reshape(len(points), self.m, points.shape[1])
 
@@ -188,10 +192,6 @@ class Equations:
         doubles; None where it is not recorded."""
         tape = self.tape
         return None if tape is None else partial(rounding_of_constants, tape)
-
-
-def _contiguous(values: np.ndarray) -> np.ndarray:
-    return np.ascontiguousarray(values, dtype=float)
 
 
 VALUES = 13  # along each line

@@ -270,10 +270,6 @@ class _FourierSeries:
         )
         return FIRST + offsets
 
-    def times_sign(self, angles: np.ndarray, signs: np.ndarray) -> np.ndarray:
-        """Values at angles (...), times ``signs`` (...)."""
-        return np.asarray(signs * self(angles))
-
 
 class _Zeros(NamedTuple):
     """Angles (k,) at which a function crosses zero, and angles (t,) at which it only
@@ -297,7 +293,8 @@ def _find_zeros(function: _FourierSeries, zero: float) -> _Zeros:
 
         at = ANGLES[dips]
         bracket = (at - step, at, at + step)
-        bottom = find_minimum(function.times_sign, bracket, args=(signs[dips],))
+        upright = (signs[dips],)
+        bottom = find_minimum(lambda x, sign: sign * function(x), bracket, args=upright)
         # a dip that goes through zero has a sign change on either side
         is_crossed = bottom.f_x < -zero
         middle = bottom.x[is_crossed]

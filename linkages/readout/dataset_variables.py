@@ -45,7 +45,7 @@ def dataset_variables(atlas: Atlas, readout: Readout) -> dict[str, Variable]:
                 ("assembly_joint_variable", ASSEMBLY, _wrapped(readout, atlas.rigid)),
             )
         }
-    rotations = list(readout.rotations(readout.reference[None]))
+    rotations = list(readout.rotations(readout.structure.reference[None]))
     if rotations:
         long_name = "rotation vectors of spherical joints"
 
