@@ -85,11 +85,6 @@ class Deadline:
     interrupt: HeldInterrupt | None = None
 
     @property
-    def is_endless(self) -> bool:
-        """Whether there is time without end."""
-        return self.seconds == float("inf")
-
-    @property
     def left(self) -> float:
         """Seconds that are left, 0 once it has passed."""
         if self.interrupt is not None and self.interrupt.was_pressed:

@@ -31,7 +31,8 @@ from bifurc.figures.planes import (
     cut_to_frame,
     place_in_frame,
 )
-from bifurc.figures.style import RC, Properties, form_style, hollow
+from bifurc.figures.rendering import RC
+from bifurc.figures.style import Properties, form_style, hollow
 from bifurc.singular.point import Mark
 
 NAME_WIDTH = 24  # letters of a line of the legend

@@ -33,9 +33,8 @@ from bifurc.figures.drawing import (
 from bifurc.figures.form_graph import plot_form_graph
 from bifurc.figures.labels import label_points
 from bifurc.figures.planes import choose_plane, indices_of, plane_of, scale_of
-from bifurc.figures.rendering import render
+from bifurc.figures.rendering import RC, render
 from bifurc.figures.singular_values import plot_singular_values
-from bifurc.figures.style import RC
 from bifurc.files.atomic import replace_file
 
 SMALL_PANEL = PanelSettings(line_width=1.4, mark_size=3.5)

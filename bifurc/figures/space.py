@@ -15,7 +15,8 @@ from bifurc import torus
 from bifurc.atlas import Atlas
 from bifurc.figures.drawing import draw_legend_outside, legend_size
 from bifurc.figures.planes import Scale, curve_points, indices_of, scale_of
-from bifurc.figures.style import RC, form_style, hollow
+from bifurc.figures.rendering import RC
+from bifurc.figures.style import form_style, hollow
 
 
 def plot_map_in_space(

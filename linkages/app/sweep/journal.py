@@ -13,7 +13,7 @@ from typing import Any, TypeAlias, cast
 
 import numpy as np
 
-from bifurc.errors import BifurcError
+from bifurc.errors import PathError
 from linkages.app.sweep.member import FIELDS, Field, Record, Status
 from linkages.app.sweep.plan import Plan
 
@@ -29,12 +29,8 @@ WITHOUT_LINE = "delete this line, and what it held is mapped again"
 CHUNK = 4096  # bytes read at a time on the way back to the last newline
 
 
-class JournalError(BifurcError, ValueError):
+class JournalError(PathError):
     """A journal that cannot be continued: ``path`` and why."""
-
-    def __init__(self, path: Path, why: str):
-        self.path = path
-        super().__init__(f"{path}: {why}")
 
     @classmethod
     def of_line(cls, path: Path, number: int) -> JournalError:
