@@ -1,0 +1,331 @@
+"""Which linkage of the catalogue a table with a misprint is meant to be.
+
+A printed table is rounded, and some number of it is wrong: it has another sign, is the
+supplement of the right one, or another number altogether; two rows are exchanged; a
+column is shifted by a row, as between the two conventions of Denavit and Hartenberg;
+twists are in the other unit. A family makes a table of fewer parameters than it has
+numbers, so that the numbers that are right tell the wrong one: it is left out, and the
+member is fitted to the others. Where parameters are read off at the number that is left
+out, they are tried at values all over their range.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import TypeAlias
+
+import numpy as np
+
+from linkages.catalogue import distinct_entries
+from linkages.entry import Entry, Guesses, Parameter, ParameterKind
+from linkages.geometry_table import link_name
+from linkages.identification.equivalence import normal_form, table
+from linkages.identification.fitting import (
+    NEAR,
+    Member,
+    View,
+    best_member,
+    blind_gaps,
+    build_table,
+    changed_by,
+    hidden_parameters,
+    joints_of,
+    rebuild,
+    views_of,
+)
+from linkages.identification.identify import ALIKE, Identification
+from linkages.identification.match import Match, make_match
+from linkages.identification.recovery import Row, plain_guess, plain_parameters
+from linkages.loop import Loop
+
+# What rounding to three digits may change: a number, and all numbers of a table together;
+# over the characteristic length, rad.
+ROUNDED = 0.01
+# Values that are tried for a number that is left out: twists over half a turn, lengths
+# over the characteristic length.
+TWISTS = np.arange(0.0, np.pi, np.pi / 24)
+LENGTHS = np.concatenate([[0.0], np.geomspace(0.1, 5.0, 15)])
+DECIMALS = 9  # of parameters, at most
+REACH = 0.5  # from a trial to the member, all numbers together
+SPARSE = 3  # so much fewer values are tried where other angles are scanned for each
+NUDGE = 0.003  # of a number, by which it is seen whether guesses read it
+
+
+@dataclass(frozen=True)
+class Change:
+    """A number of a table that is wrong: its ``row`` (lengths, twists, offsets) and
+    ``column`` from 0, what is ``printed``, and what is ``meant``; twists in rad."""
+
+    row: Row
+    column: int
+    printed: float
+    meant: float
+
+    def name(self, n: int) -> str:
+        """What the number is called in a table of n joints: a12, alpha12 or R1."""
+        if self.row is Row.OFFSETS:
+            return f"R{self.column + 1}"
+        letter = "a" if self.row is Row.LENGTHS else "alpha"
+        return f"{letter}{link_name(self.column, n)}"
+
+
+@dataclass(frozen=True)
+class Correction:
+    """A linkage that a table is meant to be, which it is to rounding but for a
+    ``mistake``.
+
+    ``match`` is that of the table without the mistake: of the printed one, or of one
+    whose rows stand in other places. ``changes`` are the numbers that are wrong in the
+    printed one; none where rounding is all that keeps it from the linkage.
+    """
+
+    match: Match
+    mistake: str = ""
+    changes: tuple[Change, ...] = ()
+
+
+Progress: TypeAlias = Callable[[str, int], None]
+
+
+def corrections_of(
+    identification: Identification, progress: Progress | None = None
+) -> tuple[Correction, ...]:
+    """What a table is meant to be that is no linkage of the catalogue: those that it is
+    to rounding, or else what `find_corrections` finds."""
+    loop = identification.loop
+    printed, unit = table(loop), loop.characteristic_length
+    views = views_of(printed)
+    rounded = []
+    for match in identification.nearest:
+        if match.distance <= ROUNDED:
+            found = _corrected(match.entry, views, printed, printed, unit)
+            rounded += [found] if found else []
+    return tuple(rounded) or find_corrections(loop, progress=progress)
+
+
+def find_corrections(
+    loop: Loop,
+    entries: Iterable[Entry] | None = None,
+    progress: Progress | None = None,
+) -> tuple[Correction, ...]:
+    """What the table of ``loop`` may be meant to be: with the fewest numbers wrong
+    first, and of these with the least that is left to rounding. ``progress`` is called
+    with what was looked at and how many."""
+    printed = table(loop)
+    unit = loop.characteristic_length
+    known = distinct_entries() if entries is None else entries
+    families = [entry for entry in known if joints_of(entry) == loop.n]
+    corrections: list[Correction] = []
+    with np.errstate(all="ignore"):
+        for number, entry in enumerate(families):
+            corrections += _of_one_number(entry, printed, unit)
+            if progress:
+                progress("families", number + 1)
+        for rearrangements in (_rows_in_place(printed), _columns_in_place(printed)):
+            if not corrections:
+                corrections += _rearranged(families, printed, rearrangements, unit)
+    return tuple(sorted(corrections, key=_order))
+
+
+def _rearranged(
+    families: Sequence[Entry],
+    printed: np.ndarray,
+    rearrangements: Iterable[tuple[str, np.ndarray]],
+    unit: float,
+) -> Iterator[Correction]:
+    """The members that a table (3, n) is with its numbers in other places."""
+    for words, meant in rearrangements:
+        views = views_of(meant)
+        for entry in families:
+            found = _corrected(entry, views, printed, meant, unit, words)
+            if found is not None and found.changes:
+                yield found
+
+
+def _order(correction: Correction) -> tuple[int, float, int, int]:
+    match = correction.match
+    decade = math.floor(math.log10(max(match.distance, 1e-12)))
+    return len(correction.changes), decade, match.freedom, len(match.parameters)
+
+
+def _corrected(
+    entry: Entry,
+    views: Sequence[View],
+    printed: np.ndarray,
+    meant: np.ndarray,
+    unit: float,
+    words: str = "",
+    reach: float = NEAR,
+) -> Correction | None:
+    """The member of an entry that is a table as it is ``meant`` to be (3, n), in one of
+    its ``views``; None where none is, to rounding."""
+    member = best_member(entry, views, unit, reach)
+    if member is None or member.distance > ROUNDED:
+        return None
+    member = _roundest(entry, member, unit)
+    changes = tuple(_changes(printed, member.as_given, unit))
+    return Correction(make_match(member, entry, meant, unit), words, changes)
+
+
+def _roundest(entry: Entry, member: Member, unit: float) -> Member:
+    """The member whose parameters have the fewest decimals, angles in degrees, of those
+    that are as near to a table as ``member`` is, but for a factor."""
+    for decimals in range(DECIMALS):
+        parameters = {}
+        for parameter in entry.parameters:
+            is_angle = parameter.kind is ParameterKind.ANGLE
+            factor = 180 / math.pi if is_angle else 1.0
+            value = factor * member.parameters[parameter.name]
+            parameters[parameter.name] = round(value, decimals) / factor
+        other = rebuild(entry, member, parameters, unit)
+        if other is not None and other.distance <= ALIKE * member.distance:
+            return other
+    return member
+
+
+def _changes(printed: np.ndarray, exact: np.ndarray, unit: float) -> Iterator[Change]:
+    """The numbers of a printed table (3, n) that are off by more than rounding."""
+    gaps = (printed - exact) / unit
+    gaps[1] = 2 * np.sin((printed[1] - exact[1]) / 2)
+    for row, column in np.argwhere(np.abs(gaps) > ROUNDED).tolist():
+        value, right = printed[row, column], exact[row, column]
+        if row == Row.TWISTS.value:
+            right = value + math.remainder(right - value, 2 * math.pi)
+        yield Change(Row(row), column, float(value), float(right))
+
+
+# --- one number -----------------------------------------------------------------------
+
+
+def _of_one_number(
+    entry: Entry, printed: np.ndarray, unit: float
+) -> Iterator[Correction]:
+    """The members that a table (3, n) is but for one number, for each such number."""
+    views = views_of(printed)
+    numbers = np.arange(1.0, printed.size + 1).reshape(printed.shape)
+    is_off = _numbers_off(entry, views, unit)
+    for number in range(printed.size):
+        trials: list[View] = []
+        for view, off in zip(views, is_off, strict=True):
+            # where it stands as the table is read, mirrored or not
+            place = np.abs(view.reading.of(numbers)) == number + 1
+            if not np.any(off & ~place & ~_depends(entry, place)):
+                trials += _views_without(entry, view, place, unit)
+        if trials:
+            found = _corrected(entry, trials, printed, printed, unit, reach=REACH)
+            if found is not None and found.changes:
+                yield found
+
+
+def _numbers_off(entry: Entry, views: Sequence[View], unit: float) -> np.ndarray:
+    """Which numbers of a table are off (k, 3, n), as it reads in each of its views, from
+    the member with what it says of plain parameters; no other parameter changes them."""
+    off = np.zeros((len(views), *views[0].form.shape), dtype=bool)
+    is_fixed = ~changed_by(entry, hidden_parameters(entry))
+    for number, view in enumerate(views):
+        plain = {**entry.defaults, **plain_guess(entry, view.form)}
+        values = build_table(entry, plain)
+        if values is not None:
+            gaps = blind_gaps(view.form[None], values[None], unit)[0]
+            off[number] = (gaps > NEAR) & is_fixed
+    return off
+
+
+def _depends(entry: Entry, place: np.ndarray) -> np.ndarray:
+    """Mask (3, n) of the numbers that depend on the plain parameters that are read at a
+    place (3, n)."""
+    names = []
+    for name, spot in plain_parameters(entry).items():
+        if place[spot.row.value, spot.column]:
+            names.append(name)
+    return changed_by(entry, names)
+
+
+def _views_without(
+    entry: Entry, view: View, place: np.ndarray, unit: float
+) -> Iterator[View]:
+    """A view without the number at a place (3, n); with guesses for it, if it is read."""
+    values = np.where(place, np.nan, view.values)
+    yield replace(view, values=values)
+    if not np.any(place & _read_places(entry)):
+        return
+    is_twist = bool(place[Row.TWISTS.value].any())
+    trials = TWISTS if is_twist else unit * LENGTHS
+    for guess in trials[::SPARSE] if entry.scan else trials:
+        yield View(view.reading, values, np.where(place, guess, view.form))
+
+
+def _read_places(entry: Entry) -> np.ndarray:
+    """Mask (3, n) of the numbers of a table from which parameters are guessed."""
+    mask = changed_by(entry, ()).copy()
+    for spot in plain_parameters(entry).values():
+        mask[spot.row.value, spot.column] = True
+    if entry.guesses is not None:
+        mask |= _guessed_from(entry.construct, entry.parameters, entry.guesses)
+    return mask
+
+
+@cache
+def _guessed_from(
+    construct: Callable[..., Loop], parameters: tuple[Parameter, ...], guesses: Guesses
+) -> np.ndarray:
+    """Mask (3, n) of the numbers of a table that ``guesses`` read."""
+    form = normal_form(table(construct(**{p.name: p.default for p in parameters})))
+    usual = _values(guesses(form))
+    mask = np.zeros(form.shape, dtype=bool)
+    for place in np.ndindex(form.shape):
+        moved = form.copy()
+        moved[place] += NUDGE
+        mask[place] = _values(guesses(moved)) != usual
+    return mask
+
+
+def _values(guesses: Iterable[Mapping[str, float]]) -> list[tuple[float, ...]]:
+    return [tuple(guess.values()) for guess in guesses]
+
+
+# --- rows and columns -----------------------------------------------------------------
+
+COLUMNS = ("lengths", "twists", "offsets")
+UNITS = {
+    "the twists are in radians": 180 / math.pi,
+    "the twists are in degrees": math.pi / 180,
+}
+
+
+def _rows_in_place(printed: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
+    """What a table (3, n) may be meant to be of which two rows are exchanged, a column
+    is shifted, or in another unit; with that in words."""
+    for one, other in itertools.combinations(range(printed.shape[1]), 2):
+        words = f"rows {one + 1} and {other + 1} are exchanged"
+        yield words, _exchanged(printed, one, other)
+    for row, name in enumerate(COLUMNS):
+        for step, direction in ((1, "up"), (-1, "down")):
+            meant = printed.copy()
+            meant[row] = np.roll(printed[row], step)
+            yield f"the {name} are shifted by one row {direction}", meant
+    for words, factor in UNITS.items():
+        yield words, printed * np.array([[1.0], [factor], [1.0]])
+
+
+def _columns_in_place(printed: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
+    """What a table (3, n) may be meant to be of which two numbers of a column are
+    exchanged."""
+    for row, name in enumerate(COLUMNS):
+        for one, other in itertools.combinations(range(printed.shape[1]), 2):
+            meant = printed.copy()
+            meant[row] = _exchanged(printed, one, other)[row]
+            if printed[row, one] != printed[row, other]:
+                words = f"the {name} of rows {one + 1} and {other + 1} are exchanged"
+                yield words, meant
+
+
+def _exchanged(values: np.ndarray, one: int, other: int) -> np.ndarray:
+    order = list(range(values.shape[1]))
+    order[one], order[other] = other, one
+    exchanged: np.ndarray = values[:, order]
+    return exchanged
