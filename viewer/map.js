@@ -1,8 +1,9 @@
-// The transition map as a drawing: forms as curves, marks for singular points, near misses and assemblies, and a dot
+// The transition map as a drawing: forms and near motions as curves, marks for singular points, near misses and assemblies, and a dot
 // where the linkage is.
 
 import { drawing } from "./elements.js";
 import { linesOf, spotsOf } from "./planes.js";
+import { isCurve } from "./tracks.js";
 
 const MARGIN = { left: 52, right: 16, top: 14, bottom: 42 };
 const TALLEST = 0.58; // of the window: the frame of the map
@@ -96,7 +97,7 @@ export class TransitionMap {
   }
 
   curves() {
-    return this.tracks.filter((track) => track.kind === "form").map((track) => {
+    return this.tracks.filter(isCurve).map((track) => {
       const lines = linesOf(this.plane, track.samples);
       const path = lines.map((line) => `M${line.map((spot) => this.screen(spot).map(tenths).join(" ")).join("L")}`);
       this.noteCurve(track);
@@ -121,9 +122,9 @@ export class TransitionMap {
     }
   }
 
-  /** Surfaces as clouds of dots, assemblies and near motions as crosses. */
+  /** Surfaces as clouds of dots, assemblies and near surfaces as crosses. */
   lists() {
-    return this.tracks.filter((track) => LISTS.includes(track.kind)).map((track) => {
+    return this.tracks.filter((track) => LISTS.includes(track.kind) && !isCurve(track)).map((track) => {
       const isCloud = track.kind === "surface";
       const places = track.samples.flatMap(({ s, theta }) =>
         spotsOf(this.plane, theta).map((spot) => {

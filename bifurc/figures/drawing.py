@@ -30,9 +30,17 @@ from bifurc.figures.planes import (
     curve_points,
     cut_to_frame,
     place_in_frame,
+    shown_branches,
 )
-from bifurc.figures.style import RC, Properties, form_style, hollow
-from bifurc.singular.point import Mark
+from bifurc.figures.style import (
+    RC,
+    Properties,
+    Style,
+    form_style,
+    hollow,
+    near_motion_style,
+)
+from bifurc.singular.point import Kind, Mark
 
 NAME_WIDTH = 24  # letters of a line of the legend
 LETTER_SIZE = RC["legend.fontsize"]
@@ -125,7 +133,7 @@ def widen_flat_axes(
 ) -> None:
     """Show more of an axis along which nothing changes but for rounding; ``factors``
     are those of the axes, by which unknowns are multiplied to be shown."""
-    samples = [form.branch.sample(FLAT_SAMPLES) for form in atlas.forms]
+    samples = [branch.sample(FLAT_SAMPLES) for branch in shown_branches(atlas)]
     largest = max((float(np.abs(one).max(initial=0.0)) for one in samples), default=0.0)
     width, height = (factor * (largest or 1.0) for factor in factors)
     if np.ptp(axes.get_xlim()) < FLAT * width:
@@ -168,13 +176,14 @@ DEFAULT_PANEL = PanelSettings()
 def draw_forms(
     axes: Axes, atlas: Atlas, plane: Plane, settings: PanelSettings = DEFAULT_PANEL
 ) -> None:
-    """All forms in a plane, with axes to match."""
-    for i, form in enumerate(atlas.forms):
-        points = plane.project(curve_points(form.branch))
+    """All forms in a plane, near motions dotted, with axes to match."""
+    for i, branch in enumerate(shown_branches(atlas)):
+        points = plane.project(curve_points(branch))
         if len(points):
             rows = cut_to_frame(points, plane.scales)
             # not cut at the frame, in which curves on a torus lie anyway
-            style: Properties = {"linewidth": settings.line_width, **form_style(i).line}
+            line = curve_style(atlas, i).line
+            style: Properties = {"linewidth": settings.line_width, **line}
             axes.plot(*rows.T, clip_on=False, zorder=2, **style)
     horizontal, vertical = plane.scales
     _label_axis(axes.xaxis, horizontal)
@@ -190,6 +199,13 @@ def draw_forms(
     axes.grid(True)
     for spine in axes.spines.values():
         spine.set_zorder(1)  # forms that lie on the edge of the frame are drawn over it
+
+
+def curve_style(atlas: Atlas, index: int) -> Style:
+    """Style of number ``index`` of the `shown_branches` of an atlas."""
+    if index < len(atlas.forms):
+        return form_style(index)
+    return near_motion_style(index)
 
 
 def _label_axis(axis: Axis, scale: Scale) -> None:
@@ -262,6 +278,10 @@ def _entries(atlas: Atlas) -> Iterator[Line2D]:
     for i, form in enumerate(atlas.forms):
         name = textwrap.fill(form.name, NAME_WIDTH)
         yield Line2D([], [], linewidth=1.8, label=name, **form_style(i).line)
+    curves = [near for near in atlas.near_motions if near.branch]
+    for i, near in enumerate(curves, start=len(atlas.forms)):
+        name = f"{near.name}, misses\nclosure by {near.misclosure:.1e}"
+        yield Line2D([], [], linewidth=1.8, label=name, **near_motion_style(i).line)
     marks: list[tuple[str, Properties]] = []
     for kind in dict.fromkeys(point.kind for point in atlas.points):
         marks.append((kind.value, hollow(kind.mark)))
@@ -301,10 +321,20 @@ def note_emptiness(axes: Axes, atlas: Atlas) -> None:
     """Say so in the middle of the frame where there is no form."""
     if atlas.forms:
         return
-    note = "no form"
-    if closes_to_rounding(atlas.closure_gap) and atlas.closure_gap > 0:
-        note += " within the bounds"
-    elif 0 < atlas.closure_gap < np.inf:
-        note += f"\nclosure gap {atlas.closure_gap:.1e}"
     style: Properties = {"ha": "center", "va": "center", "color": "0.4"}
+    note = "\n".join(emptiness(atlas))
     axes.text(0.5, 0.5, note, transform=axes.transAxes, fontsize=11, **style)
+
+
+def emptiness(atlas: Atlas) -> list[str]:
+    """What is said where there is no form, a line each."""
+    if atlas.near_motions:
+        least = min(near.misclosure for near in atlas.near_motions)
+        return ["no form", f"near motions miss closure by {least:.1e} or more"]
+    if len(atlas.rigid) or any(point.kind is Kind.ISOLATED for point in atlas.points):
+        return ["no form", "it closes, and is rigid"]
+    if closes_to_rounding(atlas.closure_gap) and atlas.closure_gap > 0:
+        return ["no form within the bounds"]
+    if 0 < atlas.closure_gap < np.inf:
+        return ["no form", f"closure gap {atlas.closure_gap:.1e}"]
+    return ["no form"]

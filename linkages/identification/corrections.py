@@ -32,12 +32,13 @@ from linkages.identification.fitting import (
     blind_gaps,
     build_table,
     changed_by,
+    gaps_of,
     hidden_parameters,
     joints_of,
     rebuild,
     views_of,
 )
-from linkages.identification.identify import ALIKE, Identification
+from linkages.identification.identify import Identification
 from linkages.identification.match import Match, make_match
 from linkages.identification.recovery import Row, plain_guess, plain_parameters
 from linkages.loop import Loop
@@ -50,6 +51,10 @@ ROUNDED = 0.01
 TWISTS = np.arange(0.0, np.pi, np.pi / 24)
 LENGTHS = np.concatenate([[0.0], np.geomspace(0.1, 5.0, 15)])
 DECIMALS = 9  # of parameters, at most
+MOST_DECIMALS = 12  # of a printed number
+# Times half a unit of the last printed decimal: what least squares may leave of a number
+# of which rounding leaves half a unit at most.
+EXCESS = 2.0
 REACH = 0.5  # from a trial to the member, all numbers together
 SPARSE = 3  # so much fewer values are tried where other angles are scanned for each
 NUDGE = 0.003  # of a number, by which it is seen whether guesses read it
@@ -81,11 +86,13 @@ class Correction:
     ``match`` is that of the table without the mistake: of the printed one, or of one
     whose rows stand in other places. ``changes`` are the numbers that are wrong in the
     printed one; none where rounding is all that keeps it from the linkage.
+    ``is_rounding``: the decimals that are printed account for all other differences.
     """
 
     match: Match
     mistake: str = ""
     changes: tuple[Change, ...] = ()
+    is_rounding: bool = True
 
 
 Progress: TypeAlias = Callable[[str, int], None]
@@ -95,7 +102,20 @@ def corrections_of(
     identification: Identification, progress: Progress | None = None
 ) -> tuple[Correction, ...]:
     """What a table is meant to be that is no linkage of the catalogue: those that it is
-    to rounding, or else what `find_corrections` finds."""
+    to rounding, or else what `find_corrections` finds, or else those nearest."""
+    near = _nearest(identification)
+    rounded = tuple(one for one in near if one.is_rounding)
+    return rounded or find_corrections(identification.loop, progress=progress) or near
+
+
+def roundings_of(identification: Identification) -> tuple[Correction, ...]:
+    """The linkages of the catalogue that a table is but for the decimals that are not
+    printed, the most special first."""
+    return tuple(one for one in _nearest(identification) if one.is_rounding)
+
+
+def _nearest(identification: Identification) -> tuple[Correction, ...]:
+    """The linkages of the catalogue that are near to a table as it is."""
     loop = identification.loop
     printed, unit = table(loop), loop.characteristic_length
     views = views_of(printed)
@@ -104,7 +124,7 @@ def corrections_of(
         if match.distance <= ROUNDED:
             found = _corrected(match.entry, views, printed, printed, unit)
             rounded += [found] if found else []
-    return tuple(rounded) or find_corrections(loop, progress=progress)
+    return tuple(sorted(rounded, key=_order))
 
 
 def find_corrections(
@@ -146,10 +166,13 @@ def _rearranged(
                 yield found
 
 
-def _order(correction: Correction) -> tuple[int, float, int, int]:
+def _order(correction: Correction) -> tuple[int, int, int, int]:
+    """The fewest numbers wrong come first, then what rounding accounts for, the most
+    special first."""
     match = correction.match
     decade = math.floor(math.log10(max(match.distance, 1e-12)))
-    return len(correction.changes), decade, match.freedom, len(match.parameters)
+    rounded = -100 if correction.is_rounding else decade
+    return len(correction.changes), rounded, match.freedom, len(match.parameters)
 
 
 def _corrected(
@@ -166,14 +189,43 @@ def _corrected(
     member = best_member(entry, views, unit, reach)
     if member is None or member.distance > ROUNDED:
         return None
-    member = _roundest(entry, member, unit)
-    changes = tuple(_changes(printed, member.as_given, unit))
-    return Correction(make_match(member, entry, meant, unit), words, changes)
+    bounds = EXCESS * _half_units(printed) / np.array([[unit], [1.0], [unit]])
+    member = _plainest(entry, member, bounds, unit)
+    is_rounding = _is_within(member, bounds, unit)
+    least = bounds if is_rounding else np.full((3, 1), ROUNDED)
+    changes = tuple(_changes(printed, member.as_given, least, unit))
+    match = make_match(member, entry, meant, unit)
+    return Correction(match, words, changes, is_rounding)
 
 
-def _roundest(entry: Entry, member: Member, unit: float) -> Member:
+def _half_units(printed: np.ndarray) -> np.ndarray:
+    """Half a unit of the last decimal of lengths and offsets, and of twists in degrees
+    or rad, whichever have fewer decimals; (3, 1), twists in rad."""
+    lengths = 0.5 * 10.0 ** -_decimals(printed[[0, 2]])
+    in_rad, in_degrees = _decimals(printed[1]), _decimals(np.degrees(printed[1]))
+    twists = 0.5 * 10.0**-in_rad
+    if in_degrees < in_rad:
+        twists = math.radians(0.5 * 10.0**-in_degrees)
+    return np.array([[lengths], [twists], [lengths]])
+
+
+def _decimals(values: np.ndarray) -> int:
+    """How many decimals numbers have."""
+    for decimals in range(MOST_DECIMALS):
+        if np.allclose(values, np.round(values, decimals), rtol=1e-13, atol=1e-13):
+            return decimals
+    return MOST_DECIMALS
+
+
+def _is_within(member: Member, bounds: np.ndarray, unit: float) -> bool:
+    """Whether no number that counts differs by more than the ``bounds`` (3, 1)."""
+    gaps = gaps_of(member, unit).reshape(member.values.shape)
+    return bool(np.all(np.abs(gaps) <= bounds))
+
+
+def _plainest(entry: Entry, member: Member, bounds: np.ndarray, unit: float) -> Member:
     """The member whose parameters have the fewest decimals, angles in degrees, of those
-    that are as near to a table as ``member`` is, but for a factor."""
+    that differ from a table by no more than the ``bounds`` (3, 1)."""
     for decimals in range(DECIMALS):
         parameters = {}
         for parameter in entry.parameters:
@@ -182,16 +234,19 @@ def _roundest(entry: Entry, member: Member, unit: float) -> Member:
             value = factor * member.parameters[parameter.name]
             parameters[parameter.name] = round(value, decimals) / factor
         other = rebuild(entry, member, parameters, unit)
-        if other is not None and other.distance <= ALIKE * member.distance:
+        if other is not None and _is_within(other, bounds, unit):
             return other
     return member
 
 
-def _changes(printed: np.ndarray, exact: np.ndarray, unit: float) -> Iterator[Change]:
-    """The numbers of a printed table (3, n) that are off by more than rounding."""
+def _changes(
+    printed: np.ndarray, exact: np.ndarray, least: np.ndarray, unit: float
+) -> Iterator[Change]:
+    """The numbers of a printed table (3, n) that are off by more than the ``least``
+    (3, 1)."""
     gaps = (printed - exact) / unit
     gaps[1] = 2 * np.sin((printed[1] - exact[1]) / 2)
-    for row, column in np.argwhere(np.abs(gaps) > ROUNDED).tolist():
+    for row, column in np.argwhere(np.abs(gaps) > least).tolist():
         value, right = printed[row, column], exact[row, column]
         if row == Row.TWISTS.value:
             right = value + math.remainder(right - value, 2 * math.pi)

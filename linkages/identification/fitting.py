@@ -346,6 +346,12 @@ def _improved(
     return None
 
 
+def gaps_of(member: Member, unit: float) -> np.ndarray:
+    """By how much a table differs from the member beside it (3 n,), lengths and offsets
+    in ``unit``, twists in rad; 0 for a number that is left out."""
+    return _gaps(member.view.values, member.signs.of(member.values), unit)
+
+
 def rebuild(
     entry: Entry, member: Member, parameters: dict[str, float], unit: float
 ) -> Member | None:

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 import click
 
 from linkages.app import options
-from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
+from linkages.app.exit_codes import ExitCode, exit_code_table
 
 if TYPE_CHECKING:
     from linkages.identification.corrections import Correction
-    from linkages.identification.identify import Identification
 
 LARGEST_TOLERANCE = 1  # as large as the linkage itself
 
@@ -57,6 +56,7 @@ def identify_command(
       bifurc identify four-bennett-network --lock 2=40 --lock 6=-75 --without-centre
     """
     from linkages.app.choice import choose_held
+    from linkages.app.nearest import exact_linkage
     from linkages.app.output import (
         StatusLine,
         require_ending,
@@ -66,6 +66,7 @@ def identify_command(
         say_written,
         write_content,
     )
+    from linkages.app.reports.corrections import exact_toml
     from linkages.app.reports.identify import (
         describe_identification,
         make_identification_document,
@@ -88,24 +89,8 @@ def identify_command(
     else:
         say(describe_identification(identification, corrections))
     if out is not None:
-        write_content(out, _exact(identification, corrections), "--write")
+        correction = exact_linkage("--write", identification, corrections)
+        write_content(out, exact_toml(loop, correction), "--write")
         say_written([out], out.parent)
     elif not (identification.matches or identification.locked):
         click.get_current_context().exit(ExitCode.NOT_IN_CATALOGUE)
-
-
-def _exact(identification: Identification, corrections: tuple[Correction, ...]) -> str:
-    """The text of a file with the exact table; raises `CommandError` where nothing is
-    known of it."""
-    from linkages.app.reports.corrections import exact_toml
-
-    loop = identification.loop
-    if identification.matches:
-        return exact_toml(loop, identification.matches[0])
-    if not corrections:
-        raise CommandError(
-            "--write: no linkage of the catalogue is near, and none has all numbers but "
-            "one or two",
-            ExitCode.NOT_IN_CATALOGUE,
-        )
-    return exact_toml(loop, corrections[0].match, corrections[0].mistake)

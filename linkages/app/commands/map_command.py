@@ -16,12 +16,22 @@ if TYPE_CHECKING:
     from bifurc.atlas import Atlas
     from linkages.app.files import FigureAxes
 
+EXACT = "exact.toml"  # the table that --nearest maps
+
 
 @click.command("map", epilog=exit_code_table())
 @click.argument("linkage", metavar="NAME|FILE.toml")
 @options.out_option("dataset, graph, summary, figures and the page map.html")
 @options.json_option("; angles in radians")
 @options.no_certify_option
+@click.option(
+    "--nearest",
+    is_flag=True,
+    help=(
+        "Map the exact linkage of the catalogue that a rounded or misprinted table is "
+        "meant to be."
+    ),
+)
 @click.option(
     "--digits",
     type=click.IntRange(20, 1000),
@@ -51,6 +61,7 @@ def map_command(
     out: Path | None,
     as_json: bool,
     no_certify: bool,
+    nearest: bool,
     digits: int | None,
     axes: tuple[str, ...] | None,
     against: tuple[str, ...] | None,
@@ -65,6 +76,7 @@ def map_command(
       bifurc map special-double-subtractive-goldberg --out out
       bifurc map bricard-line-symmetric --out out --axes 1,5 --against 1
       bifurc map my_linkage.toml --json > map.json
+      bifurc map printed_table.csv --nearest --out out
       bifurc map five_bar.toml --lock J1=40
       bifurc map slider_crank.toml --out out --axes J1,J4
       bifurc map four-bennett-network --lock 2=40 --lock 6=-75
@@ -74,7 +86,7 @@ def map_command(
     from linkages.app.atlas_source import explore_linkage
     from linkages.app.choice import choose_held
     from linkages.app.files import figure_axes
-    from linkages.app.output import require_folder, say, say_written
+    from linkages.app.output import require_folder, say, say_written, write_content
 
     if as_json and digits:
         raise CommandError(
@@ -83,8 +95,18 @@ def map_command(
     require_out(out, axes=axes, against=against)
     if choice.hold.is_without_centre and digits:
         raise CommandError("--digits: it does not go with --without-centre")
+    if nearest and digits:
+        raise CommandError("--digits: it does not go with --nearest")
     require_folder(out)
     mechanism = choose_held(linkage, choice.parameters, choice.hold)
+    exact = ""
+    if nearest:
+        from linkages.app.nearest import nearest_linkage
+        from linkages.subject import as_subject
+
+        meant = nearest_linkage(as_subject(mechanism).as_loop())
+        click.echo(meant.words, err=True)
+        mechanism, exact = meant.linkage, meant.toml
     over = figure_axes(mechanism, axes, against)
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
@@ -100,6 +122,9 @@ def map_command(
 
         say("\n" + describe_confirmation(atlas, linkage, choice.parameters, digits))
     if out is not None:
+        if exact:
+            write_content(out / EXACT, exact, "--out")
+            paths.append(out / EXACT)
         say_written([*paths, *write_pictures(atlas, out, over)], out)
     verdict = judge(atlas)
     if as_json and verdict.code is not ExitCode.DONE:

@@ -13,7 +13,6 @@ import numpy as np
 from linkages.app.reports.entry_parameters import parameters_text
 from linkages.app.texts.numbers import in_degrees
 from linkages.identification.corrections import ROUNDED, Change, Correction
-from linkages.identification.match import Match
 from linkages.identification.recovery import Row
 from linkages.loop import Loop
 
@@ -36,8 +35,9 @@ def describe_corrections(corrections: Sequence[Correction], n: int) -> str:
     best = best_corrections(corrections)
     if not best[0].changes:
         match = best[0].match
+        word = "a rounding of" if best[0].is_rounding else "near"
         return (
-            f"It is a rounding of {match.entry.name}: {match.entry.title}\n"
+            f"It is {word} {match.entry.name}: {match.entry.title}\n"
             f"  {parameters_text(match)}\n"
             f"  off by {match.distance:.1e}, all numbers together."
         )
@@ -126,12 +126,13 @@ def correction_documents(
 # --- the file -------------------------------------------------------------------------
 
 
-def exact_toml(printed: Loop, match: Match, mistake: str = "") -> str:
-    """The text of a file with the table of a linkage, a comment at each number that
-    is another one in the ``printed`` table."""
+def exact_toml(printed: Loop, correction: Correction) -> str:
+    """The text of a file with the exact table that a ``printed`` one is meant to be, a
+    comment at each number that is another one there."""
+    match = correction.match
     words = [f"# {match.entry.name}: {parameters_text(match)}"]
-    if mistake:
-        words.append(f"# {mistake} in {printed.name}")
+    if correction.mistake:
+        words.append(f"# {correction.mistake} in {printed.name}")
     lines = [*words, f"name = {json.dumps(printed.name, ensure_ascii=False)}"]
     lines.append('angles = "deg"')
     rows = (printed.lengths, printed.twists, printed.offsets)

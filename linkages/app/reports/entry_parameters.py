@@ -18,3 +18,9 @@ def parameters_text(match: Match) -> str:
         else:
             parts.append(f"{name} = {value:.8g}")
     return ", ".join(parts)
+
+
+def member_text(match: Match) -> str:
+    """The linkage with its parameters, as ``bennett(a = 1, alpha = 100 deg, beta = 40
+    deg)``."""
+    return f"{match.entry.name}({parameters_text(match)})"

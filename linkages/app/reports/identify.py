@@ -47,7 +47,7 @@ def describe_identification(
         sentence = f"No linkage of the catalogue has this geometry, to {tolerance}."
         parts = [_near(match) for match in identification.nearest[:NEAREST]]
         if corrections:
-            parts = [describe_corrections(corrections, loop.n), *parts]
+            parts = [describe_corrections(corrections, loop.n)]
         elif not parts:
             parts = [f"None misses by less than {NEAR:g}. {NO_CORRECTION}"]
     parts += [_locked(joint) for joint in identification.locked]

@@ -196,6 +196,7 @@ def _near_motions(atlas: Atlas) -> str:
             closed, length = "-", "-"
         rows.append(
             {
+                "name": near.name,
                 subject_at(atlas).heading(atlas): show_configuration(
                     atlas, near.sample
                 ),

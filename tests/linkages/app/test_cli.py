@@ -50,7 +50,7 @@ KEYS = {
     "near_misses": {"theta", "singular_value", "error", "form"},
     "dead_points": {"theta", "joint", "form"},
     "rigid_assemblies": None,
-    "near_motions": {"misclosure", "length", "closed", "mobility", "sample"},
+    "near_motions": {"name", "misclosure", "length", "closed", "mobility", "sample"},
     "completeness": {
         "level",
         "certainty",
