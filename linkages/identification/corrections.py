@@ -36,6 +36,7 @@ from linkages.identification.fitting import (
     hidden_parameters,
     joints_of,
     rebuild,
+    refit,
     views_of,
 )
 from linkages.identification.identify import Identification
@@ -142,9 +143,11 @@ def find_corrections(
     corrections: list[Correction] = []
     with np.errstate(all="ignore"):
         for number, entry in enumerate(families):
-            corrections += _of_one_number(entry, printed, unit)
+            corrections += _without(entry, printed, _single_numbers(printed), unit)
             if progress:
                 progress("families", number + 1)
+        for entry in families if not corrections else ():
+            corrections += _without(entry, printed, _like_numbers(printed), unit)
         for rearrangements in (_rows_in_place(printed), _columns_in_place(printed)):
             if not corrections:
                 corrections += _rearranged(families, printed, rearrangements, unit)
@@ -189,7 +192,11 @@ def _corrected(
     member = best_member(entry, views, unit, reach)
     if member is None or member.distance > ROUNDED:
         return None
-    bounds = EXCESS * _half_units(printed) / np.array([[unit], [1.0], [unit]])
+    half_units = _half_units(printed)
+    bounds = EXCESS * half_units / np.array([[unit], [1.0], [unit]])
+    # lengths and twists count by their last decimals
+    weighted = refit(entry, member, float(half_units[0, 0] / half_units[1, 0]))
+    member = rebuild(entry, member, weighted.parameters, unit) or member
     member = _plainest(entry, member, bounds, unit)
     is_rounding = _is_within(member, bounds, unit)
     least = bounds if is_rounding else np.full((3, 1), ROUNDED)
@@ -256,24 +263,44 @@ def _changes(
 # --- one number -----------------------------------------------------------------------
 
 
-def _of_one_number(
-    entry: Entry, printed: np.ndarray, unit: float
+def _without(
+    entry: Entry, printed: np.ndarray, wrong: Iterable[np.ndarray], unit: float
 ) -> Iterator[Correction]:
-    """The members that a table (3, n) is but for one number, for each such number."""
+    """The members that a table (3, n) is but for some numbers, for each choice of them
+    in ``wrong``, masks (3, n)."""
     views = views_of(printed)
-    numbers = np.arange(1.0, printed.size + 1).reshape(printed.shape)
     is_off = _numbers_off(entry, views, unit)
-    for number in range(printed.size):
+    for mask in wrong:
         trials: list[View] = []
         for view, off in zip(views, is_off, strict=True):
-            # where it stands as the table is read, mirrored or not
-            place = np.abs(view.reading.of(numbers)) == number + 1
+            # where they stand as the table is read, mirrored or not
+            place = view.reading.of(mask.astype(float)) != 0
             if not np.any(off & ~place & ~_depends(entry, place)):
                 trials += _views_without(entry, view, place, unit)
         if trials:
             found = _corrected(entry, trials, printed, printed, unit, reach=REACH)
             if found is not None and found.changes:
                 yield found
+
+
+def _single_numbers(printed: np.ndarray) -> Iterator[np.ndarray]:
+    """Masks (3, n) of each number of a table."""
+    for place in np.ndindex(printed.shape):
+        mask = np.zeros(printed.shape, dtype=bool)
+        mask[place] = True
+        yield mask
+
+
+def _like_numbers(printed: np.ndarray) -> Iterator[np.ndarray]:
+    """Masks (3, n) of the numbers of a row that are alike, signs apart: a length that
+    occurs twice is one misprint."""
+    for row in range(len(printed)):
+        sizes = np.abs(printed[row])
+        for size in np.unique(sizes):
+            mask = np.zeros(printed.shape, dtype=bool)
+            mask[row] = sizes == size
+            if 1 < np.count_nonzero(mask) < printed.shape[1] and size > 0:
+                yield mask
 
 
 def _numbers_off(entry: Entry, views: Sequence[View], unit: float) -> np.ndarray:
@@ -303,15 +330,19 @@ def _depends(entry: Entry, place: np.ndarray) -> np.ndarray:
 def _views_without(
     entry: Entry, view: View, place: np.ndarray, unit: float
 ) -> Iterator[View]:
-    """A view without the number at a place (3, n); with guesses for it, if it is read."""
+    """A view without the numbers at a place (3, n); with guesses for them, if they are
+    read."""
     values = np.where(place, np.nan, view.values)
     yield replace(view, values=values)
     if not np.any(place & _read_places(entry)):
         return
     is_twist = bool(place[Row.TWISTS.value].any())
     trials = TWISTS if is_twist else unit * LENGTHS
+    # twists in normal form are alike, or supplements
+    is_opposite = place & (np.abs(view.form - view.form[place][0]) > ROUNDED)
     for guess in trials[::SPARSE] if entry.scan else trials:
-        yield View(view.reading, values, np.where(place, guess, view.form))
+        form = np.where(place, guess, view.form)
+        yield View(view.reading, values, np.where(is_opposite, np.pi - form, form))
 
 
 def _read_places(entry: Entry) -> np.ndarray:
@@ -346,10 +377,6 @@ def _values(guesses: Iterable[Mapping[str, float]]) -> list[tuple[float, ...]]:
 # --- rows and columns -----------------------------------------------------------------
 
 COLUMNS = ("lengths", "twists", "offsets")
-UNITS = {
-    "the twists are in radians": 180 / math.pi,
-    "the twists are in degrees": math.pi / 180,
-}
 
 
 def _rows_in_place(printed: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
@@ -363,8 +390,11 @@ def _rows_in_place(printed: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
             meant = printed.copy()
             meant[row] = np.roll(printed[row], step)
             yield f"the {name} are shifted by one row {direction}", meant
-    for words, factor in UNITS.items():
-        yield words, printed * np.array([[1.0], [factor], [1.0]])
+    largest = float(np.abs(printed[1]).max())
+    if 0 < largest < math.radians(2 * math.pi):
+        yield "the twists are in radians", printed * [[1.0], [180 / math.pi], [1.0]]
+    if largest > 2 * math.pi:
+        yield "the twists are in degrees", printed * [[1.0], [math.pi / 180], [1.0]]
 
 
 def _columns_in_place(printed: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:

@@ -346,6 +346,13 @@ def _improved(
     return None
 
 
+def refit(entry: Entry, member: Member, unit: float) -> Member:
+    """The member at the least distance in another ``unit`` of lengths, from a near
+    one."""
+    candidate = Candidate(member.view, member.parameters, member.values)
+    return _fit(entry, _member(candidate, unit), unit)
+
+
 def gaps_of(member: Member, unit: float) -> np.ndarray:
     """By how much a table differs from the member beside it (3 n,), lengths and offsets
     in ``unit``, twists in rad; 0 for a number that is left out."""
