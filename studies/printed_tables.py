@@ -7,8 +7,8 @@ returned, and is the wrong number named? The misprinted tables of the sources fo
 
 A misprint that makes a linkage of the catalogue, such as a parallelogram that another
 sign makes an antiparallelogram, is none, and is drawn anew. What is returned counts as
-the exact member if it moves, and every number of it that is not said to be wrong is
-within the last printed decimal of the true one. Where a table cannot tell which of two
+the exact member if every number of it that is not said to be wrong is within two units of
+the last printed decimal of the true one. Where a table cannot tell which of two
 numbers is wrong, both are named.
 
 python -m studies.printed_tables --out out/printed_tables
@@ -34,6 +34,7 @@ from linkages.catalogue import catalogue
 from linkages.entry import Entry
 from linkages.errata.misprints import printed_tables
 from linkages.identification.corrections import (
+    EXCESS,
     Change,
     Correction,
     corrections_of,
@@ -232,11 +233,12 @@ def places(changes: tuple[Change, ...]) -> set[tuple[int, int]]:
 
 
 def is_right(printed: Printed, correction: Correction) -> bool:
-    """Whether a linkage is the true one, but for twice what rounding changes of the
-    numbers that are right, and ten times that of those that follow from them."""
+    """Whether a linkage is the true one but for rounding: half a unit of the last decimal
+    and what the fit leaves beside that, ten times as much of numbers that follow from
+    the others."""
     gaps = np.abs(np.sin((correction.match.member - printed.true) / 2) * 2)
     gaps[[0, 2]] = np.abs(correction.match.member - printed.true)[[0, 2]]
-    allowed = 3.0 * printed.half_units * np.ones_like(gaps)
+    allowed = (1.0 + EXCESS) * printed.half_units * np.ones_like(gaps)
     for place in places_off(printed):
         allowed[place] *= 10.0
     return bool(np.all(gaps <= allowed))

@@ -55,7 +55,7 @@ DECIMALS = 9  # of parameters, at most
 MOST_DECIMALS = 12  # of a printed number
 # Times half a unit of the last printed decimal: what least squares may leave of a number
 # of which rounding leaves half a unit at most.
-EXCESS = 2.0
+EXCESS = 3.0
 REACH = 0.5  # from a trial to the member, all numbers together
 SPARSE = 3  # so much fewer values are tried where other angles are scanned for each
 NUDGE = 0.003  # of a number, by which it is seen whether guesses read it
@@ -142,10 +142,12 @@ def find_corrections(
     families = [entry for entry in known if joints_of(entry) == loop.n]
     corrections: list[Correction] = []
     with np.errstate(all="ignore"):
-        for number, entry in enumerate(families):
-            corrections += _without(entry, printed, _single_numbers(printed), unit)
+        # a scan takes long, and what is scanned is more general than the others
+        for entry in sorted(families, key=lambda entry: bool(entry.scan)):
+            if not (entry.scan and corrections):
+                corrections += _without(entry, printed, _single_numbers(printed), unit)
             if progress:
-                progress("families", number + 1)
+                progress("families", families.index(entry))
         for entry in families if not corrections else ():
             corrections += _without(entry, printed, _like_numbers(printed), unit)
         for rearrangements in (_rows_in_place(printed), _columns_in_place(printed)):
@@ -206,14 +208,22 @@ def _corrected(
 
 
 def _half_units(printed: np.ndarray) -> np.ndarray:
-    """Half a unit of the last decimal of lengths and offsets, and of twists in degrees
-    or rad, whichever have fewer decimals; (3, 1), twists in rad."""
-    lengths = 0.5 * 10.0 ** -_decimals(printed[[0, 2]])
+    """Half a unit of the last decimal of lengths and offsets, and of twists, (3, 1), the
+    latter in rad.
+
+    All numbers are taken to be printed to as many digits, those that end earlier being
+    exact: twists in rad with as many decimals as lengths, in degrees with one less.
+    """
+    lengths = _decimals(printed[[0, 2]])
     in_rad, in_degrees = _decimals(printed[1]), _decimals(np.degrees(printed[1]))
-    twists = 0.5 * 10.0**-in_rad
     if in_degrees < in_rad:
-        twists = math.radians(0.5 * 10.0**-in_degrees)
-    return np.array([[lengths], [twists], [lengths]])
+        decimals = max(lengths, in_degrees + 1)
+        twist = math.radians(0.5 * 10.0 ** (1 - decimals))
+    else:
+        decimals = max(lengths, in_rad)
+        twist = 0.5 * 10.0**-decimals
+    length = 0.5 * 10.0**-decimals
+    return np.array([[length], [twist], [length]])
 
 
 def _decimals(values: np.ndarray) -> int:
@@ -256,7 +266,7 @@ def _changes(
     for row, column in np.argwhere(np.abs(gaps) > least).tolist():
         value, right = printed[row, column], exact[row, column]
         if row == Row.TWISTS.value:
-            right = value + math.remainder(right - value, 2 * math.pi)
+            right = math.remainder(right, 2 * math.pi)
         yield Change(Row(row), column, float(value), float(right))
 
 

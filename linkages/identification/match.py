@@ -48,11 +48,14 @@ def make_match(member: Member, entry: Entry, given: np.ndarray, unit: float) -> 
         if parameter.kind is ParameterKind.ANGLE:
             value = float(_wrapped(np.array(value)))
         parameters[parameter.name] = value
+    exact = given - residuals * units
+    is_turned = (np.abs(exact[1]) > np.pi) & (np.abs(given[1]) <= np.pi)
+    exact[1, is_turned] = _wrapped(exact[1, is_turned])
     return Match(
         entry,
         parameters,
         member.view.reading,
-        given - residuals * units,
+        exact,
         residuals,
         member.distance,
         member.freedom,

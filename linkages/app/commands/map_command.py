@@ -86,7 +86,13 @@ def map_command(
     from linkages.app.atlas_source import explore_linkage
     from linkages.app.choice import choose_held
     from linkages.app.files import figure_axes
-    from linkages.app.output import require_folder, say, say_written, write_content
+    from linkages.app.output import (
+        require_folder,
+        say,
+        say_aside,
+        say_written,
+        write_content,
+    )
 
     if as_json and digits:
         raise CommandError(
@@ -114,7 +120,7 @@ def map_command(
             mechanism, replace(choice.search, certify=not no_certify)
         )
         try:
-            report(atlas, as_json)
+            report(atlas, as_json, choice.verbose)
         finally:  # where nothing can be shown, there are still the files
             paths = write_numbers(atlas, out)
     if digits:
@@ -127,21 +133,25 @@ def map_command(
             paths.append(out / EXACT)
         say_written([*paths, *write_pictures(atlas, out, over)], out)
     verdict = judge(atlas)
+    if not as_json:
+        from linkages.app.texts.next_steps import next_steps
+
+        say_aside(next_steps(atlas, linkage, choice, out is not None))
     if as_json and verdict.code is not ExitCode.DONE:
         click.echo(verdict.sentence, err=True)
     click.get_current_context().exit(verdict.code)
 
 
-def report(atlas: Atlas, as_json: bool) -> None:
+def report(atlas: Atlas, as_json: bool, is_whole: bool) -> None:
     """Print the map, as tables or as one JSON document."""
     from linkages.app.answer.document import make_document
     from linkages.app.output import say, say_json
-    from linkages.app.texts.summary import make_summary
+    from linkages.app.texts.summary import make_screen, make_summary
 
     if as_json:
         say_json(make_document(atlas))
     else:
-        say(make_summary(atlas))
+        say(make_summary(atlas) if is_whole else make_screen(atlas))
 
 
 def write_numbers(atlas: Atlas, out: Path | None) -> list[Path]:

@@ -30,8 +30,8 @@ TITLES = {Row.LENGTHS: "lengths", Row.TWISTS: "twists", Row.OFFSETS: "offsets"}
 
 
 def describe_corrections(corrections: Sequence[Correction], n: int) -> str:
-    """What a table of n joints is meant to be, by one or more corrections: the ways to mend it with the fewest
-    numbers wrong, each with the most special of its linkages."""
+    """What a table of n joints is meant to be, by one or more corrections: the ways to
+    mend it with the fewest numbers wrong, each with the most special of its linkages."""
     best = best_corrections(corrections)
     if not best[0].changes:
         match = best[0].match
@@ -47,11 +47,13 @@ def describe_corrections(corrections: Sequence[Correction], n: int) -> str:
 
 
 def best_corrections(corrections: Sequence[Correction]) -> list[Correction]:
-    """Those with the fewest numbers wrong, one for each way to mend the table."""
+    """Those with the fewest numbers wrong, as near as the first, one for each way to
+    mend the table."""
     ways: dict[tuple[object, ...], Correction] = {}
     for one in corrections:
         places = tuple((change.row, change.column) for change in one.changes)
-        if len(one.changes) == len(corrections[0].changes):
+        is_alike = one.is_rounding == corrections[0].is_rounding
+        if is_alike and len(one.changes) == len(corrections[0].changes):
             ways.setdefault((one.mistake, *places), one)
     return list(ways.values())
 
@@ -136,17 +138,19 @@ def exact_toml(printed: Loop, correction: Correction) -> str:
     lines = [*words, f"name = {json.dumps(printed.name, ensure_ascii=False)}"]
     lines.append('angles = "deg"')
     rows = (printed.lengths, printed.twists, printed.offsets)
+    wrong = {(change.row, change.column) for change in correction.changes}
     for row, values in zip(Row, rows, strict=True):
         lines.append(f"{TITLES[row]} = [")
         right = match.member[row.value]
         for column in range(printed.n):
             change = Change(row, column, float(values[column]), float(right[column]))
-            lines.append(f"    {_line(change, printed)}")
+            is_wrong = (row, column) in wrong
+            lines.append(f"    {_line(change, printed, is_wrong)}")
         lines.append("]")
     return "\n".join(lines) + "\n"
 
 
-def _line(change: Change, printed: Loop) -> str:
+def _line(change: Change, printed: Loop, is_wrong: bool) -> str:
     """One number of the file, and what it is in the printed table."""
     factor = 180 / math.pi if change.row is Row.TWISTS else 1.0
     unit = 1.0 if change.row is Row.TWISTS else printed.characteristic_length
@@ -155,7 +159,7 @@ def _line(change: Change, printed: Loop) -> str:
     if gap <= SAME:
         return text
     name = change.name(printed.n)
-    word = "misprint" if gap > ROUNDED else "rounded"
+    word = "misprint" if is_wrong else "rounded"
     shown = _number(factor * change.printed)
     return f"{text}  # {name}: {shown} is printed ({word})"
 
