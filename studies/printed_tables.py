@@ -24,10 +24,11 @@ from pathlib import Path
 import click
 import numpy as np
 
+from bifurc import plot_transition_map
 from bifurc.figures.planes import shown_branches
-from bifurc.figures.plotting import plot_transition_map, save_figure
+from bifurc.figures.plotting import save_figure
 from bifurc.tables import section
-from linkages import map_linkage
+from linkages import GeometryError, map_linkage
 from linkages.app.options import FOLDER
 from linkages.app.reports.corrections import best_corrections
 from linkages.catalogue import catalogue
@@ -42,7 +43,6 @@ from linkages.identification.corrections import (
 )
 from linkages.identification.equivalence import as_loop, table
 from linkages.identification.identify import identify
-from linkages.values import GeometryError
 
 NAMES = (
     "bennett",

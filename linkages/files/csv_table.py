@@ -51,12 +51,7 @@ def read_csv(text: str, name: str) -> Loop:
     rows = _rows(text)
     require(bool(rows), "table", "an empty file", "headings and a row for each joint")
     headings = [_heading(cell) for cell in rows[0]]
-    columns = {}
-    for meaning, words in HEADINGS.items():
-        found = [k for k, one in enumerate(headings) if one.meaning == meaning]
-        allowed = f"one, of {', '.join(words[:3])}"
-        require(len(found) == 1, f"columns of {meaning}", len(found), allowed)
-        columns[meaning] = found[0]
+    columns = _places_of_columns(headings)
     body = rows[1:]
     allowed = f"one for each joint, {MIN_JOINTS} to {MAX_JOINTS}"
     require(MIN_JOINTS <= len(body) <= MAX_JOINTS, "number of rows", len(body), allowed)
@@ -71,6 +66,17 @@ def read_csv(text: str, name: str) -> Loop:
     )
     of_links = [headings[columns[meaning]] for meaning in ("lengths", "twists")]
     return from_modified(loop) if any(one.is_modified for one in of_links) else loop
+
+
+def _places_of_columns(headings: Sequence[_Heading]) -> dict[str, int]:
+    """Which column holds lengths, twists and offsets."""
+    columns = {}
+    for meaning, words in HEADINGS.items():
+        found = [k for k, one in enumerate(headings) if one.meaning == meaning]
+        allowed = f"one, of {', '.join(words[:3])}"
+        require(len(found) == 1, f"columns of {meaning}", len(found), allowed)
+        columns[meaning] = found[0]
+    return columns
 
 
 def from_modified(loop: Loop) -> Loop:
