@@ -193,7 +193,8 @@ class Atlas:
     where there are forms or surfaces. ``provenance`` says
     how the atlas came about. ``subject`` says what was mapped, in values that JSON can
     hold: whoever maps something more than equations defines it; a ``scale`` in it is
-    what each unknown is multiplied with to be in the user's unit. ``diagram``: what
+    what each unknown is multiplied with to be in the user's unit, ``drawn`` the
+    configuration in which it was given. ``diagram``: what
     happens as a parameter changes, where one was named or events were asked for.
     """
 
@@ -214,6 +215,12 @@ class Atlas:
     diagram: Diagram | None = None
 
     # --- queries ----------------------------------------------------------------------
+
+    @property
+    def drawn(self) -> np.ndarray | None:
+        """The configuration (n,) in which what was mapped was given, if any."""
+        values = self.subject.get("drawn")
+        return None if values is None else np.array(values, dtype=float)
 
     @property
     def bifurcations(self) -> tuple[MeetingPoint, ...]:

@@ -149,6 +149,7 @@ export class TransitionMap {
         this.targets.marks.push({ track, s: track.place(miss.s), x, y });
       }
     }
+    marks.push(...this.drawnMarks());
     for (const point of this.scene.points) {
       for (const spot of spotsOf(this.plane, point.angles)) {
         const [x, y] = this.screen(spot);
@@ -158,6 +159,18 @@ export class TransitionMap {
       }
     }
     return marks;
+  }
+
+  /** A star where the linkage is as its file draws it. */
+  drawnMarks() {
+    const { drawn } = this.scene;
+    if (!drawn) return [];
+    return spotsOf(this.plane, drawn.angles).map((spot) => {
+      const [x, y] = this.screen(spot);
+      if (drawn.place) this.targets.marks.push({ track: this.tracks[drawn.place[0]], s: drawn.place[1], x, y });
+      const arms = [0, 1, 2, 3, 4].map((k) => starPoint(x, y, 7.5, k) + starPoint(x, y, 3, k + 0.5));
+      return drawing("path", { class: "bv-drawn", d: `M${arms.join("").slice(1)}z` }, titled("as drawn"));
+    });
   }
 
   /** The names of singular points, each where it covers least; those at one place share a label. */
@@ -260,6 +273,12 @@ function pointMark(point, x, y) {
   if (point.kind === "bifurcation") return drawing("circle", { ...attributes, cx: x, cy: y, r: 5 }, title);
   const d = point.kind === "rank drop" ? `M${x} ${y - 5.5}l5.5 5.5l-5.5 5.5l-5.5 -5.5z` : `M${x - 4} ${y - 4}h8v8h-8z`;
   return drawing("path", { ...attributes, d }, title);
+}
+
+/** A point of a star with five arms, as part of a path. */
+function starPoint(x, y, radius, k) {
+  const angle = (2 * Math.PI * k) / 5;
+  return `L${tenths(x + radius * Math.sin(angle))} ${tenths(y - radius * Math.cos(angle))}`;
 }
 
 function titled(text) {

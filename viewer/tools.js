@@ -27,6 +27,7 @@ export function legend(scene) {
   if (scene.near_misses.length) entries.push("▾ near miss");
   if (scene.assemblies.length) entries.push("× rigid assembly");
   if (scene.near_motions.length) entries.push(nearMotions(scene.near_motions));
+  if (scene.drawn) entries.push("★ as drawn");
   if (scene.surfaces.length) entries.push("∴ mobility 2 or more");
   return element("div", { class: "bv-legend" }, ...entries.map((entry) => element("span", {}, entry)));
 }

@@ -51,6 +51,8 @@ LINE_HEIGHT = 0.18  # of the legend, in inches
 # In inches, from the frame to the name of an axis; between them are the ticks.
 NAME_BELOW = 0.27
 NAME_LEFT = 0.46
+AS_DRAWN_LABEL = "as drawn"
+AS_DRAWN: Properties = {"marker": "*", "markersize": 8, "color": "black"}
 RIGID_LABEL = "rigid assembly"
 SURFACE_LABEL = "mobility 2 or more"
 FLAT_SAMPLES = 32  # of each form, by which the largest unknown is seen
@@ -222,8 +224,8 @@ def _label_axis(axis: Axis, scale: Scale) -> None:
 def draw_marks(
     axes: Axes, atlas: Atlas, plane: Plane, settings: PanelSettings = DEFAULT_PANEL
 ) -> None:
-    """Singular points, isolated solutions and surfaces in a plane, on both edges where
-    they lie on one."""
+    """Singular points, isolated solutions, surfaces, and the configuration as drawn in a
+    plane, on both edges where they lie on one."""
     for surface in atlas.surfaces:
         shown = place_in_frame(plane.project(surface.samples), plane.scales)
         axes.plot(*shown.T, ".", color="0.6", markersize=2, zorder=1)
@@ -231,6 +233,9 @@ def draw_marks(
         size = settings.mark_size or 5.5
         style: Properties = {"color": "0.3", "markersize": size, "zorder": 3}
         axes.plot(*plane.copies(solution).T, "x", clip_on=False, **style)
+    if atlas.drawn is not None:
+        style = {"clip_on": False, "zorder": 5, **AS_DRAWN}
+        axes.plot(*plane.copies(atlas.drawn).T, ls="", **style)
     spots: dict[Mark, list[np.ndarray]] = {}
     for point in atlas.points:
         mark = point.kind.mark
@@ -289,6 +294,8 @@ def _entries(atlas: Atlas) -> Iterator[Line2D]:
         marks.append((RIGID_LABEL, {"marker": "x", "color": "0.3"}))
     if atlas.surfaces:
         marks.append((SURFACE_LABEL, {"marker": ".", "color": "0.6"}))
+    if atlas.drawn is not None:
+        marks.append((AS_DRAWN_LABEL, AS_DRAWN))
     for label, style in marks:
         yield Line2D([], [], linestyle="", label=label, **style)
 

@@ -29,7 +29,10 @@ plane            the unknowns over which the map is drawn
 principal        the plane in which (cos theta, sin theta), 2 n numbers, spread most: their
                  mean, and two unit axes; an unknown without a period stands for its own
                  cosine, and 0 for its sine
-view             where to look from at first, elevation and azimuth in degrees
+view             where to look from at first, elevation and azimuth in degrees, and what
+                 is up then
+drawn            the configuration in which a file gives the linkage: angles, its name on
+                 the map, and its place [index of the form, s], null where no form passes
 """
 
 from __future__ import annotations
@@ -56,6 +59,7 @@ from bifurc.figures.style import (
 from bifurc.torus import difference
 from linkages.labels import FormLabels
 from linkages.mechanisms.mechanism import Lock
+from linkages.readout.drawn import drawn_place
 from linkages.subject import subject_at
 
 Document: TypeAlias = dict[str, Any]  # values that JSON can hold
@@ -99,7 +103,8 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> Document:
         "graph": _graph(atlas),
         "plane": choose_plane(atlas),
         "principal": _principal(atlas),
-        "view": {"elevation": view.elevation, "azimuth": view.azimuth},
+        "view": view._asdict(),
+        "drawn": _drawn(atlas),
     }
 
 
@@ -171,6 +176,14 @@ def _point(point: MeetingPoint) -> Document:
         "passes": [(form, float(s)) for form, s in point.passes],
         "surfaces": list(point.surfaces),
     }
+
+
+def _drawn(atlas: Atlas) -> Document | None:
+    drawn = drawn_place(atlas)
+    if drawn is None:
+        return None
+    place = None if drawn.form is None else [drawn.form, drawn.s]
+    return {"angles": drawn.point.tolist(), "name": drawn.name, "place": place}
 
 
 def _packed(array: np.ndarray) -> Document:
@@ -249,7 +262,10 @@ def _configurations(atlas: Atlas) -> Sequence[np.ndarray]:
 
 
 def _first(atlas: Atlas, forms: Sequence[Document]) -> np.ndarray:
-    """The configuration (n,) that is shown first, of what stands first on the map."""
+    """The configuration (n,) that is shown first: as drawn, or of what stands first on
+    the map."""
+    if atlas.drawn is not None:
+        return atlas.drawn
     if forms and "start" in forms[0]:
         return atlas.forms[0].branch(forms[0]["start"])
     first = _configurations(atlas)[0]

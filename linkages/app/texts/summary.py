@@ -23,6 +23,7 @@ from linkages.app.texts.entry_text import describe_geometry
 from linkages.app.texts.form_names import listed_forms
 from linkages.app.texts.numbers import in_degrees
 from linkages.labels import FormLabels, loop_of
+from linkages.readout.drawn import drawn_place
 from linkages.subject import subject_at
 
 SHOWN = 12  # near misses and rigid assemblies beyond this number are only counted
@@ -40,7 +41,7 @@ def make_screen(atlas: Atlas) -> str:
     points = [_point_records(atlas, title) for title in _titles()]
     motions = _tables(atlas)[1]
     parts = [
-        f"{atlas.subject.get('name')}\n{judge(atlas).sentence}",
+        _head_of(atlas),
         section_of("Forms", _shortened(_form_records(atlas))),
         _surfaces(atlas),
         *(
@@ -58,6 +59,21 @@ def make_screen(atlas: Atlas) -> str:
         if len(text.splitlines()) <= SCREEN:
             shown.append(motion)
     return "\n\n".join([*shown, certainty])
+
+
+def _head_of(atlas: Atlas) -> str:
+    """The name, the verdict, and where on the map the configuration of the file is."""
+    lines = [str(atlas.subject.get("name")), judge(atlas).sentence]
+    drawn = drawn_place(atlas)
+    if drawn is not None and drawn.name:
+        place = ""
+        if drawn.form is not None:
+            unit = arclength_unit(atlas)
+            place = f" at s = {drawn.s:.4g}"
+            if unit.name == "deg":
+                place = f" at {unit.factor * drawn.s:.4g} deg"
+        lines.append(f"As drawn: {drawn.name}{place}.")
+    return "\n".join(lines)
 
 
 def _titles() -> list[str]:
@@ -129,7 +145,7 @@ def make_summary(atlas: Atlas) -> str:
     provenance = atlas.provenance
     geometry, motions = _tables(atlas)
     parts = [
-        f"{atlas.subject.get('name')}\n{judge(atlas).sentence}",
+        _head_of(atlas),
         *geometry,
         section_of("Forms", _form_records(atlas)),
         _surfaces(atlas),
