@@ -35,7 +35,7 @@ import numpy as np
 from bifurc.errors import PathError
 from bifurc.files.text_file import TextFileError, read_toml
 from linkages.axes import Vectors, loop_from_axes
-from linkages.formats.table import format_of
+from linkages.formats.table import TOML, format_of
 from linkages.loop import MAX_JOINTS, MIN_JOINTS, Loop
 from linkages.mechanisms.origin import WrittenNumber, counted_from_near
 from linkages.values import (
@@ -126,6 +126,10 @@ def read_linkage(path: Path | str) -> tuple[Loop, np.ndarray | None]:
         content = read_toml(path, WrittenNumber) if is_toml else {}
         if is_toml and not _is_of_mechanism(content):
             return _read_loop(content, path.stem)
+    if not is_toml:
+        loop = read_file(path)
+        if isinstance(loop, Loop):
+            return loop, None
     message = "describes a mechanism, and this takes a single loop of revolute joints"
     raise LinkageFileError(path, message)
 
@@ -141,7 +145,7 @@ def read_precisely(path: Path | str) -> Loop:
     import mpmath
 
     loop, configuration = read_linkage(path)
-    if configuration is not None:
+    if configuration is not None or format_of(Path(path)) not in (None, TOML):
         return loop
     with _errors_about(Path(path)):
         content: Mapping[str, Any] = read_toml(Path(path), mpmath.mpf)

@@ -207,15 +207,18 @@ search_options = record_options("search", SearchOptions, SEARCH_OPTIONS)
 
 @dataclass(frozen=True)
 class HoldOptions:
-    """Joints of a mechanism that are held: what stands on the command line.
+    """Joints of a mechanism that are held, and how a table is read: what stands on the
+    command line.
 
     ``locks`` are "J=40" each, ``driver`` is the joint that has to move all others.
     ``is_without_centre``: of a network only the loop that its outer bars leave.
+    ``is_modified``: in the rows of a table stand the links before the joints.
     """
 
     locks: tuple[str, ...] = ()
     driver: str | None = None
     is_without_centre: bool = False
+    is_modified: bool = False
 
     @property
     def names(self) -> str:
@@ -224,6 +227,7 @@ class HoldOptions:
             "--lock": bool(self.locks),
             "--drive": self.driver is not None,
             "--without-centre": self.is_without_centre,
+            "--modified-dh": self.is_modified,
         }
         return ", ".join(name for name, is_given in given.items() if is_given)
 
@@ -255,6 +259,12 @@ HOLD_OPTIONS: dict[str, Option] = {
         is_flag=True,
         help="Of a network with locks, take the single loop that its outer bars leave.",
     ),
+    "is_modified": click.option(
+        "--modified-dh",
+        "is_modified",
+        is_flag=True,
+        help="Read a table in the modified convention of Denavit and Hartenberg.",
+    ),
 }
 hold_options = record_options("hold", HoldOptions, HOLD_OPTIONS)
 
@@ -285,9 +295,10 @@ free_param_option = click.option(
 )
 
 
-def _say_more(ctx: click.Context, param: click.Parameter, value: bool) -> None:
+def _say_more(ctx: click.Context, param: click.Parameter, value: bool) -> bool:
     if value:
         say_more()
+    return value
 
 
 verbose_option = click.option(
@@ -298,16 +309,24 @@ verbose_option = click.option(
     callback=_say_more,
     help="Say more on standard error.",
 )
+whole_option = click.option(
+    "-v",
+    "--verbose",
+    is_flag=True,
+    callback=_say_more,
+    help="Show all tables and claims, and say more on standard error.",
+)
 
 
 @dataclass(frozen=True)
 class AtlasOptions:
     """What atlas a command works on, besides its name: ``parameters`` of a linkage, how
-    joints are held, how it is searched."""
+    joints are held, how it is searched; and whether it is shown whole, ``verbose``."""
 
     parameters: tuple[str, ...] = ()
     search: SearchOptions = SearchOptions()
     hold: HoldOptions = HoldOptions()
+    verbose: bool = False
 
 
 def atlas_options(command: Command) -> Command:
@@ -319,11 +338,12 @@ def atlas_options(command: Command) -> Command:
         parameters: tuple[str, ...],
         search: SearchOptions,
         hold: HoldOptions,
+        verbose: bool,
         **values: object,
     ) -> None:
-        command(choice=AtlasOptions(parameters, search, hold), **values)
+        command(choice=AtlasOptions(parameters, search, hold, verbose), **values)
 
-    searched = search_options(verbose_option(taking_options))
+    searched = search_options(whole_option(taking_options))
     return hold_options(param_option(searched))
 
 

@@ -164,6 +164,7 @@ def _near_miss(atlas: Atlas, event: Event) -> Document:
 
 def _near_motion(atlas: Atlas, near: NearMotion) -> Document:
     return {
+        "name": near.name,
         "misclosure": near.misclosure,
         "length": near.length,
         "closed": near.is_closed,

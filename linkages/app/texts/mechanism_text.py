@@ -133,7 +133,7 @@ def describe_loops(atlas: Atlas, readout: Readout) -> str:
                 "joints": ", ".join(loop["joints"]),
                 "constraints": str(loop["constraints"]),
                 "redundant": str(loop["redundant"]),
-                "motion that others can make": dependent,
+                "joints that follow from the others": dependent,
             }
         )
     count = (
