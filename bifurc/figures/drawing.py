@@ -233,9 +233,7 @@ def draw_marks(
         size = settings.mark_size or 5.5
         style: Properties = {"color": "0.3", "markersize": size, "zorder": 3}
         axes.plot(*plane.copies(solution).T, "x", clip_on=False, **style)
-    if atlas.drawn is not None:
-        style = {"clip_on": False, "zorder": 5, **AS_DRAWN}
-        axes.plot(*plane.copies(atlas.drawn).T, ls="", **style)
+    _draw_as_given(axes, atlas, plane)
     spots: dict[Mark, list[np.ndarray]] = {}
     for point in atlas.points:
         mark = point.kind.mark
@@ -244,6 +242,13 @@ def draw_marks(
     for mark, places in spots.items():
         style = {"markeredgewidth": 1.1, **hollow(mark)}
         axes.plot(*np.concatenate(places).T, ls="", clip_on=False, zorder=4, **style)
+
+
+def _draw_as_given(axes: Axes, atlas: Atlas, plane: Plane) -> None:
+    """The configuration as drawn, if there is one."""
+    if atlas.drawn is not None:
+        style = {"clip_on": False, "zorder": 5, **AS_DRAWN}
+        axes.plot(*plane.copies(atlas.drawn).T, ls="", **style)
 
 
 # --- the legend -----------------------------------------------------------------------
@@ -287,6 +292,12 @@ def _entries(atlas: Atlas) -> Iterator[Line2D]:
     for i, near in enumerate(curves, start=len(atlas.forms)):
         name = f"{near.name}, misses\nclosure by {near.misclosure:.1e}"
         yield Line2D([], [], linewidth=1.8, label=name, **near_motion_style(i).line)
+    for label, style in _marks_of(atlas):
+        yield Line2D([], [], linestyle="", label=label, **style)
+
+
+def _marks_of(atlas: Atlas) -> list[tuple[str, Properties]]:
+    """What the marks of an atlas mean, and how each is drawn."""
     marks: list[tuple[str, Properties]] = []
     for kind in dict.fromkeys(point.kind for point in atlas.points):
         marks.append((kind.value, hollow(kind.mark)))
@@ -296,8 +307,7 @@ def _entries(atlas: Atlas) -> Iterator[Line2D]:
         marks.append((SURFACE_LABEL, {"marker": ".", "color": "0.6"}))
     if atlas.drawn is not None:
         marks.append((AS_DRAWN_LABEL, AS_DRAWN))
-    for label, style in marks:
-        yield Line2D([], [], linestyle="", label=label, **style)
+    return marks
 
 
 class LegendSize(NamedTuple):
