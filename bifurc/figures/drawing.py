@@ -22,7 +22,7 @@ from matplotlib.textpath import text_to_path
 from matplotlib.ticker import MultipleLocator
 from matplotlib.transforms import ScaledTranslation
 
-from bifurc.atlas import Atlas
+from bifurc.atlas import Atlas, Event
 from bifurc.decisions import closes_to_rounding
 from bifurc.figures.planes import (
     Plane,
@@ -53,6 +53,7 @@ NAME_BELOW = 0.27
 NAME_LEFT = 0.46
 AS_DRAWN_LABEL = "as drawn"
 AS_DRAWN: Properties = {"marker": "*", "markersize": 8, "color": "black"}
+DEAD: Properties = {"marker": "s", "markersize": 3.2, "color": "0.25"}
 RIGID_LABEL = "rigid assembly"
 SURFACE_LABEL = "mobility 2 or more"
 FLAT_SAMPLES = 32  # of each form, by which the largest unknown is seen
@@ -245,7 +246,10 @@ def draw_marks(
 
 
 def _draw_as_given(axes: Axes, atlas: Atlas, plane: Plane) -> None:
-    """The configuration as drawn, if there is one."""
+    """The configuration as drawn, if there is one, and dead points of drivers."""
+    for event in _driven(atlas):
+        style = {"clip_on": False, "zorder": 3.5, **DEAD}
+        axes.plot(*plane.copies(event.u).T, ls="", **style)
     if atlas.drawn is not None:
         style = {"clip_on": False, "zorder": 5, **AS_DRAWN}
         axes.plot(*plane.copies(atlas.drawn).T, ls="", **style)
@@ -296,6 +300,18 @@ def _entries(atlas: Atlas) -> Iterator[Line2D]:
         yield Line2D([], [], linestyle="", label=label, **style)
 
 
+def _driven(atlas: Atlas) -> list[Event]:
+    """The dead points of the unknowns that drive, and do not stand still."""
+    drivers = atlas.subject.get("drivers", ())
+    events = [event for event in atlas.dead_points if event.index in drivers]
+    moving = []
+    for event in events:
+        values = atlas.forms[event.form].branch.sample(FLAT_SAMPLES)[:, event.index]
+        if np.ptp(values) > FLAT:
+            moving.append(event)
+    return moving
+
+
 def _marks_of(atlas: Atlas) -> list[tuple[str, Properties]]:
     """What the marks of an atlas mean, and how each is drawn."""
     marks: list[tuple[str, Properties]] = []
@@ -305,6 +321,8 @@ def _marks_of(atlas: Atlas) -> list[tuple[str, Properties]]:
         marks.append((RIGID_LABEL, {"marker": "x", "color": "0.3"}))
     if atlas.surfaces:
         marks.append((SURFACE_LABEL, {"marker": ".", "color": "0.6"}))
+    for index in sorted({event.index for event in _driven(atlas)}):
+        marks.append((f"dead point of {atlas.names[index]}", DEAD))
     if atlas.drawn is not None:
         marks.append((AS_DRAWN_LABEL, AS_DRAWN))
     return marks
