@@ -78,7 +78,7 @@ class MeetingPoint:
     surfaces: tuple[int, ...] = ()
 
     def __repr__(self) -> str:
-        forms = ", ".join(str(form) for form, _ in self.passes)
+        forms = ", ".join(str(form + 1) for form, _ in self.passes)
         words = [self.kind.value, f"rank {self.point.rank}", f"forms {forms or 'none'}"]
         if self.surfaces:
             words.append(f"surfaces {', '.join(map(str, self.surfaces))}")
@@ -102,8 +102,8 @@ class Event:
     def __repr__(self) -> str:
         kind = f"near miss {self.value:.4g}"
         if self.index >= 0:
-            kind = f"dead point of unknown {self.index}"
-        return f"<Event: {kind} on form {self.form} at s = {self.s:.6g}>"
+            kind = f"dead point of unknown {self.index + 1}"
+        return f"<Event: {kind} on form {self.form + 1} at s = {self.s:.6g}>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,7 +194,8 @@ class Atlas:
     how the atlas came about. ``subject`` says what was mapped, in values that JSON can
     hold: whoever maps something more than equations defines it; a ``scale`` in it is
     what each unknown is multiplied with to be in the user's unit, ``drawn`` the
-    configuration in which it was given. ``diagram``: what
+    configuration in which it was given, ``drivers`` the unknowns, by index, whose dead
+    points matter. ``diagram``: what
     happens as a parameter changes, where one was named or events were asked for.
     """
 

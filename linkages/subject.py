@@ -257,7 +257,17 @@ class MechanismSubject(Subject):
             # what unknowns are multiplied with to be in rad and in the user's unit
             "scale": self.factors.tolist(),
             "drawn": self.readout.structure.reference.tolist(),
+            "drivers": self.drivers,
         }
+
+    @property
+    def drivers(self) -> list[int]:
+        """The unknowns, by index, of the first joint that is free, and of those with
+        limits."""
+        free = [one for one in self.mechanism.variables if one.label in self.labels]
+        limited = [one for one in free if one.limits is not None]
+        labels = {one.label for one in [*free[:1], *limited]}
+        return [k for k, label in enumerate(self.labels) if label in labels]
 
     def labelled(self, atlas: Atlas) -> Atlas:
         """With labels on the forms."""

@@ -149,6 +149,14 @@ export class TransitionMap {
         this.targets.marks.push({ track, s: track.place(miss.s), x, y });
       }
     }
+    for (const { form, s, name } of this.scene.dead_points) {
+      const track = this.tracks[form];
+      for (const spot of spotsOf(this.plane, track.at(s))) {
+        const [x, y] = this.screen(spot);
+        marks.push(drawing("rect", { class: "bv-dead", x: x - 2.5, y: y - 2.5, width: 5, height: 5 }, titled(`dead point of ${name}`)));
+        this.targets.marks.push({ track, s: track.place(s), x, y });
+      }
+    }
     marks.push(...this.drawnMarks());
     for (const point of this.scene.points) {
       for (const spot of spotsOf(this.plane, point.angles)) {

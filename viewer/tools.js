@@ -27,6 +27,8 @@ export function legend(scene) {
   if (scene.near_misses.length) entries.push("▾ near miss");
   if (scene.assemblies.length) entries.push("× rigid assembly");
   if (scene.near_motions.length) entries.push(nearMotions(scene.near_motions));
+  const dead = [...new Set(scene.dead_points.map(({ name }) => name))];
+  if (dead.length) entries.push(`▪ dead point of ${dead.join(", ")}`);
   if (scene.drawn) entries.push("★ as drawn");
   if (scene.surfaces.length) entries.push("∴ mobility 2 or more");
   return element("div", { class: "bv-legend" }, ...entries.map((entry) => element("span", {}, entry)));

@@ -22,7 +22,7 @@ from matplotlib.textpath import text_to_path
 from matplotlib.ticker import MultipleLocator
 from matplotlib.transforms import ScaledTranslation
 
-from bifurc.atlas import Atlas
+from bifurc.atlas import Atlas, Event
 from bifurc.decisions import closes_to_rounding
 from bifurc.figures.planes import (
     Plane,
@@ -53,6 +53,7 @@ NAME_BELOW = 0.27
 NAME_LEFT = 0.46
 AS_DRAWN_LABEL = "as drawn"
 AS_DRAWN: Properties = {"marker": "*", "markersize": 8, "color": "black"}
+DEAD: Properties = {"marker": "s", "markersize": 3.2, "color": "0.25"}
 RIGID_LABEL = "rigid assembly"
 SURFACE_LABEL = "mobility 2 or more"
 FLAT_SAMPLES = 32  # of each form, by which the largest unknown is seen
@@ -233,9 +234,7 @@ def draw_marks(
         size = settings.mark_size or 5.5
         style: Properties = {"color": "0.3", "markersize": size, "zorder": 3}
         axes.plot(*plane.copies(solution).T, "x", clip_on=False, **style)
-    if atlas.drawn is not None:
-        style = {"clip_on": False, "zorder": 5, **AS_DRAWN}
-        axes.plot(*plane.copies(atlas.drawn).T, ls="", **style)
+    _draw_as_given(axes, atlas, plane)
     spots: dict[Mark, list[np.ndarray]] = {}
     for point in atlas.points:
         mark = point.kind.mark
@@ -244,6 +243,16 @@ def draw_marks(
     for mark, places in spots.items():
         style = {"markeredgewidth": 1.1, **hollow(mark)}
         axes.plot(*np.concatenate(places).T, ls="", clip_on=False, zorder=4, **style)
+
+
+def _draw_as_given(axes: Axes, atlas: Atlas, plane: Plane) -> None:
+    """The configuration as drawn, if there is one, and dead points of drivers."""
+    for event in _driven(atlas):
+        style = {"clip_on": False, "zorder": 3.5, **DEAD}
+        axes.plot(*plane.copies(event.u).T, ls="", **style)
+    if atlas.drawn is not None:
+        style = {"clip_on": False, "zorder": 5, **AS_DRAWN}
+        axes.plot(*plane.copies(atlas.drawn).T, ls="", **style)
 
 
 # --- the legend -----------------------------------------------------------------------
@@ -287,6 +296,24 @@ def _entries(atlas: Atlas) -> Iterator[Line2D]:
     for i, near in enumerate(curves, start=len(atlas.forms)):
         name = f"{near.name}, misses\nclosure by {near.misclosure:.1e}"
         yield Line2D([], [], linewidth=1.8, label=name, **near_motion_style(i).line)
+    for label, style in _marks_of(atlas):
+        yield Line2D([], [], linestyle="", label=label, **style)
+
+
+def _driven(atlas: Atlas) -> list[Event]:
+    """The dead points of the unknowns that drive, and do not stand still."""
+    drivers = atlas.subject.get("drivers", ())
+    events = [event for event in atlas.dead_points if event.index in drivers]
+    moving = []
+    for event in events:
+        values = atlas.forms[event.form].branch.sample(FLAT_SAMPLES)[:, event.index]
+        if np.ptp(values) > FLAT:
+            moving.append(event)
+    return moving
+
+
+def _marks_of(atlas: Atlas) -> list[tuple[str, Properties]]:
+    """What the marks of an atlas mean, and how each is drawn."""
     marks: list[tuple[str, Properties]] = []
     for kind in dict.fromkeys(point.kind for point in atlas.points):
         marks.append((kind.value, hollow(kind.mark)))
@@ -294,10 +321,11 @@ def _entries(atlas: Atlas) -> Iterator[Line2D]:
         marks.append((RIGID_LABEL, {"marker": "x", "color": "0.3"}))
     if atlas.surfaces:
         marks.append((SURFACE_LABEL, {"marker": ".", "color": "0.6"}))
+    for index in sorted({event.index for event in _driven(atlas)}):
+        marks.append((f"dead point of {atlas.names[index]}", DEAD))
     if atlas.drawn is not None:
         marks.append((AS_DRAWN_LABEL, AS_DRAWN))
-    for label, style in marks:
-        yield Line2D([], [], linestyle="", label=label, **style)
+    return marks
 
 
 class LegendSize(NamedTuple):

@@ -49,14 +49,14 @@ from linkages.loop import Loop
 ROUNDED = 0.01
 # Values that are tried for a number that is left out: twists over half a turn, lengths
 # over the characteristic length.
-TWISTS = np.arange(0.0, np.pi, np.pi / 24)
+TWISTS = np.arange(0.0, np.pi, np.pi / 48)
 LENGTHS = np.concatenate([[0.0], np.geomspace(0.1, 5.0, 15)])
 DECIMALS = 9  # of parameters, at most
 MOST_DECIMALS = 12  # of a printed number
 # Times half a unit of the last printed decimal: what least squares may leave of a number
 # of which rounding leaves half a unit at most.
 EXCESS = 3.0
-REACH = 0.5  # from a trial to the member, all numbers together
+REACH = 1.0  # from a trial to the member, all numbers together
 SPARSE = 3  # so much fewer values are tried where other angles are scanned for each
 NUDGE = 0.003  # of a number, by which it is seen whether guesses read it
 
@@ -95,6 +95,12 @@ class Correction:
     changes: tuple[Change, ...] = ()
     is_rounding: bool = True
 
+    @property
+    def depth(self) -> int:
+        """How far a table is from what is meant: 0 by rounding, 1 by one number that is
+        wrong, 2 by another single mistake, in several numbers."""
+        return min(len(self.changes), 2)
+
 
 Progress: TypeAlias = Callable[[str, int], None]
 
@@ -122,9 +128,8 @@ def _nearest(identification: Identification) -> tuple[Correction, ...]:
     views = views_of(printed)
     rounded = []
     for match in identification.nearest:
-        if match.distance <= ROUNDED:
-            found = _corrected(match.entry, views, printed, printed, unit)
-            rounded += [found] if found else []
+        found = _corrected(match.entry, views, printed, printed, unit)
+        rounded += [found] if found else []
     return tuple(sorted(rounded, key=_order))
 
 
@@ -133,8 +138,8 @@ def find_corrections(
     entries: Iterable[Entry] | None = None,
     progress: Progress | None = None,
 ) -> tuple[Correction, ...]:
-    """What the table of ``loop`` may be meant to be: with the fewest numbers wrong
-    first, and of these with the least that is left to rounding. ``progress`` is called
+    """What the table of ``loop`` may be meant to be: with one number wrong, or else by
+    another mistake, those first that leave the least to rounding. ``progress`` is called
     with what was looked at and how many."""
     printed = table(loop)
     unit = loop.characteristic_length
@@ -148,11 +153,14 @@ def find_corrections(
                 corrections += _without(entry, printed, _single_numbers(printed), unit)
             if progress:
                 progress("families", families.index(entry))
-        for entry in families if not corrections else ():
-            corrections += _without(entry, printed, _like_numbers(printed), unit)
-        for rearrangements in (_rows_in_place(printed), _columns_in_place(printed)):
-            if not corrections:
-                corrections += _rearranged(families, printed, rearrangements, unit)
+        if not corrections:
+            for entry in families:
+                corrections += _without(entry, printed, _like_numbers(printed), unit)
+            rows = _rows_in_place(printed)
+            corrections += _rearranged(families, printed, rows, unit)
+        if not corrections:
+            columns = _columns_in_place(printed)
+            corrections += _rearranged(families, printed, columns, unit)
     return tuple(sorted(corrections, key=_order))
 
 
@@ -172,12 +180,12 @@ def _rearranged(
 
 
 def _order(correction: Correction) -> tuple[int, int, int, int]:
-    """The fewest numbers wrong come first, then what rounding accounts for, the most
-    special first."""
+    """The simplest mistakes come first, then what rounding accounts for, the most special
+    first."""
     match = correction.match
     decade = math.floor(math.log10(max(match.distance, 1e-12)))
     rounded = -100 if correction.is_rounding else decade
-    return len(correction.changes), rounded, match.freedom, len(match.parameters)
+    return correction.depth, rounded, match.freedom, len(match.parameters)
 
 
 def _corrected(
@@ -191,11 +199,12 @@ def _corrected(
 ) -> Correction | None:
     """The member of an entry that is a table as it is ``meant`` to be (3, n), in one of
     its ``views``; None where none is, to rounding."""
-    member = best_member(entry, views, unit, reach)
-    if member is None or member.distance > ROUNDED:
-        return None
     half_units = _half_units(printed)
     bounds = EXCESS * half_units / np.array([[unit], [1.0], [unit]])
+    farthest = max(ROUNDED, float(np.sqrt(printed.shape[1]) * np.linalg.norm(bounds)))
+    member = best_member(entry, views, unit, reach)
+    if member is None or member.distance > min(farthest, NEAR):
+        return None
     # lengths and twists count by their last decimals
     weighted = refit(entry, member, float(half_units[0, 0] / half_units[1, 0]))
     member = rebuild(entry, member, weighted.parameters, unit) or member

@@ -19,6 +19,7 @@ forms            name, length, closed, rank, inactive_joints, travel; pieces (pa
 points           name, kind, rank, angles; passes, as [index of the form, arclength];
                  surfaces, by their numbers
 near_misses      form, s, value
+dead_points      form, s, and the name of the joint that drives, or has limits
 assemblies       configurations
 surfaces         name, dimension; samples (packed), each near the one before
 near_motions     name, sample, and by how much it misses closure, misclosure; curve, the
@@ -59,6 +60,7 @@ from bifurc.figures.style import (
 from bifurc.torus import difference
 from linkages.labels import FormLabels
 from linkages.mechanisms.mechanism import Lock
+from linkages.readout.dead_points import driven_dead_points
 from linkages.readout.drawn import drawn_place
 from linkages.subject import subject_at
 
@@ -105,6 +107,10 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> Document:
         "principal": _principal(atlas),
         "view": view._asdict(),
         "drawn": _drawn(atlas),
+        "dead_points": [
+            {"form": event.form, "s": event.s, "name": atlas.names[event.index]}
+            for event in driven_dead_points(atlas)
+        ],
     }
 
 

@@ -18,6 +18,7 @@ from bifurc.singular.point import Kind
 from linkages.app.answer.verdict import is_without_gaps
 from linkages.app.texts.configurations import numbers_at
 from linkages.labels import FormLabels
+from linkages.readout.dead_points import moving_dead_points
 from linkages.subject import subject_at
 from linkages.turns.translates import isolated_assemblies_of
 
@@ -42,7 +43,9 @@ def make_document(atlas: Atlas) -> Document:
             if point.kind not in (Kind.BIFURCATION, Kind.RANK_DROP)
         ],
         "near_misses": [_near_miss(atlas, event) for event in atlas.near_misses],
-        "dead_points": [_dead_point(atlas, event) for event in atlas.dead_points],
+        "dead_points": [
+            _dead_point(atlas, event) for event in moving_dead_points(atlas)
+        ],
         "rigid_assemblies": [
             _assembly(atlas, theta) for theta in isolated_assemblies_of(atlas)
         ],

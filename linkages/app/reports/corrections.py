@@ -31,7 +31,7 @@ TITLES = {Row.LENGTHS: "lengths", Row.TWISTS: "twists", Row.OFFSETS: "offsets"}
 
 def describe_corrections(corrections: Sequence[Correction], n: int) -> str:
     """What a table of n joints is meant to be, by one or more corrections: the ways to
-    mend it with the fewest numbers wrong, each with the most special of its linkages."""
+    mend it by the simplest mistake, each with the most special of its linkages."""
     best = best_corrections(corrections)
     if not best[0].changes:
         match = best[0].match
@@ -47,13 +47,13 @@ def describe_corrections(corrections: Sequence[Correction], n: int) -> str:
 
 
 def best_corrections(corrections: Sequence[Correction]) -> list[Correction]:
-    """Those with the fewest numbers wrong, as near as the first, one for each way to
-    mend the table."""
+    """Those by as simple a mistake as the first, and as near, one for each way to mend
+    the table."""
     ways: dict[tuple[object, ...], Correction] = {}
     for one in corrections:
         places = tuple((change.row, change.column) for change in one.changes)
         is_alike = one.is_rounding == corrections[0].is_rounding
-        if is_alike and len(one.changes) == len(corrections[0].changes):
+        if is_alike and one.depth == corrections[0].depth:
             ways.setdefault((one.mistake, *places), one)
     return list(ways.values())
 
