@@ -60,13 +60,8 @@ def doubts_of(
     The ``forms`` are those of the branches ``traced``. Solutions on the ``surfaces``
     are regular ones of the problem ``of_surfaces``, where it is another one.
     """
-    if any(surface.is_short_of_charts for surface in surfaces):
-        starts = samples_beyond_charts(surfaces)
-        yield SearchDoubt.CHARTS_RAN_OUT.doubt(starts=starts)
+    yield from _doubts_of_covering(surfaces)
     for surface in surfaces:
-        charts = surface.charts
-        if charts is not None and charts.outcome is Covering.UNDECIDED:
-            yield SearchDoubt.SHEETS_TOGETHER.doubt(surface.name)
         missed = _misclosure(of_surfaces or problem, surface)
         samples = surface.samples[:MOST_SAMPLES]
         if not _is_rounding(of_surfaces or problem, missed, samples):
@@ -91,6 +86,17 @@ def doubts_of(
     ]
     if double:
         yield SearchDoubt.DOUBLE_SOLUTIONS.doubt(points=double)
+
+
+def _doubts_of_covering(surfaces: Sequence[Surface]) -> Iterator[Doubt]:
+    """Whether charts ran out, or could not tell sheets apart."""
+    if any(surface.is_short_of_charts for surface in surfaces):
+        starts = samples_beyond_charts(surfaces)
+        yield SearchDoubt.CHARTS_RAN_OUT.doubt(starts=starts)
+    for surface in surfaces:
+        charts = surface.charts
+        if charts is not None and charts.outcome is Covering.UNDECIDED:
+            yield SearchDoubt.SHEETS_TOGETHER.doubt(surface.name)
 
 
 def doubts_of_near_misses(problem: Problem, misses: Sequence[Event]) -> Iterator[Doubt]:
