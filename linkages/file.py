@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 import numpy as np
 
-from bifurc.errors import BifurcError
+from bifurc.errors import PathError
 from bifurc.files.text_file import TextFileError, read_toml
 from linkages.axes import Vectors, loop_from_axes
 from linkages.formats.table import TOML, format_of
@@ -70,13 +70,8 @@ class AngleUnit(StrEnum):
     RADIANS = "rad"
 
 
-class LinkageFileError(BifurcError, ValueError):
-    """A linkage file that cannot be used: which file, and what in it must be what."""
-
-    def __init__(self, path: Path | str, message: str):
-        self.path = str(path)
-        self.message = message
-        super().__init__(f"{path}: {message}")
+class LinkageFileError(PathError):
+    """A linkage file that cannot be used."""
 
 
 @contextmanager

@@ -256,7 +256,7 @@ class MechanismSubject(Subject):
             **mechanism_subject(self.mechanism),
             # what unknowns are multiplied with to be in rad and in the user's unit
             "scale": self.factors.tolist(),
-            "drawn": self.readout.reference.tolist(),
+            "drawn": self.readout.structure.reference.tolist(),
             "drivers": self.drivers,
         }
 

@@ -32,8 +32,8 @@ from bifurc.figures.planes import (
     place_in_frame,
     shown_branches,
 )
+from bifurc.figures.rendering import RC
 from bifurc.figures.style import (
-    RC,
     Properties,
     Style,
     form_style,

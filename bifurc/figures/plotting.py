@@ -39,9 +39,8 @@ from bifurc.figures.planes import (
     scale_of,
     shown_branches,
 )
-from bifurc.figures.rendering import render
+from bifurc.figures.rendering import RC, render
 from bifurc.figures.singular_values import plot_singular_values
-from bifurc.figures.style import RC
 from bifurc.files.atomic import replace_file
 
 SMALL_PANEL = PanelSettings(line_width=1.4, mark_size=3.5)

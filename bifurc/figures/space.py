@@ -21,7 +21,8 @@ from bifurc.figures.planes import (
     scale_of,
     shown_branches,
 )
-from bifurc.figures.style import RC, hollow
+from bifurc.figures.rendering import RC
+from bifurc.figures.style import hollow
 
 
 def plot_map_in_space(

@@ -71,7 +71,7 @@ RECORDS: dict[str, Callable[[Atlas], Sequence[Any]]] = {
 }
 
 
-def _samples(form: Form) -> np.ndarray:
+def samples_of(form: Form) -> np.ndarray:
     """Points (k, n) at which the singular values were taken."""
     if not len(form.branch.pieces):
         return np.empty((0, form.branch.n))
@@ -98,7 +98,7 @@ def _certificate_text(form: Form) -> str:
 # What a record has in the variables that are no attribute of it as they stand.
 VALUES: dict[str, Callable[[Any], Any]] = {
     "arclength": lambda form: form.profile.arclength.ravel(),
-    "configuration": _samples,
+    "configuration": samples_of,
     "singular_values": lambda form: form.profile.values.reshape(-1, form.branch.n),
     "sample_nodes": lambda form: form.profile.arclength.shape[1],
     "piece_order": lambda form: _order_of(form.branch),

@@ -131,21 +131,24 @@ def seed_option(text: str) -> Option:
     return number_option("--seed", click.IntRange(0, LARGEST_SEED), 0, text)
 
 
-def with_record(
-    command: Command, name: str, record: type, options: Mapping[str, Option]
-) -> Command:
-    """``command`` with ``options`` by the names of their values: it takes all of them
+def record_options(
+    name: str, record: type, options: Mapping[str, Option]
+) -> Callable[[Command], Command]:
+    """What gives a command ``options`` by the names of their values: it takes all of them
     as one ``record``, whose fields are so called, behind ``name``."""
 
-    @wraps(command)
-    def taking_record(**values: object) -> None:
-        own = {key: values.pop(key) for key in options}
-        command(**{name: record(**own)}, **values)
+    def with_options(command: Command) -> Command:
+        @wraps(command)
+        def taking_record(**values: object) -> None:
+            own = {key: values.pop(key) for key in options}
+            command(**{name: record(**own)}, **values)
 
-    decorated: Command = taking_record
-    for option in reversed(list(options.values())):
-        decorated = option(decorated)
-    return decorated
+        decorated: Command = taking_record
+        for option in reversed(list(options.values())):
+            decorated = option(decorated)
+        return decorated
+
+    return with_options
 
 
 @dataclass(frozen=True)
@@ -199,12 +202,7 @@ SEARCH_OPTIONS: dict[str, Option] = {
         help="End the search after so long, with what was found.  [default: none]",
     ),
 }
-
-
-def search_options(command: Command) -> Command:
-    """``command`` with the options of a search, which it takes as one `SearchOptions`
-    called ``search``."""
-    return with_record(command, "search", SearchOptions, SEARCH_OPTIONS)
+search_options = record_options("search", SearchOptions, SEARCH_OPTIONS)
 
 
 @dataclass(frozen=True)
@@ -268,12 +266,7 @@ HOLD_OPTIONS: dict[str, Option] = {
         help="Read a table in the modified convention of Denavit and Hartenberg.",
     ),
 }
-
-
-def hold_options(command: Command) -> Command:
-    """``command`` with the options for joints that are held, which it takes as one
-    `HoldOptions` called ``hold``."""
-    return with_record(command, "hold", HoldOptions, HOLD_OPTIONS)
+hold_options = record_options("hold", HoldOptions, HOLD_OPTIONS)
 
 
 form_option = click.option(
@@ -428,9 +421,4 @@ PRINT_OPTIONS: dict[str, Option] = {
         ),
     ),
 }
-
-
-def print_options(command: Command) -> Command:
-    """``command`` with the options of printed parts, which it takes as one
-    `PrintOptions` called ``printing``."""
-    return with_record(command, "printing", PrintOptions, PRINT_OPTIONS)
+print_options = record_options("printing", PrintOptions, PRINT_OPTIONS)

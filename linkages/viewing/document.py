@@ -95,7 +95,7 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> Document:
         **parts.page(np.concatenate(_configurations(atlas))),
         "forms": forms,
         "points": [_point(point) for point in atlas.points],
-        **_events(atlas),
+        **_places_on_forms(atlas),
         "assemblies": atlas.rigid.tolist(),
         "surfaces": [_surface(surface, atlas.periods) for surface in atlas.surfaces],
         "near_motions": _near_motions(atlas),
@@ -104,6 +104,20 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> Document:
         "principal": _principal(atlas),
         "view": view._asdict(),
         "drawn": _drawn(atlas),
+    }
+
+
+def _places_on_forms(atlas: Atlas) -> Document:
+    """The near misses and the dead points of what drives."""
+    return {
+        "near_misses": [
+            {"form": miss.form, "s": miss.s, "value": miss.value}
+            for miss in atlas.near_misses
+        ],
+        "dead_points": [
+            {"form": event.form, "s": event.s, "name": atlas.names[event.index]}
+            for event in driven_dead_points(atlas)
+        ],
     }
 
 
@@ -174,20 +188,6 @@ def _point(point: MeetingPoint) -> Document:
         "angles": point.point.u.tolist(),
         "passes": [(form, float(s)) for form, s in point.passes],
         "surfaces": list(point.surfaces),
-    }
-
-
-def _events(atlas: Atlas) -> Document:
-    """Near misses and dead points."""
-    return {
-        "near_misses": [
-            {"form": miss.form, "s": miss.s, "value": miss.value}
-            for miss in atlas.near_misses
-        ],
-        "dead_points": [
-            {"form": event.form, "s": event.s, "name": atlas.names[event.index]}
-            for event in driven_dead_points(atlas)
-        ],
     }
 
 

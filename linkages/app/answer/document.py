@@ -20,6 +20,7 @@ from linkages.app.texts.configurations import numbers_at
 from linkages.labels import FormLabels
 from linkages.readout.dead_points import moving_dead_points
 from linkages.subject import subject_at
+from linkages.turns.translates import isolated_assemblies_of
 
 # values that JSON can hold; docs/results.md says what each key does
 Document: TypeAlias = dict[str, Any]
@@ -45,7 +46,9 @@ def make_document(atlas: Atlas) -> Document:
         "dead_points": [
             _dead_point(atlas, event) for event in moving_dead_points(atlas)
         ],
-        "rigid_assemblies": [_assembly(atlas, theta) for theta in _isolated(atlas)],
+        "rigid_assemblies": [
+            _assembly(atlas, theta) for theta in isolated_assemblies_of(atlas)
+        ],
         "near_motions": [_near_motion(atlas, near) for near in atlas.near_motions],
         "completeness": _completeness(atlas),
         "seconds": atlas.provenance.seconds,
@@ -151,13 +154,6 @@ def _singular_point(atlas: Atlas, point: MeetingPoint) -> Document:
         "error": point.point.error,
         "forms": [atlas.forms[index].name for index, _ in point.passes],
     }
-
-
-def _isolated(atlas: Atlas) -> list[NDArray[np.float64]]:
-    """All configurations (n,) that have no others beside them, those of full rank
-    first."""
-    shaky = [p.point.u for p in atlas.points if p.kind is Kind.ISOLATED]
-    return [*atlas.rigid, *shaky]
 
 
 def _near_miss(atlas: Atlas, event: Event) -> Document:
