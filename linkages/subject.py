@@ -263,9 +263,9 @@ class MechanismSubject(Subject):
     @property
     def drivers(self) -> list[int]:
         """The unknowns, by index, of the first joint that is free, and of those with
-        limits."""
+        limits, which every slide has."""
         free = [one for one in self.mechanism.variables if one.label in self.labels]
-        limited = [one for one in free if one.limits is not None]
+        limited = [one for one in free if one.limits or not one.motion.is_turn]
         labels = {one.label for one in [*free[:1], *limited]}
         return [k for k, label in enumerate(self.labels) if label in labels]
 
