@@ -543,13 +543,16 @@ def _checked_texts(name: str, texts: Sequence[str]) -> tuple[str, ...]:
 
 
 def _spectral_norm(matrix: np.ndarray | sparray) -> float:
-    """Largest singular value of a dense matrix; for a sparse one the bound sqrt(|A|_1
-    |A|_inf)."""
+    """Largest singular value of a dense matrix; for a sparse or a large one the bound
+    sqrt(|A|_1 |A|_inf)."""
     if isinstance(matrix, np.ndarray):
-        return float(np.linalg.norm(matrix, ord=2))
-    from scipy.sparse import csc_array
+        if max(matrix.shape) <= LARGEST_COMPARED:
+            return float(np.linalg.norm(matrix, ord=2))
+        sizes: np.ndarray | sparray = abs(matrix)
+    else:
+        from scipy.sparse import csc_array
 
-    sizes: np.ndarray | sparray = abs(csc_array(matrix))
+        sizes = abs(csc_array(matrix))
     largest_column = sizes.sum(axis=0).max()
     largest_row = sizes.sum(axis=1).max()
     return float(np.sqrt(largest_column * largest_row))

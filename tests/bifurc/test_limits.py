@@ -52,7 +52,7 @@ def test_a_second_interrupt_acts_at_once():
 
 def test_a_deadline_passes_at_an_interrupt():
     with pytest.raises(KeyboardInterrupt), HeldInterrupt() as held:
-        deadline = Deadline().or_at(held)
+        deadline = Deadline(interrupt=held)
         assert not deadline.passed
         press()
         assert deadline.passed

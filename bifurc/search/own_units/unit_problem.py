@@ -12,7 +12,7 @@ their unknowns counted in one unit, that of their scale.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -38,7 +38,13 @@ from bifurc.function_problem import (
     FunctionProblem,
     accuracy_of,
 )
-from bifurc.limits import Deadline
+from bifurc.limits import (
+    CutOff,
+    Deadline,
+    current_deadline,
+    cut_off_after,
+    is_time_over,
+)
 from bifurc.numerics.singular_values import values_of
 from bifurc.problem import Problem
 from bifurc.search.own_units.restated import restated_branch
@@ -318,21 +324,21 @@ class UnitProblem(EquationProblem):
             more=None if seeds.more is None else more,
         )
 
-    def ends(self, count: int, deadline: Deadline | None = None) -> np.ndarray:
+    def ends(self, count: int) -> np.ndarray:
         """Points (k, n), in the user's units, at which ``count`` random starts in the
         region end: solutions, or where most reach none points on the way to them; of
-        fewer starts where the ``deadline`` comes before."""
-        ends = self.all_ends(count, deadline)
+        fewer starts where the time is over before."""
+        ends = self.all_ends(count)
         sharp = self._is_sharp(ends)
         if 2 * np.count_nonzero(sharp) > len(ends):
             ends = ends[sharp]
         return self.own_units.outwards(ends)
 
-    def all_ends(self, count: int, deadline: Deadline | None = None) -> np.ndarray:
+    def all_ends(self, count: int) -> np.ndarray:
         """The same in these units, also those beside others that are far from
         singular."""
         rng = np.random.default_rng(1)
-        seeds = random_seeds(self, rng, count, self.region, deadline)
+        seeds = random_seeds(self, rng, count, self.region)
         near = seeds.missed[is_on_the_way(seeds.gaps)]
         if len(seeds.points) > len(near):
             near = near[:0]
@@ -350,24 +356,23 @@ class UnitProblem(EquationProblem):
         return sharp
 
 
-def in_own_units(
-    problem: Problem, deadline: Deadline | None = None
-) -> UnitProblem | None:
+def in_own_units(problem: Problem) -> UnitProblem | None:
     """The equations of a function in units of their own; None for any other problem,
     and where they are in such units as they stand. What is not known of their solutions
-    at the ``deadline`` does not count."""
+    when the time is over does not count."""
     if not isinstance(problem, FunctionProblem):
         return None
     has_own_equations = any(_has_own(problem, name) for name in OF_EQUATIONS)
     if has_own_equations or problem.domain.rim is not None:
         return None
     has_own_answers = any(_has_own(problem, name) for name in OF_ONE_UNIT)
-    if has_own_answers or problem.n > LARGEST_DENSE:
+    own = None
+    if not has_own_answers and problem.n <= LARGEST_DENSE:
+        own = _in_units_of_solutions(problem)
+    if own is None:
         sizes = np.full(problem.n, _unit_of(problem))
         weights = np.ones(problem.equations.m)
         own = UnitProblem(problem, Units(np.zeros(problem.n), sizes, weights))
-    else:
-        own = _in_units_of_solutions(problem, deadline or Deadline())
     units = own.own_units
     has_gained = np.any(units.origin) or own.simplified is not None
     has_sizes = np.any(units.sizes != 1.0) or np.any(units.weights != 1.0)
@@ -384,34 +389,51 @@ def _unit_of(problem: FunctionProblem) -> float:
     return float(2.0 ** round(math.log2(problem.domain.scale)))
 
 
-def _in_units_of_solutions(problem: FunctionProblem, deadline: Deadline) -> UnitProblem:
+def _in_units_of_solutions(problem: FunctionProblem) -> UnitProblem | None:
     """The equations in units of the region where random starts end, as far as that is
-    known at the ``deadline``."""
+    known when the time is over; None where nothing is known by then."""
+    known: UnitProblem | None = None
+    try:
+        with cut_off_after(current_deadline()):
+            for own in _closer_and_closer(problem):
+                known = own
+                if is_time_over():
+                    break
+    except CutOff:
+        pass
+    return known
+
+
+def _closer_and_closer(problem: FunctionProblem) -> Iterator[UnitProblem]:
+    """The equations in units of the region where random starts end, each time closer to
+    what they are in the end."""
     whole = _first_region(problem)
     region, is_point = whole, np.zeros(problem.n, dtype=bool)
     count = STARTS if problem.recording.tape is not None else STARTS_OF_CALLABLE
     simplified = _with_written_factors(problem)
     own = _problem_on(problem, region, simplified)
+    yield own
     for _ in range(ROUNDS):
-        closer = _region_of(problem, own.ends(count, deadline), region, is_point)
-        if closer is None or deadline.passed:
+        closer = _region_of(problem, own.ends(count), region, is_point)
+        if closer is None:
             break
         # what shrinks without end is a point, and looked at from where it is
         extents = np.maximum(np.diff(whole, axis=1)[:, 0], np.abs(closer).max(axis=1))
         is_point |= np.diff(closer, axis=1)[:, 0] < POINT * extents
         region = np.where(is_point[:, None], whole, closer)
         own = _problem_on(problem, region, simplified)
+        yield own
     else:
         own = _problem_on(problem, whole, simplified)
-    if deadline.passed:
-        return own
+        yield own
     if not np.array_equal(region, whole):
         region = _widened(own, region, is_point)
         own = _problem_on(problem, region, simplified)
+        yield own
     own = _deflated(own)
     if not np.array_equal(region, whole) and not _has_curves(own):
         own = _deflated(_problem_on(problem, whole, simplified))
-    return own
+    yield own
 
 
 def in_one_size(own: UnitProblem) -> UnitProblem:
