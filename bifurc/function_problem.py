@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -23,6 +23,7 @@ from bifurc.domain import Domain
 from bifurc.equations.evaluation import Equations, noise_of
 from bifurc.equations.recording import Recording, record
 from bifurc.equations.system import CompiledSystem, ScaledTape
+from bifurc.equations.tape import Tape
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.bordered import as_dense
@@ -155,6 +156,10 @@ class EquationProblem(NumericalProblem):
         tape = self.equations.tape
         if tape is not None:
             self.compiled = ScaledTape(tape, magnitude, self.domain, region)
+
+    def tapes_on_rims(self) -> Iterable[Tape]:
+        """The equations together with each of the rims that end the region."""
+        return ()
 
     @property
     def recording(self) -> Recording:

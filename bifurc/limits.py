@@ -193,8 +193,9 @@ def cut_off_after(deadline: Deadline) -> Iterator[None]:
     signal.signal(signal.SIGALRM, _cut.strike)
     _cut.is_armed = True
     try:
-        if not deadline.is_endless:
-            signal.setitimer(signal.ITIMER_REAL, deadline.left + GRACE)
+        left = deadline.left
+        if left < float("inf"):
+            signal.setitimer(signal.ITIMER_REAL, left + GRACE)
         yield
     finally:
         _cut.is_armed = False

@@ -38,7 +38,11 @@ from bifurc.search.point_search import BRANCH_REACH, SEED_REACH, PointSearch
 from bifurc.search.records import Start, half_branch_starts
 from bifurc.search.seed_book import Fate, SeedFate
 from bifurc.search.seed_fates import SeedJudge
-from bifurc.search.solutions import sharpened, with_weak_solutions
+from bifurc.search.solutions import (
+    sharpened,
+    solutions_in_bounds,
+    with_weak_solutions,
+)
 from bifurc.search.subdivision import (
     Subdivision,
     audit_of,
@@ -281,6 +285,19 @@ class Search:
         slopes: np.ndarray = np.linalg.norm(products, axis=1) / (sizes + TINY)
         return slopes
 
+    def look_at_bounds(self) -> Starts:
+        """Take solutions in single bounds for seeds, where nothing is known: of a curve
+        that only touches the region, as in a corner of it, random starts end outside."""
+        findings, problem = self.findings, self.problem
+        if findings.components.seeds or self.run.is_over:
+            return
+        points = solutions_in_bounds(problem, np.random.default_rng(0))
+        if len(points):
+            points = points[~findings.are_on_branches(points)]
+        if len(points):
+            self._add_seeds(findings.book.seeds.with_constructed(points))
+            yield []
+
     # --- what doubles mistake ---------------------------------------------------------
 
     def separate_points(self) -> Starts:
@@ -413,6 +430,7 @@ STEPS: tuple[Callable[[Search], Starts], ...] = (
     Search.gather_seeds,
     Search.draw_more_starts,
     Search.look_where_starts_stop,
+    Search.look_at_bounds,
     Search.cover_surfaces,
     Search.trace_singular_curves,
     Search.separate_points,

@@ -72,6 +72,10 @@ class SearchDoubt(DoubtKind):
         "{subject} has a multiplicity, F' having rank {rank} all along it: how large it "
         "is, and what meets it, is not known"
     )
+    SEVERAL_CURVES = (
+        "{subject} may be several curves, or none, {amount:.1e} of the scale from each "
+        "other: along it the equations miss by what that makes"
+    )
     STILL_UNKNOWNS = (
         "on {subject} rounding hides whether these unknowns stand still: {unknowns}"
     )

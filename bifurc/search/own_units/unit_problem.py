@@ -31,7 +31,7 @@ from bifurc.equations.differentiation import with_gradients
 from bifurc.equations.factors import Factors, polynomial_factors, written_factors
 from bifurc.equations.rims import NO_RIMS, Rims
 from bifurc.equations.system import LARGEST_DENSE
-from bifurc.equations.tape import Tape
+from bifurc.equations.tape import Tape, TapeWriter
 from bifurc.function_problem import (
     PROBES,
     EquationProblem,
@@ -71,6 +71,7 @@ OFF_CENTER = 4.0  # widths from zero from which on an unknown is counted from it
 HIGHEST, MOST_EQUATIONS = 6, 60  # multiplicity that is looked for, and equations
 FEWEST = 5  # ends of starts by which a multiplicity is told
 FEWEST_FLAT = 2  # of them, where F' is flat, for which factors are looked for
+DIGITS = 40
 PLACES = np.linspace(0.05, 0.95, 9)  # shares of a form at which factors are evaluated
 TINY = 1e-300  # keeps a gradient of zero from being divided by
 REGULAR = 1e-6  # smallest regular singular value at an end that is where it belongs
@@ -169,6 +170,20 @@ class UnitProblem(EquationProblem):
         beyond: np.ndarray = -np.fmin.reduce(self._depths(points), axis=1)
         return np.where(np.isnan(beyond), -np.inf, beyond)
 
+    def tapes_on_rims(self) -> Iterator[Tape]:
+        """The equations together with each of the rims, in these units."""
+        tape = self.equations.tape
+        if tape is None or self._rims.tape is None:
+            return
+        units = self.own_units
+        ones = np.ones(self._rims.tape.m)
+        rims = self._rims.tape.in_units(units.origin, units.sizes, ones)
+        writer = TapeWriter(self.n)
+        of_equations, of_rims = tape.write_on(writer), rims.write_on(writer)
+        outputs = [of_equations[slot] for slot in tape.outputs.tolist()]
+        for slot in rims.outputs.tolist():
+            yield writer.tape([*outputs, of_rims[slot]])
+
     def labels_along(self, branch: Branch) -> JsonObject:
         """What is to be said of a ``branch`` in these units besides: the rims on which
         it lies."""
@@ -223,6 +238,27 @@ class UnitProblem(EquationProblem):
             if is_factor_of_form(float(distances[number]), self.domain.scale):
                 powers[row] = powers.get(row, 0) + factors.powers[number]
         return self.simplified.order * math.prod(powers.values())
+
+    def sheets_beside(self, branch: Branch) -> float:
+        """How far from each other, over the scale, several curves would be that were taken
+        for one, a ``branch`` in these units along which derivatives are zero as well; 0
+        where there are none."""
+        precise = self.problem.precise_residual()
+        rounding = self.problem.accuracy.coefficient_rounding
+        order = 1 if self.simplified is None else self.simplified.order
+        if order == 1 or precise is None or rounding is None:
+            return 0.0
+        import mpmath  # it takes longer to import than a small problem to solve
+
+        unit = self.problem.magnitude * self.problem.domain.scale
+        largest = 0.0
+        with mpmath.workdps(DIGITS):
+            for point in self.own_units.outwards(branch(branch.length * PLACES[::4])):
+                values = precise([mpmath.mpf(float(x)) for x in point])
+                missed = np.array([abs(float(value)) for value in values])
+                missed[missed <= rounding(point)] = 0.0
+                largest = max(largest, float(missed.max()))
+        return float((largest / unit) ** (1.0 / order))
 
     def _matrices(self) -> list[np.ndarray]:
         """F' (m, n) at random points of the region where it is finite."""

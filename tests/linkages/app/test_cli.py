@@ -155,6 +155,22 @@ def test_commands_load_nothing_that_they_do_not_need(tmp_path):
         assert result.stderr.splitlines()[-1] == "[]"
 
 
+@pytest.mark.parametrize("words", [[], ["solve", "--help"]])
+def test_the_help_is_there_where_python_drops_texts(words):
+    script = f"import linkages.app.cli as c; c.main({words})"
+    texts = [
+        subprocess.run(
+            [sys.executable, *flags, "-c", script],
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for flags in ([], ["-OO"])
+    ]
+    assert "solution curves" in texts[0]
+    assert texts[0] == texts[1]
+
+
 def test_files_and_figures_load_neither_xarray_nor_scipy_optimize(tmp_path):
     """Each takes longer to import than a map takes."""
     script = (
