@@ -2,7 +2,8 @@
 
 Each is explored in a process of its own. Counted is the time from the begin of the search to
 the end of the process; what Python needs to start, and to make the problem, is not. Ctrl-C
-comes so many seconds after the begin.
+comes so many seconds after the begin. On a machine with other work the processor time after
+that moment tells more.
 
     python -m studies.budgets [--budget 2] [--interrupt 2] [--only TEXT]
 """
@@ -16,6 +17,7 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from math import inf
+from threading import Timer
 from typing import NamedTuple
 
 import click
@@ -283,7 +285,8 @@ CASES = [
 
 class Times(NamedTuple):
     """Seconds from the begin of a search, or from Ctrl-C, to the end of its process, and
-    what its last line says; without end where it had to be killed."""
+    what its last line says, with the processor time; without end where it had to be
+    killed."""
 
     seconds: float
     said: str
@@ -293,7 +296,7 @@ def measure(name: str, budget: float, interrupt_after: float) -> Times:
     """How long a process takes that explores a case."""
     words = [sys.executable, "-m", "studies.budgets", "--child", name]
     process = subprocess.Popen(
-        [*words, "--budget", str(budget)],
+        [*words, "--budget", str(budget), "--interrupt", str(interrupt_after)],
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         text=True,
@@ -317,12 +320,18 @@ def measure(name: str, budget: float, interrupt_after: float) -> Times:
     return Times(time.perf_counter() - begun, said[-1] if said else "")
 
 
-def _run(name: str, budget: float) -> None:
-    """Explore a case in this process."""
+def _run(name: str, budget: float, moment: float) -> None:
+    """Explore a case in this process, and say how much processor time it takes after a
+    ``moment`` (s)."""
     (found,) = (one for one in CASES if one.name == name)
     search = found.prepared()
+    before = [0.0]
+    timer = Timer(moment, lambda: before.insert(0, time.process_time()))
+    timer.daemon = True
+    timer.start()
     print(BEGUN, flush=True)
     atlas = search(budget)
+    after = time.process_time() - before[0] if before[0] else 0.0
     end = atlas.provenance
     state = (
         "interrupted"
@@ -331,7 +340,8 @@ def _run(name: str, budget: float) -> None:
         if end.out_of_time
         else "whole"
     )
-    print(f"{len(atlas.forms)} forms, {len(atlas.surfaces)} surfaces, {state}")
+    counts = f"{len(atlas.forms)} forms, {len(atlas.surfaces)} surfaces"
+    print(f"processor {after:.2f} s; {counts}, {state}")
 
 
 @click.command()
@@ -347,7 +357,7 @@ def main(
 ) -> None:
     """Print the seconds beyond each budget, and after each Ctrl-C."""
     if child is not None:
-        _run(child, budgets[0])
+        _run(child, budgets[0], min(budgets[0], interrupts[0]))
         return
     for one in CASES:
         if only not in one.name:

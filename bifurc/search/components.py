@@ -148,6 +148,10 @@ def cover_components(
         return []
     if components.deflated is not None:
         problem = components.deflated
+    # what assembles the charts at the end is imported before: an import is not cut off
+    import scipy.sparse.csgraph
+    import scipy.spatial  # noqa: F401
+
     covering = cover_surface(
         problem, samples, radius=RADIUS, charts=charts, seconds=deadline.left
     )

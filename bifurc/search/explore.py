@@ -66,17 +66,9 @@ def explore(
     """
     check_type("problem", problem, Problem)
     check_type("settings", settings, SearchSettings)
-    if seeds is not None:
-        check_type("seeds", seeds, Seeds)
-        if seeds.points.ndim != 2 or seeds.points.shape[1] != problem.n:
-            shape = f"(k, {problem.n})"
-            raise ProblemError("shape of the seeds", seeds.points.shape, shape)
     if progress is not None:
         check_callable("progress", progress)
-    if not isinstance(seed, int | np.integer) or not 0 <= seed <= LARGEST_SEED:
-        raise ProblemError(
-            "seed", repr(seed), f"a whole number from 0 to {LARGEST_SEED}"
-        )
+    _check_seeds(problem, seed, seeds)
     if parameter is not None:
         parameter_index(problem.domain.names, parameter)
     events_of({} if events is None else events, problem.domain.names)
@@ -97,6 +89,19 @@ def explore(
     if atlas.provenance.interrupted:
         log.warning("interrupted: the atlas holds what was found so far")
     return atlas
+
+
+def _check_seeds(problem: Problem, seed: int, seeds: Seeds | None) -> None:
+    """Raise `ProblemError` for a seed or seeds that cannot be used."""
+    if not isinstance(seed, int | np.integer) or not 0 <= seed <= LARGEST_SEED:
+        raise ProblemError(
+            "seed", repr(seed), f"a whole number from 0 to {LARGEST_SEED}"
+        )
+    if seeds is not None:
+        check_type("seeds", seeds, Seeds)
+        if seeds.points.ndim != 2 or seeds.points.shape[1] != problem.n:
+            shape = f"(k, {problem.n})"
+            raise ProblemError("shape of the seeds", seeds.points.shape, shape)
 
 
 def _diagram_in_time(

@@ -67,10 +67,6 @@ def doubts_of(
             yield SearchDoubt.SURFACE_OR_CURVES.doubt(surface.name, missed)
     for index, branch in enumerate(traced):
         yield from _doubts_of_form(problem, index, branch, points)
-        if isinstance(problem, UnitProblem):
-            apart = problem.sheets_beside(branch.branch)
-            if not is_multiple_curve(apart):
-                yield SearchDoubt.SEVERAL_CURVES.doubt(_name(index), apart)
     for index, form in enumerate(forms):
         certificate = form.certificate
         if certificate is None or not certificate.leaves_doubt:
@@ -209,6 +205,10 @@ def _doubts_of_form(
     problem: Problem, index: int, traced: TracedBranch, points: Sequence[MeetingPoint]
 ) -> Iterator[Doubt]:
     """Whether a form is a curve, as far as doubles tell, and has no loose end."""
+    if isinstance(problem, UnitProblem):
+        apart = problem.sheets_beside(traced.branch)
+        if not is_multiple_curve(apart):
+            yield SearchDoubt.SEVERAL_CURVES.doubt(_name(index), apart)
     branch, profile = traced.branch, traced.profile
     name = _name(index)
     is_regular = profile.rank == branch.n - 1

@@ -444,12 +444,12 @@ def _closer_and_closer(problem: FunctionProblem) -> Iterator[UnitProblem]:
     """The equations in units of the region where random starts end, each time closer to
     what they are in the end."""
     whole = _first_region(problem)
-    region, is_point = whole, np.zeros(problem.n, dtype=bool)
-    count = STARTS if problem.recording.tape is not None else STARTS_OF_CALLABLE
+    region, is_point = whole, np.zeros(problem.n, bool)
+    count = STARTS if problem.recording.tape else STARTS_OF_CALLABLE
     simplified = _with_written_factors(problem)
     own = _problem_on(problem, region, simplified)
-    yield own
     for _ in range(ROUNDS):
+        yield own
         closer = _region_of(problem, own.ends(count), region, is_point)
         if closer is None:
             break
@@ -458,10 +458,8 @@ def _closer_and_closer(problem: FunctionProblem) -> Iterator[UnitProblem]:
         is_point |= np.diff(closer, axis=1)[:, 0] < POINT * extents
         region = np.where(is_point[:, None], whole, closer)
         own = _problem_on(problem, region, simplified)
-        yield own
     else:
         own = _problem_on(problem, whole, simplified)
-        yield own
     if not np.array_equal(region, whole):
         region = _widened(own, region, is_point)
         own = _problem_on(problem, region, simplified)
