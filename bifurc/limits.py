@@ -165,6 +165,8 @@ class _Cut:
     def strike(self, number: int, frame: FrameType | None) -> None:
         """Raise `CutOff` where what runs may be cut off; later where it is whole, or a
         module is being imported, which would be left in halves."""
+        if not self.is_armed:
+            return
         while frame is not None and "importlib" not in frame.f_code.co_filename:
             frame = frame.f_back
         if self.whole_calls or frame is not None:
@@ -187,7 +189,11 @@ def cut_off_after(deadline: Deadline) -> Iterator[None]:
     """
     is_main = threading.current_thread() is threading.main_thread()
     has_alarm = is_main and hasattr(signal, "SIGALRM")
-    if not has_alarm or signal.getsignal(signal.SIGALRM) is not signal.SIG_DFL:
+    is_free = has_alarm and signal.getsignal(signal.SIGALRM) in (
+        signal.SIG_DFL,
+        _cut.strike,  # of a block that was cut off on its way out
+    )
+    if not is_free:
         yield
         return
     signal.signal(signal.SIGALRM, _cut.strike)
