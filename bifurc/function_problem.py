@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
@@ -312,11 +311,11 @@ class FunctionProblem(EquationProblem):
             for probe in probes:
                 self._check_jacobian(probe)
             sizes = [_spectral_norm(jacobian_at(self, probe)) for probe in probes]
-        known = [size for size in sizes if math.isfinite(size)]
-        if not known:
+        if not np.any(np.isfinite(sizes)):
             allowed = "finite somewhere inside the bounds"
             raise ProblemError("derivative of the function", np.nan, allowed)
-        self._take_magnitude(float(np.median(known)) or 1.0)
+        magnitude = self.equations.typical_size(probes, sizes, self.domain.scale)
+        self._take_magnitude(magnitude)
 
     def _measure_noise(self, probes: np.ndarray) -> None:
         """See how noisy the values are about the probes (k, n), where they are not

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 COMPLEX_STEP = 1e-100  # its square vanishes beside 1, and it costs no digits
 DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences of F
 VALUE, SHOWN = "value of the function", 4  # unknowns of a place in an error
+MADE_BY_ROUNDING = 10.0  # times bounds on the rounding of F
 SOLVED_IN_NOISE = 30.0  # times the noise, below which a value is zero
 
 # From a point (n,) to F (m,), and to F' (m, n), dense or sparse.
@@ -199,6 +200,22 @@ class Equations:
             width = 2 * step[i]
             columns.append((upper - lower) / width)
         return np.column_stack(columns)
+
+    def typical_size(
+        self, points: np.ndarray, sizes: Sequence[float], scale: float
+    ) -> float:
+        """The median of the ``sizes`` (k,) of F' at points (k, n), without those that are
+        not finite, and without those that rounding of F makes over a length ``scale``:
+        F may be constant in a part of the region. 1 where nothing is left."""
+        known = np.array(sizes)
+        counts = np.isfinite(known)
+        if self.tape is not None:
+            points = _contiguous(points)
+            low, high = self.tape.compiled.value_bounds(points, points)
+            widths = np.nan_to_num(np.linalg.norm(high - low, axis=1), posinf=0.0)
+            is_rounding = known * scale <= MADE_BY_ROUNDING * widths
+            counts &= ~is_rounding | bool(np.all(is_rounding | ~counts))
+        return (float(np.median(known[counts])) if counts.any() else 0.0) or 1.0
 
     @property
     def coefficient_rounding(self) -> Callable[[np.ndarray], np.ndarray] | None:

@@ -31,7 +31,7 @@ from bifurc.equations.differentiation import with_gradients
 from bifurc.equations.factors import Factors, polynomial_factors, written_factors
 from bifurc.equations.rims import NO_RIMS, Rims
 from bifurc.equations.system import LARGEST_DENSE
-from bifurc.equations.tape import Tape, TapeWriter
+from bifurc.equations.tape import Tape, TapeWriter, rounding_of_constants
 from bifurc.function_problem import (
     PROBES,
     EquationProblem,
@@ -135,9 +135,10 @@ class UnitProblem(EquationProblem):
         self.accuracy = self._own_accuracy()
         magnitude = size * problem.magnitude
         if region is not None:
-            sizes = [np.linalg.norm(matrix, ord=2) for matrix in self._matrices()]
-            magnitude = float(np.median(sizes)) if sizes else 1.0
-        self._take_magnitude(magnitude or 1.0, self.region)
+            points, matrices = self._matrices()
+            sizes = [np.linalg.norm(matrix, ord=2) for matrix in matrices]
+            magnitude = self.equations.typical_size(points, sizes, scale)
+        self._take_magnitude(magnitude, self.region)
 
     def _own_domain(self, scale: float) -> Domain:
         """The domain of the problem in these units. Curves may go on far beyond the
@@ -243,30 +244,34 @@ class UnitProblem(EquationProblem):
         """How far from each other, over the scale, several curves would be that were taken
         for one, a ``branch`` in these units along which derivatives are zero as well; 0
         where there are none."""
-        precise = self.problem.precise_residual()
-        rounding = self.problem.accuracy.coefficient_rounding
-        order = 1 if self.simplified is None else self.simplified.order
-        if order == 1 or precise is None or rounding is None:
+        if self.simplified is None or self.simplified.order == 1:
             return 0.0
         import mpmath  # it takes longer to import than a small problem to solve
 
-        unit = self.problem.magnitude * self.problem.domain.scale
+        # coefficients of factors are rounded, and so those of the user are taken
+        factors, tape = self.simplified.factors, self.problem.equations.tape
+        if tape is None or not factors.are_plain:
+            tape = factors.radical()
+        anywhere = np.ascontiguousarray(self.own_units.outwards(self._matrices()[0]))
+        slopes = np.linalg.norm(tape.compiled.jacobians(anywhere), axis=(1, 2))
+        unit = float(np.median(slopes)) * self.problem.domain.scale
         largest = 0.0
         with mpmath.workdps(DIGITS):
             for point in self.own_units.outwards(branch(branch.length * PLACES[::4])):
-                values = precise([mpmath.mpf(float(x)) for x in point])
-                missed = np.array([abs(float(value)) for value in values])
-                missed[missed <= rounding(point)] = 0.0
+                values = tape.over([mpmath.mpf(float(x)) for x in point], mpmath)
+                missed = np.array([float(abs(value)) for value in values])
+                missed[missed <= rounding_of_constants(tape, point)] = 0.0
                 largest = max(largest, float(missed.max()))
-        return float((largest / unit) ** (1.0 / order))
+        return float((largest / (unit or 1.0)) ** (1.0 / self.simplified.order))
 
-    def _matrices(self) -> list[np.ndarray]:
-        """F' (m, n) at random points of the region where it is finite."""
+    def _matrices(self) -> tuple[np.ndarray, np.ndarray]:
+        """Random points (k, n) of the region where F' is finite, and F' (k, m, n)."""
         rng = np.random.default_rng(0)
         points = rng.uniform(self.region[:, 0], self.region[:, 1], (PROBES, self.n))
         with np.errstate(all="ignore"):
-            matrices = [self.jacobians(point[None])[0] for point in points]
-        return [matrix for matrix in matrices if np.all(np.isfinite(matrix))]
+            matrices = self.jacobians(points)
+        is_finite = np.isfinite(matrices).all(axis=(1, 2))
+        return points[is_finite], matrices[is_finite]
 
     def precise_residual(self) -> PreciseResidual | None:
         """F over mpmath numbers, from that of the user's problem."""
@@ -608,13 +613,13 @@ def _flatness(own: UnitProblem) -> np.ndarray:
     """Lengths (k, m) of the gradients of the equations where random starts end, over
     those elsewhere; k is 0 where too few end anywhere."""
     ends = own.all_ends(STARTS)
-    typical = own._matrices()
-    if len(ends) < FEWEST or not typical:
+    _, typical = own._matrices()
+    if len(ends) < FEWEST or not len(typical):
         return np.empty((0, own.equations.m))
     usual = np.median(np.linalg.norm(typical, axis=2), axis=0)
     lengths = np.linalg.norm(own.jacobians(ends), axis=2)
-    flatness: np.ndarray = lengths / (usual + TINY)
-    return flatness
+    # an equation that is constant everywhere is not flat at solutions in particular
+    return np.where(usual > 0.0, lengths / (usual + TINY), np.inf)
 
 
 def _has_curves(own: UnitProblem) -> bool:
@@ -661,9 +666,9 @@ def _problem_on(
 def _weights(own: UnitProblem) -> np.ndarray:
     """Powers of 2 (m,) that make the gradients of the equations about as long as each
     other; ones where they are."""
-    matrices = own._matrices()
+    _, matrices = own._matrices()
     ones = np.ones(own.equations.m)
-    if not matrices or own.equations.m == 1:
+    if not len(matrices) or own.equations.m == 1:
         return ones
     lengths = np.median(np.linalg.norm(matrices, axis=2), axis=0)
     is_counted = lengths > 0.0
