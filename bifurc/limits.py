@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from functools import cache, wraps
-from types import FrameType, TracebackType
+from types import FrameType
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 if TYPE_CHECKING:
@@ -60,12 +60,7 @@ class HeldInterrupt:
             signal.signal(signal.SIGINT, self._note)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if self._former is not None:
             signal.signal(signal.SIGINT, self._former)
         if kind is None:
@@ -99,11 +94,6 @@ class Deadline:
     seconds: float = float("inf")
     began: float = field(default_factory=time.perf_counter)
     interrupt: HeldInterrupt | None = None
-
-    @property
-    def is_endless(self) -> bool:
-        """Whether there is time without end."""
-        return self.seconds == float("inf")
 
     @property
     def left(self) -> float:

@@ -30,7 +30,8 @@ from bifurc import (
     SearchSettings,
     explore,
 )
-from linkages import Closure, load
+from linkages import Closure
+from linkages.catalogue import entry
 
 Equations = Callable[[np.ndarray], np.ndarray]
 BEGUN = "begun"
@@ -130,7 +131,8 @@ def bratu(n: int) -> Equations:
         zero = np.zeros(1) * p
         left = np.concatenate([zero, inner[:-1]])
         right = np.concatenate([inner[1:], zero])
-        return (n * n) * (left - 2 * inner + right) + p * np.exp(inner)
+        residual: np.ndarray = n * n * (left - 2 * inner + right) + p * np.exp(inner)
+        return residual
 
     return function
 
@@ -238,7 +240,7 @@ def linkage(name: str) -> Case:
     """The map of a linkage of the catalogue."""
 
     def prepared() -> Search:
-        problem = Closure(load(name).loop)
+        problem = Closure(entry(name).build())
         return lambda budget: explore(problem, settings=SearchSettings(budget=budget))
 
     return Case(name, prepared)

@@ -145,7 +145,9 @@ class Equations:
         """F (k, m) at points (k, n)."""
         points = np.atleast_2d(points)
         if self.tape is not None:
-            return self.tape.compiled.residuals(_contiguous(points))
+            return self.tape.compiled.residuals(
+                np.ascontiguousarray(points, dtype=float)
+            )
         with np.errstate(all="ignore"):  # beyond the rim of where it is defined
             values = [self._called(point) for point in points]
         exact = np.array(values, dtype=float).reshape(len(points), self.m)
@@ -159,7 +161,9 @@ class Equations:
         """F' (k, m, n) at points (k, n), dense."""
         points = np.atleast_2d(points)
         if self.tape is not None:
-            return self.tape.compiled.jacobians(_contiguous(points))
+            return self.tape.compiled.jacobians(
+                np.ascontiguousarray(points, dtype=float)
+            )
         jacobians = [as_dense(self.jacobian_by_calls(point)) for point in points]
         return np.array(jacobians).reshape(len(points), self.m, points.shape[1])
 
@@ -210,7 +214,7 @@ class Equations:
         known = np.array(sizes)
         counts = np.isfinite(known)
         if self.tape is not None:
-            points = _contiguous(points)
+            points = np.ascontiguousarray(points, dtype=float)
             low, high = self.tape.compiled.value_bounds(points, points)
             widths = np.nan_to_num(np.linalg.norm(high - low, axis=1), posinf=0.0)
             is_rounding = known * scale <= MADE_BY_ROUNDING * widths
@@ -223,10 +227,6 @@ class Equations:
         doubles; None where it is not recorded."""
         tape = self.tape
         return None if tape is None else partial(rounding_of_constants, tape)
-
-
-def _contiguous(values: np.ndarray) -> np.ndarray:
-    return np.ascontiguousarray(values, dtype=float)
 
 
 VALUES = 13  # along each line
@@ -258,8 +258,7 @@ def noise_of(
             estimates.append(np.where(is_smooth, over_short, over_long))
     if not estimates:
         return None
-    median: np.ndarray = np.median(estimates, axis=0)
-    return median
+    return np.median(estimates, axis=0)
 
 
 def _along(

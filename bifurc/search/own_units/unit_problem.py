@@ -136,7 +136,7 @@ class UnitProblem(EquationProblem):
         magnitude = size * problem.magnitude
         if region is not None:
             points, matrices = self._matrices()
-            sizes = [np.linalg.norm(matrix, ord=2) for matrix in matrices]
+            sizes = [float(np.linalg.norm(matrix, ord=2)) for matrix in matrices]
             magnitude = self.equations.typical_size(points, sizes, scale)
         self._take_magnitude(magnitude, self.region)
 
@@ -393,8 +393,7 @@ class UnitProblem(EquationProblem):
         values = values_of(self.jacobians(points))
         if values.shape[1] < self.n - 1:
             return np.zeros(len(points), dtype=bool)
-        sharp: np.ndarray = values[:, self.n - 2] > REGULAR * self.magnitude
-        return sharp
+        return values[:, self.n - 2] > REGULAR * self.magnitude
 
 
 def in_own_units(problem: Problem) -> UnitProblem | None:

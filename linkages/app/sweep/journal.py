@@ -9,12 +9,11 @@ import zlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import Any, TypeAlias, cast
 
 import numpy as np
 
-from bifurc.errors import BifurcError
+from bifurc.errors import PathError
 from linkages.app.sweep.member import FIELDS, Field, Record, Status
 from linkages.app.sweep.plan import Plan
 
@@ -31,12 +30,8 @@ CHECK = "crc32"  # the key of the checksum of a line
 CHUNK = 4096  # bytes read at a time on the way back to the last newline
 
 
-class JournalError(BifurcError, ValueError):
+class JournalError(PathError):
     """A journal that cannot be continued: ``path`` and why."""
-
-    def __init__(self, path: Path, why: str):
-        self.path = path
-        super().__init__(f"{path}: {why}")
 
     @classmethod
     def of_line(cls, path: Path, number: int) -> JournalError:
@@ -69,12 +64,7 @@ class Journal:
     def __enter__(self) -> Journal:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         os.close(self._file)
 
     def append(self, line: Mapping[str, object]) -> None:
