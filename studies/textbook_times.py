@@ -16,7 +16,8 @@ from collections.abc import Sequence
 
 import click
 
-from bifurc import SymbolicProblem, TraceSettings, trace_branch
+from bifurc import TraceSettings, trace_branch
+from bifurc.equations.expression_problem import ExpressionProblem
 from studies.methods import auto07p
 from studies.methods.cases import Case
 from studies.methods.roster import Method, orders_of_this_project
@@ -43,7 +44,7 @@ def case_of(problem: TextbookProblem) -> Case | None:
     """The longest form of a problem, from its begin to its end; None for a problem that
     is not in a file, and where no exact curve is traced in the units of the file."""
     equations = problem.problem
-    if not isinstance(equations, SymbolicProblem):
+    if not isinstance(equations, ExpressionProblem):
         return None
     atlas = problem.explore(0, 60.0)
     branch = max(atlas.forms, key=lambda form: form.branch.length).branch

@@ -39,7 +39,6 @@ LONGER = {
         "bifurc.search.branches.branch_parts.with_piece_between",
         "bifurc.search.branches.canonical_course.top",
         "bifurc.search.components.components_of_seeds",
-        "bifurc.search.own_units.unit_problem._in_units_of_solutions",
         "bifurc.search.search.look_where_starts_stop",
         "bifurc.search.subdivision._are_known",
         "bifurc.search.tracing.trace",
