@@ -38,6 +38,10 @@ class LinkageClaim(ClaimKind):
     ALL_BUILT = (
         "dyads build all configurations: there is no motion, and no assembly is missing"
     )
+    ALL_OF_GROUPS = (
+        "there is no motion, and no assembly is missing: {real} of {complex} complex "
+        "assemblies are real, and all {complex} were followed (trace test {trace:.1g})"
+    )
     DYADS = "complete slices, built of dyads: every motion is here {moves}"
     DYADS_MISSING = (
         "complete slices, built of dyads: every motion is here {moves}, and others may be "
@@ -68,7 +72,11 @@ class LinkageClaim(ClaimKind):
     UP_TO_TURNS = "{translates}"
 
 
-ALL_ASSEMBLIES = (LinkageClaim.ALL_FOLLOWED, LinkageClaim.ALL_BUILT)
+ALL_ASSEMBLIES = (
+    LinkageClaim.ALL_FOLLOWED,
+    LinkageClaim.ALL_BUILT,
+    LinkageClaim.ALL_OF_GROUPS,
+)
 
 
 def random_assemblies() -> Claim:

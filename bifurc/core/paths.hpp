@@ -39,6 +39,7 @@ constexpr int corners = 8;             // of a way round the end
 constexpr int most_turns = 24;         // round the end until the path is where it was
 constexpr double closed = 1e-7;        // gap of a way round the end that is closed
 constexpr double agreement = 1e-7;     // of two means, over their size
+constexpr double solved = 1e-10;       // residual of a mean, over 1 + its size
 constexpr double growth = 1.1;         // by which the way round an end at infinity grows
 
 }  // namespace paths
@@ -210,10 +211,16 @@ public:
                 out.end = PathEnd::at_infinity;
                 return out;
             }
-            if (distance(circuit.mean, before.mean) < paths::agreement) {
-                out.point = circuit.mean;
-                out.end = PathEnd::singular;
+            if (distance(circuit.mean, before.mean) < paths::agreement && is_solution(circuit.mean)) {
                 out.rest = 0.0;
+                out.point = circuit.mean;
+                Point regular = circuit.mean;
+                out.end = PathEnd::singular;
+                if (circuit.winding == 1 && is_corrected(regular, 0.0)) {
+                    polish(regular);
+                    out.point = regular;
+                    out.end = PathEnd::regular;
+                }
                 return out;
             }
             before = circuit;
@@ -277,6 +284,13 @@ private:
         if (!is_corrected(point, t)) return false;
         expand(point, t);
         return true;
+    }
+
+    // Whether a point solves the equations at the end. Where two paths meet beside the end, their mean
+    // round it is between them.
+    bool is_solution(const Point& point) {
+        system_.linearize(point, 0.0, correction_, lu_);
+        return largest(correction_) < paths::solved * (1.0 + largest(point));
     }
 
     // How far the series is trusted: what the terms that are left out come to is below the tolerance, and

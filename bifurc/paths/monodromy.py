@@ -82,20 +82,19 @@ def solve_generic(
     fibre = Fibre(np.asarray(parameters, complex), np.asarray(start, complex)[None])
     _require_start(family, fibre)
     size = float(np.abs(fibre.parameters).mean()) if len(fibre.parameters) else 1.0
-    everything = np.arange(family.parameters)
-    ways = _Ways(everything, size, QUIET, most)
+    ways = _Ways(np.full(family.parameters, size), QUIET, most)
     fibre = _enlarged(family, fibre, ways, rng, deadline)
     if deadline.passed or len(fibre.solutions) > most:
         return GenericSolutions(fibre, None)
-    curve = _CurveOverLine(family, fibre, size, rng)
+    curve = _CurveOverLine(family, fibre, size, rng, deadline)
     trace = None
     for _ in range(TESTS):
         curve.find_points(rng, deadline)
         if deadline.passed:
             break
         trace = curve.trace(deadline)
-        fibre = curve.solutions_in(fibre, deadline)
         if trace is not None and is_linear_trace(trace):
+            fibre = curve.solutions_in(fibre, deadline)
             break
     return GenericSolutions(fibre, trace)
 
@@ -108,23 +107,20 @@ def _require_start(family: Family, fibre: Fibre) -> None:
 
 @dataclass(frozen=True, eq=False)
 class _Ways:
-    """Closed ways on which the parameters of the numbers ``moving`` (j,) move by about
-    ``size``; ``quiet`` of them in a row that bring nothing new are the last, and none
-    is tried once there are more than ``most`` solutions."""
+    """Closed ways on which parameters move by about their ``sizes`` (q,); ``quiet`` of
+    them in a row that bring nothing new are the last, and none is tried once there are
+    more than ``most`` solutions."""
 
-    moving: np.ndarray
-    size: float
+    sizes: np.ndarray
     quiet: int
     most: float = np.inf
 
     def stops(self, home: np.ndarray, rng: np.random.Generator) -> list[np.ndarray]:
         """The parameters (q,) at the corners of a way from ``home`` (q,)."""
-        stops = [home]
-        for _ in range(CORNERS - 1):
-            stop = home.copy()
-            stop[self.moving] = self.size * complex_normal(rng, len(self.moving))
-            stops.append(stop)
-        return [*stops, home]
+        stops = [
+            self.sizes * complex_normal(rng, len(home)) for _ in range(CORNERS - 1)
+        ]
+        return [home, *stops, home]
 
 
 def _enlarged(
@@ -157,28 +153,30 @@ class _CurveOverLine:
     """
 
     def __init__(
-        self, family: Family, fibre: Fibre, size: float, rng: np.random.Generator
+        self,
+        family: Family,
+        fibre: Fibre,
+        size: float,
+        rng: np.random.Generator,
+        deadline: Deadline,
     ):
         self.family = _sliced(family)
         self.n = family.n
         direction = size * complex_normal(rng, family.parameters)
-        self.line = np.concatenate([fibre.parameters, direction])
+        line = np.concatenate([fibre.parameters, direction])
         hyperplane = complex_normal(rng, family.n + 2)
-        self.at_fibre = np.concatenate([self.line, np.zeros(family.n), [1.0, 0.0]])
-        self.slice = Fibre(np.concatenate([self.line, hyperplane]), np.empty((0, 0)))
-        self.starts = np.column_stack([fibre.solutions, np.zeros(len(fibre.solutions))])
+        self.at_fibre = np.concatenate([line, np.zeros(family.n), [1.0, 0.0]])
+        generic = np.concatenate([line, hyperplane])
+        sizes = np.concatenate([np.full(len(line), size), np.ones(len(hyperplane))])
+        self.ways = _Ways(sizes, QUIET_ON_CURVE)
+        starts = np.column_stack([fibre.solutions, np.zeros(len(fibre.solutions))])
+        came = follow_paths(self.family, starts, self.at_fibre, generic, deadline)
+        self.slice = Fibre(generic, came.regular)
 
     def find_points(self, rng: np.random.Generator, deadline: Deadline) -> None:
-        """Find the points in a generic hyperplane, more of them at each call."""
-        home = self.slice.parameters
-        came = follow_paths(self.family, self.starts, self.at_fibre, home, deadline)
-        known = came.regular
-        if len(self.slice.solutions):
-            known = distinct(np.concatenate([self.slice.solutions, known]))
-        moving = np.arange(len(self.line), len(home))
-        ways = _Ways(moving, 1.0, QUIET_ON_CURVE)
-        fibre = Fibre(home, known)
-        self.slice = _enlarged(self.family, fibre, ways, rng, deadline)
+        """Find more of the points in a generic hyperplane: it moves, and so does the
+        line."""
+        self.slice = _enlarged(self.family, self.slice, self.ways, rng, deadline)
 
     def trace(self, deadline: Deadline) -> float | None:
         """How far the sum of the points is from linear in s, over its change; None
@@ -199,7 +197,6 @@ class _CurveOverLine:
         """The fibre at t = 0 with the points of the curve there."""
         back = self._followed(self.at_fibre, deadline).regular[:, : self.n]
         both = distinct(np.concatenate([fibre.solutions, back]))
-        self.starts = np.column_stack([both, np.zeros(len(both))])
         return Fibre(fibre.parameters, both)
 
     def _followed(self, last: np.ndarray, deadline: Deadline) -> Paths:

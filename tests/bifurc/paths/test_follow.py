@@ -120,3 +120,14 @@ def test_fewer_equations_than_unknowns_are_refused():
 def test_the_first_of_equal_points_is_kept():
     points = np.array([[1.0, 2j], [3.0, 0.0], [1.0 + 1e-12, 2j], [3.0, 1e-3]])
     assert np.array_equal(distinct(points), points[[0, 1, 3]])
+
+
+@pytest.mark.parametrize("place", [1e-3, 1e-5, 1e-7])
+def test_ends_of_paths_that_meet_beside_the_end_are_regular(place):
+    # x^2 = p - place, and p goes to 0: the mean of both ends is no solution
+    family = Family.of(lambda x, p: [(x[0] - 1.0) ** 2 - p[0] + place], 1, 1)
+    start = np.sqrt(1.0 + 0.5j - place)
+    paths = ends_of(family, [1.0 + start, 1.0 - start], [1.0 + 0.5j], [0.0])
+    assert np.all(paths.ends == PathEnd.REGULAR)
+    half = np.sqrt(place)
+    assert np.allclose(np.sort(paths.points[:, 0].imag), [-half, half], rtol=1e-6)

@@ -66,7 +66,7 @@ def test_the_trace_test_misses_a_point_that_is_left_out():
     family = framework(PRISM, 6)
     rng = np.random.default_rng(0)
     known = generic_solutions(family)
-    curve = monodromy._CurveOverLine(family, known.fibre, 1.0, rng)
+    curve = monodromy._CurveOverLine(family, known.fibre, 1.0, rng, Deadline())
     curve.find_points(rng, Deadline())
     while not GenericSolutions(known.fibre, curve.trace(Deadline())).are_all:
         curve.find_points(rng, Deadline())
