@@ -87,4 +87,5 @@ class Family:
 def complex_normal(rng: np.random.Generator, shape: Any) -> np.ndarray:
     """Complex numbers of normal distribution, 1 in the mean square."""
     numbers: np.ndarray = rng.normal(size=shape) + 1j * rng.normal(size=shape)
-    return numbers / np.sqrt(2.0)
+    numbers *= np.sqrt(0.5)
+    return numbers

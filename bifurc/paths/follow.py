@@ -152,7 +152,8 @@ def _followed(
 def _are_doubtful(paths: Paths) -> np.ndarray:
     """Which paths (k,) are to be followed again."""
     has_failed: np.ndarray = paths.is_lost & (paths.ends != PathEnd.OUT_OF_TIME)
-    return has_failed | _meets_another(paths)
+    doubtful: np.ndarray = has_failed | _meets_another(paths)
+    return doubtful
 
 
 def _meets_another(paths: Paths) -> np.ndarray:
