@@ -93,3 +93,40 @@ def test_a_start_that_is_no_solution_is_refused():
     family = framework(PRISM, 6)
     with pytest.raises(ValueError, match="start: it is not allowed"):
         solve_generic(family, np.ones(8), np.ones(8), np.random.default_rng(0))
+
+
+def platform(x, p):
+    """Three points of a platform at x (9,), the others as it has them, on six legs: base
+    points (6, 3), squares of the lengths of legs (6,), products of the sides of the
+    three points (3,), and where the others are (3, 3), in p."""
+    first, second, third = x[:3], x[3:6], x[6:]
+    base, legs, sides, others = p[:18], p[18:24], p[24:27], p[27:]
+    side, other = second - first, third - first
+    normal = np.array(
+        [side[k - 2] * other[k - 1] - side[k - 1] * other[k - 2] for k in range(3)]
+    )
+    points = [first, second, third]
+    for k in range(3):
+        along, across, above = others[3 * k : 3 * k + 3]
+        points.append(first + along * side + across * other + above * normal)
+    products = [(side * side).sum(), (other * other).sum(), (side * other).sum()]
+    gaps = [point - base[3 * k : 3 * k + 3] for k, point in enumerate(points)]
+    squares = [(gap * gap).sum() for gap in gaps]
+    return [
+        value - given
+        for value, given in zip([*squares, *products], [*legs, *sides], strict=True)
+    ]
+
+
+def test_a_platform_on_six_legs_has_40_complex_assemblies():
+    """Ronga and Vust 1995; Raghavan 1993."""
+    from bifurc.paths.monodromy import _enlarged, _Ways
+
+    family = Family.of(platform, 9, 36)
+    rng = np.random.default_rng(0)
+    start, parameters = complex_normal(rng, 9), complex_normal(rng, 36)
+    parameters[18:27] = 0.0
+    parameters[18:27] = family.residuals(start[None], parameters)[0]
+    ways = _Ways(np.ones(36), quiet=3)
+    fibre = Fibre(parameters, start[None])
+    assert len(_enlarged(family, fibre, ways, rng, Deadline()).solutions) == 40
