@@ -23,7 +23,6 @@ from bifurc.limits import current_deadline
 from bifurc.paths.family import Family, complex_normal
 from bifurc.paths.follow import PathEnd, Paths, copy_of, follow_paths
 from bifurc.paths.monodromy import GenericSolutions, solve_generic
-from linkages.decisions import is_real_place
 
 SEED = 24  # of the generic member from which paths begin
 MOST_ASSEMBLIES = 500  # complex ones, of a generic member
@@ -60,8 +59,8 @@ class Pattern(NamedTuple):
 def all_assemblies(
     pattern: Pattern, own: Sequence[Places], standing: Places
 ) -> np.ndarray:
-    """All places (k, pins) of the pins where bodies have their pins at the places ``own``, and
-    the first pins are at the places ``standing``.
+    """All places (k, pins) of the pins where bodies have their pins at the places
+    ``own``, and the first pins are at the places ``standing``.
 
     Raises `UnfollowedError` where some are not isolated or paths were lost.
     """
@@ -74,28 +73,29 @@ def all_assemblies(
     paths = follow_paths(
         group.family, fibre.solutions, fibre.parameters, last, deadline
     )
-    _require_all(paths)
-    solutions = paths.regular
-    conjugate = solutions.reshape(len(solutions), -1, 2)[:, :, ::-1].conj()
-    gaps = np.abs(solutions - conjugate.reshape(solutions.shape)).max(axis=1, initial=0)
-    sizes = 1.0 + np.abs(solutions).max(axis=1, initial=0)
-    real = solutions[is_real_place(gaps / sizes)]
-    places = [group.places(point, last) for point in real]
+    places = [group.places(end, last) for end in _real_ends(paths)]
     return np.array(places).reshape(-1, pattern.pins)
 
 
-def _require_all(paths: Paths) -> None:
-    """Raises `UnfollowedError` unless every path came to an end, isolated or at
-    infinity, and the ends are pairs of conjugate ones."""
+def _real_ends(paths: Paths) -> np.ndarray:
+    """The ends (k, n) that are real: each is its own conjugate.
+
+    Raises `UnfollowedError` unless every path came to an end, isolated or at infinity,
+    and the conjugate of each end is one of them.
+    """
     if np.any(paths.is_lost):
         raise UnfollowedError(f"paths were lost: {', '.join(paths.reasons())}")
     if np.any(paths.ends == PathEnd.SINGULAR):
         raise UnfollowedError("some assemblies are singular or move")
     ends = paths.regular
-    conjugate = ends.reshape(len(ends), -1, 2)[:, :, ::-1].conj().reshape(ends.shape)
-    copies = copy_of(np.concatenate([ends, conjugate]))
-    if not np.all(copies[len(ends) :] < len(ends)):
+    count = len(ends)
+    # z and w change places
+    conjugates = ends.reshape(count, -1, 2)[:, :, ::-1].conj().reshape(ends.shape)
+    partners = copy_of(np.concatenate([ends, conjugates]))[count:]
+    if np.any(partners >= count):
         raise UnfollowedError("an assembly has no conjugate one")
+    real: np.ndarray = ends[partners == np.arange(count)]
+    return real
 
 
 # --- equations ------------------------------------------------------------------------
