@@ -25,7 +25,7 @@ from bifurc.paths.follow import PathEnd, Paths, copy_of, follow_paths
 from bifurc.paths.monodromy import GenericSolutions, solve_generic
 
 SEED = 24  # of the generic member from which paths begin
-MOST_ASSEMBLIES = 500  # complex ones, of a generic member
+MOST_ASSEMBLIES = 200  # complex ones of a generic member, which take 15 s
 
 Places: TypeAlias = Sequence[complex] | np.ndarray
 # z and w of a pin: numbers, recorded or not
