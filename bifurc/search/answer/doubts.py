@@ -128,7 +128,8 @@ def doubts_of_findings(
     for kind, count in counts.items():
         if count:
             yield kind.doubt(amount=is_faint.threshold, count=int(count))
-    if traces or findings.near_surfaces:
+    knows_all = findings.audit is not None and findings.audit.has_all_isolated
+    if (traces or findings.near_surfaces) and not knows_all:
         yield SearchDoubt.NEAR_ASSEMBLIES.doubt()
     hidden = np.array([assembly.hidden for assembly in findings.rigid.values()])
     hidden = hidden[~is_known_assembly(hidden, problem.domain.scale)]
