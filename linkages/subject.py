@@ -381,9 +381,11 @@ class SingleLoopSubject(MechanismSubject):
 
     @cached_property
     def parts(self) -> Parts:
-        """The links."""
-        from linkages.links.parts import Links
+        """The links; the bodies, where they are panels, or others hang on them."""
+        from linkages.links.parts import Bodies, Links
 
+        if self.mechanism.panels or self.readout.structure.hanging.pairs:
+            return Bodies(self.readout.structure)
         return Links(self.table, self.to_angles, self.unknowns)
 
     def table_values(self) -> Mapping[str, Any]:

@@ -213,11 +213,15 @@ class HoldOptions:
 
     ``locks`` are "J=40" each, ``driver`` is the joint that has to move all others.
     ``is_without_centre``: of a network only the loop that its outer bars leave.
+    ``with_flaps``: what hangs on joints in no closed loop is free. ``part`` is the number
+    of one of several mechanisms of a file.
     """
 
     locks: tuple[str, ...] = ()
     driver: str | None = None
     is_without_centre: bool = False
+    with_flaps: bool = False
+    part: int | None = None
 
     @property
     def names(self) -> str:
@@ -226,6 +230,8 @@ class HoldOptions:
             "--lock": bool(self.locks),
             "--drive": self.driver is not None,
             "--without-centre": self.is_without_centre,
+            "--with-flaps": self.with_flaps,
+            "--part": self.part is not None,
         }
         return ", ".join(name for name, is_given in given.items() if is_given)
 
@@ -256,6 +262,19 @@ HOLD_OPTIONS: dict[str, Option] = {
         "is_without_centre",
         is_flag=True,
         help="Of a network with locks, take the single loop that its outer bars leave.",
+    ),
+    "with_flaps": click.option(
+        "--with-flaps",
+        "with_flaps",
+        is_flag=True,
+        help="Let what hangs on joints in no closed loop move: it is held else.",
+    ),
+    "part": click.option(
+        "--part",
+        "part",
+        type=click.IntRange(min=1),
+        metavar="NUMBER",
+        help="Of a file with several mechanisms, take this one, from 1.",
     ),
 }
 

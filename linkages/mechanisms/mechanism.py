@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
@@ -94,9 +94,11 @@ class Mechanism:
     Grübler's count. ``origin`` is where a file that counts them from elsewhere has the
     origin of the points; nothing that is computed hangs on it. ``rounding``: how far off
     they may be, where that is more than they are as doubles. ``panels`` are drawn of
-    bodies that are sheets.
-    Raises `GeometryError` where a joint is named twice, a body hangs on one joint only,
-    the bodies do not hang together, or joints are coupled in a circle.
+    bodies that are sheets. What hangs on joints in no closed loop is held where it is
+    given, but ``with_flaps``. Bodies that do not hang together are mechanisms of their
+    own, its `parts`.
+    Raises `GeometryError` where a joint is named twice, or joints are coupled in a
+    circle.
     """
 
     joints: tuple[Joint, ...]
@@ -105,12 +107,12 @@ class Mechanism:
     origin: Vector = field(default=(0.0, 0.0, 0.0), compare=False)
     rounding: float = field(default=0.0, compare=False)
     panels: tuple[Panel, ...] = field(default=(), compare=False)
+    with_flaps: bool = False
     # what to do where a single loop is asked for, unless there is nothing to do
     way_to_loop: ClassVar[str] = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "joints", _checked_joints(self.joints))
-        _check_graph(self)
         _check_followers(self)
 
     # --- bodies -----------------------------------------------------------------------
@@ -297,6 +299,34 @@ class Mechanism:
 
     # --- other mechanisms -------------------------------------------------------------
 
+    @property
+    def parts(self) -> tuple[Mechanism, ...]:
+        """The mechanisms that it consists of, each of bodies that hang together; itself
+        where it is one. Raises `GeometryError` where a joint is coupled to one of another
+        part."""
+        import networkx as nx
+
+        sets = list(nx.connected_components(self.graph()))
+        if len(sets) == 1:
+            return (self,)
+        return tuple(
+            self._part(number, sets[number - 1]) for number in range(1, len(sets) + 1)
+        )
+
+    def _part(self, number: int, bodies: Collection[str]) -> Mechanism:
+        """What is left of it with some ``bodies`` only."""
+        joints = tuple(joint for joint in self.joints if joint.bodies[0] in bodies)
+        labels = {label for joint in joints for label in joint.labels}
+        for joint in joints:
+            for coupling in joint.coupled:
+                is_inside = coupling is None or coupling.to in labels
+                to = "" if coupling is None else coupling.to
+                allowed = "coupled to what a chain of joints joins to it"
+                require(is_inside, f"joint {joint.name}", f"coupled to {to}", allowed)
+        panels = tuple(panel for panel in self.panels if panel.body in bodies)
+        name = f"{self.name}, part {number}"
+        return replace(self, joints=joints, panels=panels, name=name)
+
     def with_locks(self, values: Mapping[str, float]) -> Mechanism:
         """The mechanism with variables, by label, locked at ``values`` (rad and unit of
         length), or those that they follow at what that takes; raises `GeometryError`
@@ -450,25 +480,6 @@ def _checked_joints(joints: object) -> tuple[Joint, ...]:
             allowed = "such that every joint and every variable has its own"
             require(other is joint, what, f"{quoted(name)} in both", allowed)
     return checked
-
-
-def _check_graph(mechanism: Mechanism) -> None:
-    import networkx as nx
-
-    parts = [sorted(part) for part in nx.connected_components(mechanism.graph())]
-    if len(parts) > 1:
-        order = mechanism.bodies.index
-        frame = mechanism.frame
-        parts.sort(key=lambda part: (frame not in part, min(map(order, part))))
-        far = ", ".join(parts[1])
-        allowed = f"joined to {frame} by a chain of joints"
-        raise GeometryError("bodies", far, allowed)
-    for body in mechanism.bodies:
-        # a joint of several bodies is one, from whichever its angles are measured
-        joints = [joint.name for joint in mechanism.joints if body in joint.bodies]
-        value = f"one joint only, {joints[0]},"
-        allowed = "two joints or more on every body"
-        require(len(joints) >= 2, f"body {body}", value, allowed)
 
 
 def _check_followers(mechanism: Mechanism) -> None:

@@ -29,6 +29,8 @@ def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
             {"body": panel.body, "corners": [list(corner) for corner in panel.corners]}
             for panel in mechanism.panels
         ]
+    if mechanism.with_flaps:
+        values["with_flaps"] = True
     return {
         "name": mechanism.name,
         "mechanism": values,
@@ -100,7 +102,10 @@ def mechanism_from(given: object, name: str) -> Mechanism:
     require(is_list, "panels", repr(outlines), "a list of panels")
     bodies = {body for joint in joints for body in joint.bodies}
     panels = tuple(_panel(value, bodies) for value in outlines)
-    return Mechanism(tuple(joints), name, is_planar, origin, rounding, panels)
+    with_flaps = bool(given.get("with_flaps", False))
+    return Mechanism(
+        tuple(joints), name, is_planar, origin, rounding, panels, with_flaps
+    )
 
 
 def _panel(value: Any, bodies: Collection[str]) -> Panel:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -70,11 +71,10 @@ def map_command(
       bifurc map four-bennett-network --lock 2=40 --lock 6=-75
       bifurc map special-double-subtractive-goldberg --digits 50
     """
-    from linkages.app.answer.verdict import judge
-    from linkages.app.atlas_source import explore_linkage
-    from linkages.app.choice import choose_held
+    from linkages.app.atlas_source import explore_parts
+    from linkages.app.choice import choose_held, parts_of
     from linkages.app.files import figure_axes
-    from linkages.app.output import require_folder, say, say_written
+    from linkages.app.output import require_folder, say_written
 
     if as_json and digits:
         raise CommandError(
@@ -83,40 +83,70 @@ def map_command(
     require_out(out, axes=axes, against=against)
     if choice.hold.is_without_centre and digits:
         raise CommandError("--digits: it does not go with --without-centre")
-    require_folder(out)
-    mechanism = choose_held(linkage, choice.parameters, choice.hold)
-    over = figure_axes(mechanism, axes, against)
+    parts = parts_of(choose_held(linkage, choice.parameters, choice.hold))
+    folders = folders_of(out, len(parts))
+    over = [figure_axes(part, axes, against) for part in parts]
+    for folder in folders:
+        require_folder(folder)
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
-        atlas = explore_linkage(
-            mechanism, replace(choice.search, certify=not no_certify)
-        )
+        atlases = explore_parts(parts, replace(choice.search, certify=not no_certify))
         try:
-            report(atlas, as_json)
+            report(atlases, as_json)
         finally:  # where nothing can be shown, there are still the files
-            paths = write_numbers(atlas, out)
+            paths = list(map(write_numbers, atlases, folders))
     if digits:
-        from linkages.app.reports.confirmation import describe_confirmation
-
-        say("\n" + describe_confirmation(atlas, linkage, choice.parameters, digits))
-    if out is not None:
-        say_written([*paths, *write_pictures(atlas, out, over)], out)
-    verdict = judge(atlas)
-    if as_json and verdict.code is not ExitCode.DONE:
-        click.echo(verdict.sentence, err=True)
-    click.get_current_context().exit(verdict.code)
+        confirm(atlases, linkage, choice.parameters, digits)
+    for k, folder in enumerate(folders):
+        if folder is not None:
+            pictures = write_pictures(atlases[k], folder, over[k])
+            say_written([*paths[k], *pictures], folder)
+    exit_by_verdicts(atlases, as_json)
 
 
-def report(atlas: Atlas, as_json: bool) -> None:
-    """Print the map, as tables or as one JSON document."""
+def exit_by_verdicts(atlases: Sequence[Atlas], as_json: bool) -> None:
+    """End the command with the largest exit code of all maps; beside JSON verdicts that
+    are not "done" are said on standard error."""
+    from linkages.app.answer.verdict import judge
+
+    verdicts = [judge(atlas) for atlas in atlases]
+    for verdict in verdicts:
+        if as_json and verdict.code is not ExitCode.DONE:
+            click.echo(verdict.sentence, err=True)
+    click.get_current_context().exit(max(verdict.code for verdict in verdicts))
+
+
+def confirm(
+    atlases: Sequence[Atlas], linkage: str, parameters: Sequence[str], digits: int
+) -> None:
+    """Print how many of the maps' digits agree with those of so many."""
+    from linkages.app.output import say
+    from linkages.app.reports.confirmation import describe_confirmation
+
+    for atlas in atlases:
+        say("\n" + describe_confirmation(atlas, linkage, parameters, digits))
+
+
+def folders_of(out: Path | None, count: int) -> list[Path | None]:
+    """The folder for each of the mechanisms of a file: ``out``, or one in it each where
+    they are several."""
+    if out is None or count == 1:
+        return [out] * count
+    return [out / f"part-{number}" for number in range(1, count + 1)]
+
+
+def report(atlases: Sequence[Atlas], as_json: bool) -> None:
+    """Print the maps of all mechanisms of a file, as tables or as one JSON document, of
+    several one with "parts"."""
     from linkages.app.answer.document import make_document
     from linkages.app.output import say, say_json
     from linkages.app.texts.summary import make_summary
 
-    if as_json:
-        say_json(make_document(atlas))
-    else:
-        say(make_summary(atlas))
+    if not as_json:
+        say("\n\n\n".join(make_summary(atlas) for atlas in atlases))
+        return
+    documents = [make_document(atlas) for atlas in atlases]
+    say_json(documents[0] if len(documents) == 1 else {"parts": documents})
 
 
 def write_numbers(atlas: Atlas, out: Path | None) -> list[Path]:

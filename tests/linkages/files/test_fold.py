@@ -12,6 +12,7 @@ from bifurc.system import jacobian_at
 from linkages.closure.closure import Closure
 from linkages.file import LinkageFileError
 from linkages.readout.poses import Poses
+from linkages.structure.structure import Structure
 from studies.miura import SECTOR, miura
 from tests.linkages.mechanisms.test_maps import counts
 from tests.maps import map_of
@@ -324,14 +325,6 @@ MALFORMED = {
         changed(file_frames=[{"frame_inherit": True, "frame_parent": 3}]),
         r"frame_parent of file_frames\[1\]: 3",
     ),
-    "a flap": (
-        changed(
-            edges_assignment=[
-                "C" if x == [1, 5] else y for x, y in zip(ENDS, LETTERS, strict=True)
-            ]
-        ),
-        r"body f0: one joint only, 4-5",
-    ),
 }
 
 
@@ -340,3 +333,12 @@ def test_a_malformed_file_is_refused_by_name_and_value(name, tmp_path):
     content, message = MALFORMED[name]
     with pytest.raises(LinkageFileError, match=message):
         read(tmp_path, content)
+
+
+def test_a_flap_is_held_and_said_to_be_free(tmp_path):
+    cut = [1, 5]
+    letters = ["C" if x == cut else y for x, y in zip(ENDS, LETTERS, strict=True)]
+    mechanism = read(tmp_path, changed(edges_assignment=letters))
+    flaps = {one.joint: one for one in Structure(mechanism).hanging.joints}
+    assert flaps["4-5"].bodies == ("f0",)
+    assert flaps["4-5"].spaces == ("a circle",)
