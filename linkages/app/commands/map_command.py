@@ -76,13 +76,9 @@ def map_command(
     from linkages.app.files import figure_axes
     from linkages.app.output import require_folder, say_written
 
-    if as_json and digits:
-        raise CommandError(
-            "--digits: it has no place in the JSON document; leave out --json"
-        )
+    if digits:
+        require_digits(as_json, choice.hold)
     require_out(out, axes=axes, against=against)
-    if choice.hold.is_without_centre and digits:
-        raise CommandError("--digits: it does not go with --without-centre")
     parts = parts_of(choose_held(linkage, choice.parameters, choice.hold))
     folders = folders_of(out, len(parts))
     over = [figure_axes(part, axes, against) for part in parts]
@@ -178,6 +174,16 @@ def write_pictures(atlas: Atlas, out: Path, over: FigureAxes) -> list[Path]:
         figures = write_figures(atlas, out, over)
         document = make_view_document(atlas, judge(atlas).sentence)
         return [*figures, write_page(document, out / "map.html")]
+
+
+def require_digits(as_json: bool, hold: options.HoldOptions) -> None:
+    """Raise `CommandError` for options that do not go with ``--digits``."""
+    if as_json:
+        raise CommandError(
+            "--digits: it has no place in the JSON document; leave out --json"
+        )
+    if hold.is_without_centre:
+        raise CommandError("--digits: it does not go with --without-centre")
 
 
 def require_out(out: Path | None, **figures: tuple[str, ...] | None) -> None:
