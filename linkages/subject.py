@@ -257,7 +257,13 @@ class MechanismSubject(Subject):
 
     def labelled(self, atlas: Atlas) -> Atlas:
         """With labels on the forms."""
-        return label_atlas(atlas, self.closure, self.values)
+        return self._as_assigned(label_atlas(atlas, self.closure, self.values))
+
+    def _as_assigned(self, atlas: Atlas) -> Atlas:
+        """The atlas with the names of forms that fold creases as they are assigned."""
+        from linkages.readout.assignment import named_as_assigned
+
+        return named_as_assigned(atlas, self.readout)
 
     def closure_with_errors(self, error: float, rng: np.random.Generator) -> Problem:
         """Every joint is off on each body that it joins (`draw_errors`): out of the
@@ -373,7 +379,8 @@ class SingleLoopSubject(MechanismSubject):
         """With names of forms, in the variables of the joints."""
         named = name_atlas(atlas, Linkage(self.table))
         back = self.to_angles.inverse
-        return recount_labelled(named, back, self.unknowns, self.values)
+        recounted = recount_labelled(named, back, self.unknowns, self.values)
+        return self._as_assigned(recounted)
 
     def in_loop_angles(self, atlas: Atlas) -> Atlas:
         names, subject = self.traced.domain.names, subject_of(self.table)

@@ -195,6 +195,8 @@ def hold_joints(text: str, linkage: Linkage | Mechanism, hold: HoldOptions) -> I
     )
     mechanism = _part(require_kind(linkage, Mechanism, refusal), hold.part)
     mechanism = replace(mechanism, with_flaps=hold.with_flaps)
+    if hold.free_creases:
+        mechanism = mechanism.with_free_creases()
     values = _read_values(hold.locks, "--lock", mechanism.holds_angle)
     check_limits(mechanism, values)
     locked = mechanism.held(values)

@@ -214,7 +214,8 @@ class HoldOptions:
     ``locks`` are "J=40" each, ``driver`` is the joint that has to move all others.
     ``is_without_centre``: of a network only the loop that its outer bars leave.
     ``with_flaps``: what hangs on joints in no closed loop is free. ``part`` is the number
-    of one of several mechanisms of a file.
+    of one of several mechanisms of a file. ``free_creases``: those of a pattern fold
+    either way, however they are assigned.
     """
 
     locks: tuple[str, ...] = ()
@@ -222,6 +223,7 @@ class HoldOptions:
     is_without_centre: bool = False
     with_flaps: bool = False
     part: int | None = None
+    free_creases: bool = False
 
     @property
     def names(self) -> str:
@@ -232,6 +234,7 @@ class HoldOptions:
             "--without-centre": self.is_without_centre,
             "--with-flaps": self.with_flaps,
             "--part": self.part is not None,
+            "--free-creases": self.free_creases,
         }
         return ", ".join(name for name, is_given in given.items() if is_given)
 
@@ -275,6 +278,12 @@ HOLD_OPTIONS: dict[str, Option] = {
         type=click.IntRange(min=1),
         metavar="NUMBER",
         help="Of a file with several mechanisms, take this one, from 1.",
+    ),
+    "free_creases": click.option(
+        "--free-creases",
+        "free_creases",
+        is_flag=True,
+        help="Let mountains and valleys of a crease pattern fold either way.",
     ),
 }
 

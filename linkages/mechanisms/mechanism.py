@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -86,6 +87,26 @@ class Panel(NamedTuple):
     corners: tuple[Vector, ...]
 
 
+class Crease(NamedTuple):
+    """A crease that is assigned: its ``joint``, "M" for a mountain or "V" for a valley,
+    and the fold ``angle`` (rad, valleys positive) in the reference configuration."""
+
+    joint: str
+    letter: str
+    angle: float
+
+    @property
+    def sign(self) -> int:
+        """That of the fold angle where it is folded as assigned."""
+        return 1 if self.letter == "V" else -1
+
+    @property
+    def limits(self) -> Limits:
+        """The values of the variable at which it is folded as assigned."""
+        ends = sorted((-self.angle, self.sign * math.pi - self.angle))
+        return ends[0], ends[1]
+
+
 @dataclass(frozen=True)
 class Mechanism:
     """Bodies, joined by ``joints`` that are given in one closed configuration.
@@ -94,9 +115,9 @@ class Mechanism:
     Grübler's count. ``origin`` is where a file that counts them from elsewhere has the
     origin of the points; nothing that is computed hangs on it. ``rounding``: how far off
     they may be, where that is more than they are as doubles. ``panels`` are drawn of
-    bodies that are sheets. What hangs on joints in no closed loop is held where it is
-    given, but ``with_flaps``. Bodies that do not hang together are mechanisms of their
-    own, its `parts`.
+    bodies that are sheets, with ``creases`` that are assigned. What hangs on joints in no
+    closed loop is held where it is given, but ``with_flaps``. Bodies that do not hang
+    together are mechanisms of their own, its `parts`.
     Raises `GeometryError` where a joint is named twice, or joints are coupled in a
     circle.
     """
@@ -108,6 +129,7 @@ class Mechanism:
     rounding: float = field(default=0.0, compare=False)
     panels: tuple[Panel, ...] = field(default=(), compare=False)
     with_flaps: bool = False
+    creases: tuple[Crease, ...] = field(default=(), compare=False)
     # what to do where a single loop is asked for, unless there is nothing to do
     way_to_loop: ClassVar[str] = ""
 
@@ -324,8 +346,26 @@ class Mechanism:
                 allowed = "coupled to what a chain of joints joins to it"
                 require(is_inside, f"joint {joint.name}", f"coupled to {to}", allowed)
         panels = tuple(panel for panel in self.panels if panel.body in bodies)
+        creases = tuple(one for one in self.creases if one.joint in labels)
         name = f"{self.name}, part {number}"
-        return replace(self, joints=joints, panels=panels, name=name)
+        return replace(self, joints=joints, panels=panels, creases=creases, name=name)
+
+    def with_creases_as_assigned(self) -> Mechanism:
+        """The sheet whose assigned creases fold their way only: valleys from 0 to 180
+        degrees, mountains from -180 to 0."""
+        limits = {one.joint: (one.limits,) for one in self.creases}
+        return self._with_limits(limits)
+
+    def with_free_creases(self) -> Mechanism:
+        """The sheet whose assigned creases fold either way."""
+        return self._with_limits({one.joint: () for one in self.creases})
+
+    def _with_limits(self, limits: Mapping[str, tuple[Limits, ...]]) -> Mechanism:
+        joints = tuple(
+            replace(joint, limits=limits.get(joint.name, joint.limits))
+            for joint in self.joints
+        )
+        return replace(self, joints=joints)
 
     def with_locks(self, values: Mapping[str, float]) -> Mechanism:
         """The mechanism with variables, by label, locked at ``values`` (rad and unit of
@@ -374,7 +414,16 @@ class Mechanism:
             image = _image(joint, MIRROR, MIRROR if slides else -MIRROR, -1.0)
             signs |= zip(joint.labels, _signs_in_mirror(joint, image), strict=True)
             joints.append(image)
-        return self._image(joints, signs, MIRROR)
+        mirrored = self._image(joints, signs, MIRROR)
+        # seen from the other side, valleys and mountains are exchanged and angles change
+        # their signs with the variables
+        creases = [
+            Crease(one.joint, one.letter, one.angle)
+            if signs[one.joint] > 0
+            else Crease(one.joint, "MV"[one.letter == "M"], -one.angle)
+            for one in self.creases
+        ]
+        return replace(mirrored, creases=tuple(creases))
 
     def _image(
         self, joints: Iterable[Joint], factors: Mapping[str, float], sizes: np.ndarray

@@ -12,6 +12,7 @@ from bifurc.atlas import Atlas
 from bifurc.tables import section, section_of
 from bifurc.torus import wrap
 from linkages.app.texts.configurations import SHOWN_SHARE
+from linkages.app.texts.crease_text import assigned_creases, describe_creases
 from linkages.app.texts.form_names import listed_numbers
 from linkages.app.texts.hanging_text import describe_hanging, mobility_with_flaps
 from linkages.app.texts.numbers import in_degrees, in_lengths, known_to
@@ -38,10 +39,14 @@ def describe_joints(readout: Readout) -> str:
         variable.label: variable.motion.is_turn
         for variable in readout.mechanism.variables
     }
+    creases = assigned_creases(readout.mechanism)
     limits = [
         f"{label} from {_shown(low, is_turn[label])} to {_shown(high, is_turn[label])}"
         for label, (low, high) in readout.limits().items()
+        if label not in creases
     ]
+    if readout.mechanism.creases:
+        text += f"\n\n{describe_creases(readout.mechanism)}"
     if limits:
         text += f"\n\nFollowed within limits: {', '.join(limits)}."
     coupled = _couplings(readout.mechanism)
