@@ -101,7 +101,47 @@ def _names_of_parts(graph: nx.MultiGraph, order: Iterable[str]) -> dict[str, str
 
 
 def _closed(assembly: Assembly) -> ClosedPoses:
-    """Poses in which the joints fit; raises `GeometryError` where there are none."""
+    """Poses in which the joints fit; raises `GeometryError` where there are none.
+
+    The bodies in loops are closed by themselves, and what hangs on them follows.
+    """
+    graph = nx.MultiGraph()
+    graph.add_nodes_from(assembly.bodies)
+    for joint in assembly.joints:
+        graph.add_edge(*joint.bodies, key=joint.name)
+    core = {body for pair in _doubled(graph) for body in pair}
+    core |= set(nx.k_core(nx.Graph(graph), 2))
+    if not assembly.poses or not core:
+        return _closed_at_once(assembly)
+    bodies = tuple(body for body in assembly.bodies if body in core)
+    joints = tuple(one for one in assembly.joints if core.issuperset(one.bodies))
+    closed = _closed_at_once(replace(assembly, bodies=bodies, joints=joints))
+    poses = dict(zip(bodies, closed.poses, strict=True))
+    every = _with_branches(assembly, poses, nx.Graph(graph))
+    return replace(closed, poses=every)
+
+
+def _with_branches(
+    assembly: Assembly, poses: dict[str, np.ndarray], graph: nx.Graph
+) -> np.ndarray:
+    """The poses (b, 4, 4) of all bodies, where those in loops have ``poses`` and the
+    others stand as they are given with respect to those on which they hang."""
+    ways = nx.multi_source_dijkstra_path(graph, set(poses))
+    for body in sorted(ways, key=lambda one: len(ways[one])):
+        if body not in poses:
+            before = ways[body][-2]
+            moved = poses[before] @ np.linalg.inv(assembly.poses[before])
+            poses[body] = moved @ assembly.poses[body]
+    return np.array([poses.get(b, assembly.poses[b]) for b in assembly.bodies])
+
+
+def _doubled(graph: nx.MultiGraph) -> list[tuple[str, str]]:
+    """The pairs of bodies that several joints join."""
+    return [(a, b) for a, b in nx.Graph(graph).edges if graph.number_of_edges(a, b) > 1]
+
+
+def _closed_at_once(assembly: Assembly) -> ClosedPoses:
+    """The same, all joints together."""
     closing = Closing(assembly)
     if assembly.poses:
         given = np.array([assembly.poses[body] for body in assembly.bodies])
