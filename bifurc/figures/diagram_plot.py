@@ -17,7 +17,8 @@ from bifurc.diagrams.diagram import Stability, Stretch
 from bifurc.figures.drawing import note_emptiness, widen_flat_axes
 from bifurc.figures.labels import label_spots
 from bifurc.figures.quantities import AxisRequest, Quantity, quantity_of
-from bifurc.figures.style import COLORS, RC, Dashes, Properties, Style
+from bifurc.figures.rendering import RC
+from bifurc.figures.style import COLORS, Dashes, Properties, Style
 from bifurc.singular.point import Kind
 
 PIECE_POINTS = 16  # drawn on each piece of a form, at least

@@ -22,7 +22,7 @@ from matplotlib.textpath import text_to_path
 from matplotlib.ticker import MultipleLocator
 from matplotlib.transforms import ScaledTranslation
 
-from bifurc.atlas import Atlas
+from bifurc.atlas import Atlas, Event
 from bifurc.decisions import closes_to_rounding
 from bifurc.figures.planes import (
     Plane,
@@ -30,9 +30,17 @@ from bifurc.figures.planes import (
     curve_points,
     cut_to_frame,
     place_in_frame,
+    shown_branches,
 )
-from bifurc.figures.style import RC, Properties, form_style, hollow
-from bifurc.singular.point import Mark
+from bifurc.figures.rendering import RC
+from bifurc.figures.style import (
+    Properties,
+    Style,
+    form_style,
+    hollow,
+    near_motion_style,
+)
+from bifurc.singular.point import Kind, Mark
 
 NAME_WIDTH = 24  # letters of a line of the legend
 LETTER_SIZE = RC["legend.fontsize"]
@@ -43,6 +51,9 @@ LINE_HEIGHT = 0.18  # of the legend, in inches
 # In inches, from the frame to the name of an axis; between them are the ticks.
 NAME_BELOW = 0.27
 NAME_LEFT = 0.46
+AS_DRAWN_LABEL = "as drawn"
+AS_DRAWN: Properties = {"marker": "*", "markersize": 8, "color": "black"}
+DEAD: Properties = {"marker": "s", "markersize": 3.2, "color": "0.25"}
 RIGID_LABEL = "rigid assembly"
 SURFACE_LABEL = "mobility 2 or more"
 FLAT_SAMPLES = 32  # of each form, by which the largest unknown is seen
@@ -125,7 +136,7 @@ def widen_flat_axes(
 ) -> None:
     """Show more of an axis along which nothing changes but for rounding; ``factors``
     are those of the axes, by which unknowns are multiplied to be shown."""
-    samples = [form.branch.sample(FLAT_SAMPLES) for form in atlas.forms]
+    samples = [branch.sample(FLAT_SAMPLES) for branch in shown_branches(atlas)]
     largest = max((float(np.abs(one).max(initial=0.0)) for one in samples), default=0.0)
     width, height = (factor * (largest or 1.0) for factor in factors)
     if np.ptp(axes.get_xlim()) < FLAT * width:
@@ -168,13 +179,14 @@ DEFAULT_PANEL = PanelSettings()
 def draw_forms(
     axes: Axes, atlas: Atlas, plane: Plane, settings: PanelSettings = DEFAULT_PANEL
 ) -> None:
-    """All forms in a plane, with axes to match."""
-    for i, form in enumerate(atlas.forms):
-        points = plane.project(curve_points(form.branch))
+    """All forms in a plane, near motions dotted, with axes to match."""
+    for i, branch in enumerate(shown_branches(atlas)):
+        points = plane.project(curve_points(branch))
         if len(points):
             rows = cut_to_frame(points, plane.scales)
             # not cut at the frame, in which curves on a torus lie anyway
-            style: Properties = {"linewidth": settings.line_width, **form_style(i).line}
+            line = curve_style(atlas, i).line
+            style: Properties = {"linewidth": settings.line_width, **line}
             axes.plot(*rows.T, clip_on=False, zorder=2, **style)
     horizontal, vertical = plane.scales
     _label_axis(axes.xaxis, horizontal)
@@ -192,6 +204,13 @@ def draw_forms(
         spine.set_zorder(1)  # forms that lie on the edge of the frame are drawn over it
 
 
+def curve_style(atlas: Atlas, index: int) -> Style:
+    """Style of number ``index`` of the `shown_branches` of an atlas."""
+    if index < len(atlas.forms):
+        return form_style(index)
+    return near_motion_style(index)
+
+
 def _label_axis(axis: Axis, scale: Scale) -> None:
     """Name and ticks; a whole turn is divided by right angles."""
     axis.set_label_text(scale.label)
@@ -206,8 +225,8 @@ def _label_axis(axis: Axis, scale: Scale) -> None:
 def draw_marks(
     axes: Axes, atlas: Atlas, plane: Plane, settings: PanelSettings = DEFAULT_PANEL
 ) -> None:
-    """Singular points, isolated solutions and surfaces in a plane, on both edges where
-    they lie on one."""
+    """Singular points, isolated solutions, surfaces, and the configuration as drawn in a
+    plane, on both edges where they lie on one."""
     for surface in atlas.surfaces:
         shown = place_in_frame(plane.project(surface.samples), plane.scales)
         axes.plot(*shown.T, ".", color="0.6", markersize=2, zorder=1)
@@ -215,6 +234,7 @@ def draw_marks(
         size = settings.mark_size or 5.5
         style: Properties = {"color": "0.3", "markersize": size, "zorder": 3}
         axes.plot(*plane.copies(solution).T, "x", clip_on=False, **style)
+    _draw_as_given(axes, atlas, plane)
     spots: dict[Mark, list[np.ndarray]] = {}
     for point in atlas.points:
         mark = point.kind.mark
@@ -223,6 +243,16 @@ def draw_marks(
     for mark, places in spots.items():
         style = {"markeredgewidth": 1.1, **hollow(mark)}
         axes.plot(*np.concatenate(places).T, ls="", clip_on=False, zorder=4, **style)
+
+
+def _draw_as_given(axes: Axes, atlas: Atlas, plane: Plane) -> None:
+    """The configuration as drawn, if there is one, and dead points of drivers."""
+    for event in _driven(atlas):
+        style = {"clip_on": False, "zorder": 3.5, **DEAD}
+        axes.plot(*plane.copies(event.u).T, ls="", **style)
+    if atlas.drawn is not None:
+        style = {"clip_on": False, "zorder": 5, **AS_DRAWN}
+        axes.plot(*plane.copies(atlas.drawn).T, ls="", **style)
 
 
 # --- the legend -----------------------------------------------------------------------
@@ -262,6 +292,28 @@ def _entries(atlas: Atlas) -> Iterator[Line2D]:
     for i, form in enumerate(atlas.forms):
         name = textwrap.fill(form.name, NAME_WIDTH)
         yield Line2D([], [], linewidth=1.8, label=name, **form_style(i).line)
+    curves = [near for near in atlas.near_motions if near.branch]
+    for i, near in enumerate(curves, start=len(atlas.forms)):
+        name = f"{near.name}, misses\nclosure by {near.misclosure:.1e}"
+        yield Line2D([], [], linewidth=1.8, label=name, **near_motion_style(i).line)
+    for label, style in _marks_of(atlas):
+        yield Line2D([], [], linestyle="", label=label, **style)
+
+
+def _driven(atlas: Atlas) -> list[Event]:
+    """The dead points of the unknowns that drive, and do not stand still."""
+    drivers = atlas.subject.get("drivers", ())
+    events = [event for event in atlas.dead_points if event.index in drivers]
+    moving = []
+    for event in events:
+        values = atlas.forms[event.form].branch.sample(FLAT_SAMPLES)[:, event.index]
+        if np.ptp(values) > FLAT:
+            moving.append(event)
+    return moving
+
+
+def _marks_of(atlas: Atlas) -> list[tuple[str, Properties]]:
+    """What the marks of an atlas mean, and how each is drawn."""
     marks: list[tuple[str, Properties]] = []
     for kind in dict.fromkeys(point.kind for point in atlas.points):
         marks.append((kind.value, hollow(kind.mark)))
@@ -269,8 +321,11 @@ def _entries(atlas: Atlas) -> Iterator[Line2D]:
         marks.append((RIGID_LABEL, {"marker": "x", "color": "0.3"}))
     if atlas.surfaces:
         marks.append((SURFACE_LABEL, {"marker": ".", "color": "0.6"}))
-    for label, style in marks:
-        yield Line2D([], [], linestyle="", label=label, **style)
+    for index in sorted({event.index for event in _driven(atlas)}):
+        marks.append((f"dead point of {atlas.names[index]}", DEAD))
+    if atlas.drawn is not None:
+        marks.append((AS_DRAWN_LABEL, AS_DRAWN))
+    return marks
 
 
 class LegendSize(NamedTuple):
@@ -301,10 +356,20 @@ def note_emptiness(axes: Axes, atlas: Atlas) -> None:
     """Say so in the middle of the frame where there is no form."""
     if atlas.forms:
         return
-    note = "no form"
-    if closes_to_rounding(atlas.closure_gap) and atlas.closure_gap > 0:
-        note += " within the bounds"
-    elif 0 < atlas.closure_gap < np.inf:
-        note += f"\nclosure gap {atlas.closure_gap:.1e}"
     style: Properties = {"ha": "center", "va": "center", "color": "0.4"}
+    note = "\n".join(emptiness(atlas))
     axes.text(0.5, 0.5, note, transform=axes.transAxes, fontsize=11, **style)
+
+
+def emptiness(atlas: Atlas) -> list[str]:
+    """What is said where there is no form, a line each."""
+    if atlas.near_motions:
+        least = min(near.misclosure for near in atlas.near_motions)
+        return ["no form", f"near motions miss closure by {least:.1e} or more"]
+    if len(atlas.rigid) or any(point.kind is Kind.ISOLATED for point in atlas.points):
+        return ["no form", "it closes, and is rigid"]
+    if closes_to_rounding(atlas.closure_gap) and atlas.closure_gap > 0:
+        return ["no form within the bounds"]
+    if 0 < atlas.closure_gap < np.inf:
+        return ["no form", f"closure gap {atlas.closure_gap:.1e}"]
+    return ["no form"]

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 
 from bifurc.atlas import Atlas
 from bifurc.figures.drawing import note_emptiness
-from bifurc.figures.style import RC, Properties, Style, form_style
+from bifurc.figures.rendering import RC
+from bifurc.figures.style import Properties, Style, form_style
 from bifurc.graphs import transition_graph
 
 SURFACE = Style("0.6", "-")

@@ -14,7 +14,7 @@ from matplotlib import rc_context
 
 from bifurc.atlas import Atlas
 from bifurc.figures.plotting import plot_transition_map
-from bifurc.figures.style import RC
+from bifurc.figures.rendering import RC
 
 
 def load_ipython_extension(shell: Any) -> None:

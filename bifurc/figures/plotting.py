@@ -32,10 +32,15 @@ from bifurc.figures.drawing import (
 )
 from bifurc.figures.form_graph import plot_form_graph
 from bifurc.figures.labels import label_points
-from bifurc.figures.planes import choose_plane, indices_of, plane_of, scale_of
-from bifurc.figures.rendering import render
+from bifurc.figures.planes import (
+    choose_plane,
+    indices_of,
+    plane_of,
+    scale_of,
+    shown_branches,
+)
+from bifurc.figures.rendering import RC, render
 from bifurc.figures.singular_values import plot_singular_values
-from bifurc.figures.style import RC
 from bifurc.files.atomic import replace_file
 
 SMALL_PANEL = PanelSettings(line_width=1.4, mark_size=3.5)
@@ -79,7 +84,8 @@ def plot_transition_map(
         draw_forms(axes, atlas, plane)
         draw_marks(axes, atlas, plane)
         draw_legend(figure, atlas, EDGE)
-        note_emptiness(axes, atlas)
+        if not shown_branches(atlas):
+            note_emptiness(axes, atlas)
         label_points(axes, atlas, plane)
     return figure
 
@@ -119,7 +125,8 @@ def plot_joint_angles(
                 axes.set_xlabel("")
                 axes.tick_params(labelbottom=False)
         draw_legend(figure, atlas, EDGE)
-        note_emptiness(panels[0], atlas)
+        if not shown_branches(atlas):
+            note_emptiness(panels[0], atlas)
     return figure
 
 

@@ -7,9 +7,11 @@ transformed lines.
 from __future__ import annotations
 
 import io
+import pathlib
 from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib import rc_params_from_file
 from matplotlib.backend_bases import GraphicsContextBase, RendererBase
 from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.backends.backend_svg import RendererSVG
@@ -21,6 +23,10 @@ from matplotlib.transforms import Affine2D, Bbox, Transform, TransformedPath
 from PIL import Image
 
 POINTS = 72  # of an inch, the unit of SVG
+# Settings of matplotlib for all figures, which the user's own must not disturb.
+RC: dict[Any, Any] = rc_params_from_file(
+    pathlib.Path(__file__).with_name("bifurc.mplstyle"), use_default_template=False
+)
 # No dates, no names of programs, so that the same figure gives the same bytes.
 NO_METADATA = {"Date": None, "Creator": None}
 WHOLE = 1e-6  # of a pixel, by which rounding may miss a whole number of them

@@ -23,7 +23,8 @@ from bifurc.figures.drawing import (
 )
 from bifurc.figures.planes import Scale, place_in_frame, scale_of
 from bifurc.figures.quantities import shown_unit
-from bifurc.figures.style import RC, Properties, Style, form_style
+from bifurc.figures.rendering import RC
+from bifurc.figures.style import Properties, Style, form_style
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 MARGINS = Margins(0.85, 0.2, 0.6, 0.45, between_columns=0.3, between_rows=0.75)

@@ -13,9 +13,16 @@ from mpl_toolkits.mplot3d import Axes3D, proj3d
 
 from bifurc import torus
 from bifurc.atlas import Atlas
-from bifurc.figures.drawing import draw_legend_outside, legend_size
-from bifurc.figures.planes import Scale, curve_points, indices_of, scale_of
-from bifurc.figures.style import RC, form_style, hollow
+from bifurc.figures.drawing import curve_style, draw_legend_outside, legend_size
+from bifurc.figures.planes import (
+    Scale,
+    curve_points,
+    indices_of,
+    scale_of,
+    shown_branches,
+)
+from bifurc.figures.rendering import RC
+from bifurc.figures.style import hollow
 
 
 def plot_map_in_space(
@@ -51,16 +58,16 @@ def _shown(points: np.ndarray, scales: Sequence[Scale]) -> np.ndarray:
 def _draw_forms(
     axes: Axes3D, atlas: Atlas, indices: Sequence[int], scales: Sequence[Scale]
 ) -> None:
-    """Every form, with breaks where it leaves the frame."""
+    """Every form and near motion, with breaks where it leaves the frame."""
     half = np.array([scale.half for scale in scales])
-    for i, form in enumerate(atlas.forms):
-        points = curve_points(form.branch)
+    for i, branch in enumerate(shown_branches(atlas)):
+        points = curve_points(branch)
         if not len(points):
             continue
         shown = _shown(points[:, list(indices)], scales)
         is_jump = np.any(np.abs(np.diff(shown, axis=0)) > half, axis=1)
         rows = np.insert(shown, np.flatnonzero(is_jump) + 1, np.nan, axis=0)
-        axes.plot(*rows.T, linewidth=1.6, **form_style(i).line)
+        axes.plot(*rows.T, linewidth=1.6, **curve_style(atlas, i).line)
 
 
 def _draw_points(

@@ -13,7 +13,7 @@ from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 from bifurc.atlas import Atlas
 from bifurc.figures.plotting import plot_transition_map
-from bifurc.figures.style import RC
+from bifurc.figures.rendering import RC
 from docs.generator.scene_figure import draw_configuration
 from linkages.labels import loop_of
 from linkages.scene import Scene, breadth, clearance, make_scene

@@ -33,7 +33,7 @@ def _flat_state(readout: Readout) -> np.ndarray | None:
     """The unknowns (n,) where the sheet is flat; None where no crease is assigned, or
     where it is given folded and one that is not assigned has another fold angle."""
     mechanism, structure = readout.mechanism, readout.structure
-    flat: np.ndarray = readout.reference.copy()
+    flat: np.ndarray = readout.structure.reference.copy()
     angles = {one.joint: one.angle for one in mechanism.creases}
     columns = {
         mechanism.variables[number].joint: column

@@ -35,4 +35,4 @@ def test_a_share_of_a_deadline_is_over_before_it():
     whole = Deadline(100.0)
     part = whole.share(0.25)
     assert 20.0 < part.left <= 25.0
-    assert Deadline().share(0.25).is_endless
+    assert Deadline().share(0.25).left == float("inf")

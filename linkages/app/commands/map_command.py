@@ -16,6 +16,10 @@ from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
     from linkages.app.files import FigureAxes
+    from linkages.entry import Linkage
+    from linkages.mechanisms.mechanism import Mechanism
+
+EXACT = "exact.toml"  # the table that --nearest maps
 
 
 @click.command("map", epilog=exit_code_table())
@@ -23,6 +27,14 @@ if TYPE_CHECKING:
 @options.out_option("dataset, graph, summary, figures and the page map.html")
 @options.json_option("; angles in radians")
 @options.no_certify_option
+@click.option(
+    "--nearest",
+    is_flag=True,
+    help=(
+        "Map the exact linkage of the catalogue that a rounded or misprinted table is "
+        "meant to be."
+    ),
+)
 @click.option(
     "--digits",
     type=click.IntRange(20, 1000),
@@ -52,6 +64,7 @@ def map_command(
     out: Path | None,
     as_json: bool,
     no_certify: bool,
+    nearest: bool,
     digits: int | None,
     axes: tuple[str, ...] | None,
     against: tuple[str, ...] | None,
@@ -66,20 +79,22 @@ def map_command(
       bifurc map special-double-subtractive-goldberg --out out
       bifurc map bricard-line-symmetric --out out --axes 1,5 --against 1
       bifurc map my_linkage.toml --json > map.json
+      bifurc map printed_table.csv --nearest --out out
       bifurc map five_bar.toml --lock J1=40
       bifurc map slider_crank.toml --out out --axes J1,J4
       bifurc map four-bennett-network --lock 2=40 --lock 6=-75
       bifurc map special-double-subtractive-goldberg --digits 50
     """
     from linkages.app.atlas_source import explore_parts
-    from linkages.app.choice import choose_held, parts_of
+    from linkages.app.choice import parts_of
     from linkages.app.files import figure_axes
-    from linkages.app.output import require_folder, say_written
+    from linkages.app.output import require_folder
 
-    if digits:
-        require_digits(as_json, choice.hold)
     require_out(out, axes=axes, against=against)
-    parts = parts_of(choose_held(linkage, choice.parameters, choice.hold))
+    if digits:
+        allow_digits(as_json, nearest, choice.hold)
+    mechanism, exact = choose_mapped(linkage, choice, nearest)
+    parts = parts_of(mechanism)
     folders = folders_of(out, len(parts))
     over = [figure_axes(part, axes, against) for part in parts]
     for folder in folders:
@@ -88,28 +103,34 @@ def map_command(
     with HeldInterrupt():
         atlases = explore_parts(parts, replace(choice.search, certify=not no_certify))
         try:
-            report(atlases, as_json)
+            report(atlases, as_json, choice.verbose)
         finally:  # where nothing can be shown, there are still the files
-            paths = list(map(write_numbers, atlases, folders))
+            paths = [
+                write_numbers(atlas, folder, exact)
+                for atlas, folder in zip(atlases, folders, strict=True)
+            ]
     if digits:
         confirm(atlases, linkage, choice.parameters, digits)
+    write_all_pictures(atlases, folders, paths, over)
+    has_steps = not as_json and len(atlases) == 1
+    steps = next_steps_of(atlases[0], linkage, choice, out is not None)
+    end(atlases, as_json, steps if has_steps else "")
+
+
+def write_all_pictures(
+    atlases: Sequence[Atlas],
+    folders: Sequence[Path | None],
+    written: Sequence[Sequence[Path]],
+    over: Sequence[FigureAxes],
+) -> None:
+    """Write the figures and the page of every map into its folder, if there is one, and
+    say what is in it besides the files ``written`` before."""
+    from linkages.app.output import say_written
+
     for k, folder in enumerate(folders):
         if folder is not None:
             pictures = write_pictures(atlases[k], folder, over[k])
-            say_written([*paths[k], *pictures], folder)
-    exit_by_verdicts(atlases, as_json)
-
-
-def exit_by_verdicts(atlases: Sequence[Atlas], as_json: bool) -> None:
-    """End the command with the largest exit code of all maps; beside JSON verdicts that
-    are not "done" are said on standard error."""
-    from linkages.app.answer.verdict import judge
-
-    verdicts = [judge(atlas) for atlas in atlases]
-    for verdict in verdicts:
-        if as_json and verdict.code is not ExitCode.DONE:
-            click.echo(verdict.sentence, err=True)
-    click.get_current_context().exit(max(verdict.code for verdict in verdicts))
+            say_written([*written[k], *pictures], folder)
 
 
 def confirm(
@@ -131,23 +152,77 @@ def folders_of(out: Path | None, count: int) -> list[Path | None]:
     return [out / f"part-{number}" for number in range(1, count + 1)]
 
 
-def report(atlases: Sequence[Atlas], as_json: bool) -> None:
+def allow_digits(as_json: bool, nearest: bool, hold: options.HoldOptions) -> None:
+    """Raise `CommandError` for what does not go with more digits."""
+    if as_json:
+        raise CommandError(
+            "--digits: it has no place in the JSON document; leave out --json"
+        )
+    if hold.is_without_centre:
+        raise CommandError("--digits: it does not go with --without-centre")
+    if nearest:
+        raise CommandError("--digits: it does not go with --nearest")
+
+
+def choose_mapped(
+    linkage: str, choice: options.AtlasOptions, nearest: bool
+) -> tuple[Linkage | Mechanism, str]:
+    """What is mapped, and the text of a file with its exact table where it is the
+    ``nearest`` linkage to the one that was named."""
+    from linkages.app.choice import choose_held
+
+    mechanism = choose_held(linkage, choice.parameters, choice.hold)
+    if not nearest:
+        return mechanism, ""
+    from linkages.app.nearest import nearest_linkage
+    from linkages.subject import as_subject
+
+    meant = nearest_linkage(as_subject(mechanism).as_loop())
+    click.echo(meant.words, err=True)
+    return meant.linkage, meant.toml
+
+
+def next_steps_of(
+    atlas: Atlas, linkage: str, choice: options.AtlasOptions, has_files: bool
+) -> str:
+    """What can be done next with a linkage."""
+    from linkages.app.texts.next_steps import next_steps
+
+    return next_steps(atlas, linkage, choice, has_files)
+
+
+def end(atlases: Sequence[Atlas], as_json: bool, steps: str) -> None:
+    """End the command with the largest exit code of all verdicts, after what can be done
+    next, ``steps``, or the verdicts where a document does not say them."""
+    from linkages.app.answer.verdict import judge
+    from linkages.app.output import say_aside
+
+    verdicts = [judge(atlas) for atlas in atlases]
+    say_aside(steps)
+    for verdict in verdicts:
+        if as_json and verdict.code is not ExitCode.DONE:
+            click.echo(verdict.sentence, err=True)
+    click.get_current_context().exit(max(verdict.code for verdict in verdicts))
+
+
+def report(atlases: Sequence[Atlas], as_json: bool, is_whole: bool) -> None:
     """Print the maps of all mechanisms of a file, as tables or as one JSON document, of
     several one with "parts"."""
     from linkages.app.answer.document import make_document
     from linkages.app.output import say, say_json
-    from linkages.app.texts.summary import make_summary
+    from linkages.app.texts.summary import make_screen, make_summary
 
     if not as_json:
-        say("\n\n\n".join(make_summary(atlas) for atlas in atlases))
+        make = make_summary if is_whole else make_screen
+        say("\n\n\n".join(make(atlas) for atlas in atlases))
         return
     documents = [make_document(atlas) for atlas in atlases]
     say_json(documents[0] if len(documents) == 1 else {"parts": documents})
 
 
-def write_numbers(atlas: Atlas, out: Path | None) -> list[Path]:
-    """The paths of dataset, graph and summary, just written to ``out`` if there is
-    one."""
+def write_numbers(atlas: Atlas, out: Path | None, exact: str = "") -> list[Path]:
+    """The paths of dataset, graph and summary, and of the ``exact`` table if it is no
+    empty text, just written to ``out`` if there is one."""
     if out is None:
         return []
     from linkages.app.files import write_data
@@ -157,7 +232,9 @@ def write_numbers(atlas: Atlas, out: Path | None) -> list[Path]:
 
     with writing_to(out):
         subject = subject_at(atlas)
-        more, others = subject.dataset_variables(atlas), subject.files()
+        more, others = subject.dataset_variables(atlas), dict(subject.files())
+        if exact:
+            others[EXACT] = lambda path: path.write_text(exact, encoding="utf-8")
         return write_data(atlas, out, make_summary(atlas), more, others)
 
 

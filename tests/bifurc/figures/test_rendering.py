@@ -17,8 +17,7 @@ from bifurc.figures.plotting import (
     plot_singular_values,
     plot_transition_map,
 )
-from bifurc.figures.rendering import render
-from bifurc.figures.style import RC
+from bifurc.figures.rendering import RC, render
 
 PLOTS = [plot_transition_map, plot_joint_angles, plot_singular_values, plot_form_graph]
 
