@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache, wraps
 from types import FrameType
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
@@ -107,6 +107,10 @@ class Deadline:
         """Whether Ctrl-C was pressed."""
         return self.interrupt is not None and self.interrupt.was_pressed
 
+    def share(self, part: float) -> Deadline:
+        """The end of a ``part`` of the time that is left."""
+        return replace(self, seconds=part * self.left, began=time.perf_counter())
+
     @property
     def passed(self) -> bool:
         """Whether the time is over."""
@@ -136,6 +140,41 @@ def is_time_over() -> bool:
     """Whether that deadline has passed; asked between any two steps that together may
     take long."""
     return current_deadline().passed
+
+
+class TimeOver(Exception):
+    """The time of a block of `ending_in_time` is over."""
+
+
+_ending: ContextVar[Deadline | None] = ContextVar("ending", default=None)
+
+
+@contextmanager
+def ending_in_time(deadline: Deadline) -> Iterator[None]:
+    """A block that ends where `check_time` finds that a ``deadline`` has passed, or that
+    of a block around it: what takes long and is of no use in part is given up."""
+    around = _ending.get()
+    is_first = around is None or deadline.left < around.left
+    token = _ending.set(deadline if is_first else around)
+    try:
+        yield
+    except TimeOver:
+        pass
+    finally:
+        _ending.reset(token)
+
+
+def has_to_end() -> bool:
+    """Whether what runs now may have to end before it is done."""
+    deadline = _ending.get()
+    return deadline is not None and deadline.seconds < float("inf")
+
+
+def check_time() -> None:
+    """Raise `TimeOver` where the time of the innermost block is over."""
+    deadline = _ending.get()
+    if deadline is not None and deadline.passed:
+        raise TimeOver
 
 
 # --- what does not ask ----------------------------------------------------------------

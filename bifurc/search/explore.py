@@ -57,7 +57,8 @@ def explore(
     Seeds come from `Problem.seeds` (complete slices where the problem has them, and
     random starts drawn with ``seed``) unless given. Every branch is traced whole and
     monitored; from every singular point the directions in which other branches leave
-    become further starts. ``progress`` is called with what was found and how many.
+    become further starts. ``progress`` is called with what was found and in which
+    step, and how many.
     Ctrl-C ends the search early, once it has begun: the atlas holds what was found,
     and its provenance says so. When the budget of time is used up, the completeness and the provenance say
     so. With a ``parameter``, the name of an unknown, or ``events``, functions of the

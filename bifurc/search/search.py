@@ -17,7 +17,7 @@ from bifurc.decisions import (
     may_be_crossed,
     stops_short,
 )
-from bifurc.limits import CutOff, Deadline, cut_off_after
+from bifurc.limits import CutOff, Deadline, cut_off_after, ending_in_time
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.answer.completeness import asks_for_more_starts
@@ -62,6 +62,7 @@ TINY = 1e-300  # keeps a slope of zero from being divided by
 LOOKS_WHERE_STOPPED = 6  # at ends of starts that reached no solution
 LOOKS_WHERE_SLOW = 4  # at ends of starts where |F| still falls
 SLOW_REACH = 0.5  # how far from these, over the scale, a singular point may lie
+SORTING = 0.3  # of the time that is left, to tell on what seeds lie
 ROUNDS_IN_BOXES = 3  # each of them followed up
 MOST_TIMES = 16  # as many random starts as are asked for are drawn
 
@@ -98,6 +99,7 @@ class Search:
         self.seeds = seeds
         self.random_seed = random_seed
         self.progress = progress
+        self.step = ""
         self.findings = Findings(problem)
         self.run = Run(
             problem=problem,
@@ -113,9 +115,12 @@ class Search:
 
     def take_steps(self) -> None:
         """Take all steps, each until it leads to nothing new."""
+        deadline = self.run.deadline
         try:
-            with cut_off_after(self.run.deadline):
+            with cut_off_after(deadline), ending_in_time(deadline):
                 for step in STEPS:
+                    self.step = step.__name__.replace("_", " ")
+                    self._tell()
                     for starts in step(self):
                         if self.ends_at_surfaces and self.findings.components.seeds:
                             return
@@ -124,6 +129,12 @@ class Search:
                 self.near_motions.look()
         except CutOff:
             log.info("a step was cut off at the end of the time")
+
+    def _tell(self) -> None:
+        """Say how many forms there are, and which step is taken."""
+        if self.progress is not None:
+            what = f"forms so far; step: {self.step}"
+            self.progress(what, len(self.findings.traced))
 
     # --- seeds ------------------------------------------------------------------------
 
@@ -172,8 +183,9 @@ class Search:
         """Find the seeds that lie on components of dimension 2 and more."""
         book = self.findings.book
         if len(book.seeds.points):
+            share = self.run.deadline.share(SORTING)
             components = components_of_seeds(
-                self.problem, book.seeds.points, book.values, self.run.deadline
+                self.problem, book.seeds.points, book.values, share
             )
             self.findings.set_components(components)
 
@@ -187,8 +199,7 @@ class Search:
             for branch in list(findings.traced)[matched:]:
                 waiting = findings.match_seeds(waiting, branch)
             matched = len(findings.traced)
-            if self.progress is not None:
-                self.progress("forms", matched)
+            self._tell()
             if waiting:
                 number = waiting.pop(0)
                 findings.book.fates[number] = self.judge.fate_of(number)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
+from bifurc.limits import Deadline
 from linkages.app.answer.verdict import judge
 from linkages.app.choice import choose_held, require_table
 from linkages.app.exit_codes import CommandError, ExitCode
@@ -31,6 +34,20 @@ def explore_linkage(linkage: Linkage | Mechanism, search: SearchOptions) -> Atla
         return map_linkage(
             linkage, settings=settings, seed=search.seed, progress=status
         )
+
+
+def explore_parts(
+    parts: Sequence[Linkage | Mechanism], search: SearchOptions
+) -> list[Atlas]:
+    """The maps of mechanisms, one after the other, that share one budget."""
+    if len(parts) == 1:
+        return [explore_linkage(parts[0], search)]
+    deadline = Deadline(search.budget)
+    atlases = []
+    for number, part in enumerate(parts):
+        budget = deadline.left / (len(parts) - number)
+        atlases.append(explore_linkage(part, replace(search, budget=budget)))
+    return atlases
 
 
 def require_uninterrupted(atlas: Atlas) -> None:

@@ -212,12 +212,18 @@ class HoldOptions:
 
     ``locks`` are "J=40" each, ``driver`` is the joint that has to move all others.
     ``is_without_centre``: of a network only the loop that its outer bars leave.
+    ``with_flaps``: what hangs on joints in no closed loop is free. ``part`` is the number
+    of one of several mechanisms of a file. ``free_creases``: those of a pattern fold
+    either way, however they are assigned.
     ``is_modified``: in the rows of a table stand the links before the joints.
     """
 
     locks: tuple[str, ...] = ()
     driver: str | None = None
     is_without_centre: bool = False
+    with_flaps: bool = False
+    part: int | None = None
+    free_creases: bool = False
     is_modified: bool = False
 
     @property
@@ -227,6 +233,9 @@ class HoldOptions:
             "--lock": bool(self.locks),
             "--drive": self.driver is not None,
             "--without-centre": self.is_without_centre,
+            "--with-flaps": self.with_flaps,
+            "--part": self.part is not None,
+            "--free-creases": self.free_creases,
             "--modified-dh": self.is_modified,
         }
         return ", ".join(name for name, is_given in given.items() if is_given)
@@ -258,6 +267,25 @@ HOLD_OPTIONS: dict[str, Option] = {
         "is_without_centre",
         is_flag=True,
         help="Of a network with locks, take the single loop that its outer bars leave.",
+    ),
+    "with_flaps": click.option(
+        "--with-flaps",
+        "with_flaps",
+        is_flag=True,
+        help="Let what hangs on joints in no closed loop move: it is held else.",
+    ),
+    "part": click.option(
+        "--part",
+        "part",
+        type=click.IntRange(min=1),
+        metavar="NUMBER",
+        help="Of a file with several mechanisms, take this one, from 1.",
+    ),
+    "free_creases": click.option(
+        "--free-creases",
+        "free_creases",
+        is_flag=True,
+        help="Let mountains and valleys of a crease pattern fold either way.",
     ),
     "is_modified": click.option(
         "--modified-dh",
