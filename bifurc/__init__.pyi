@@ -26,7 +26,11 @@ from .errors import BifurcError as BifurcError
 from .errors import ProblemError as ProblemError
 from .errors import RouteError as RouteError
 from .figures.diagram_plot import plot_diagram as plot_diagram
+from .figures.form_graph import plot_form_graph as plot_form_graph
+from .figures.plotting import plot_joint_angles as plot_joint_angles
 from .figures.plotting import plot_transition_map as plot_transition_map
+from .figures.selection import Selection as Selection
+from .figures.singular_values import plot_singular_values as plot_singular_values
 from .files.dataset import AtlasFileError as AtlasFileError
 from .files.dataset import from_dataset as from_dataset
 from .files.dataset import load_atlas as load_atlas

@@ -7,6 +7,7 @@ transformed lines.
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,11 +28,28 @@ WHOLE = 1e-6  # of a pixel, by which rounding may miss a whole number of them
 QUICK_COMPRESSION = 2  # of PNG: two thirds of the time of 6, a tenth more bytes
 
 
+NO_DATE: dict[str, Any] = {"CreationDate": None}  # of PDF
+
+
 class Rendering(NamedTuple):
     """A figure as the bytes of a PNG and of an SVG file."""
 
     png: bytes
     svg: bytes
+
+
+def contents_of(
+    figure: Figure, resolution: float, formats: Sequence[str]
+) -> dict[str, bytes]:
+    """The bytes of files of a figure in these formats."""
+    contents: dict[str, bytes] = {}
+    if {"png", "svg"} & set(formats):
+        contents.update(render(figure, resolution)._asdict())
+    if "pdf" in formats:
+        stream = io.BytesIO()
+        figure.savefig(stream, format="pdf", metadata=NO_DATE)
+        contents["pdf"] = stream.getvalue()
+    return {ending: contents[ending] for ending in formats}
 
 
 def render(figure: Figure, resolution: float) -> Rendering:

@@ -9,36 +9,6 @@ from bifurc.singular.point import Mark
 Properties: TypeAlias = dict[str, Any]  # of what matplotlib draws, as it calls them
 Dashes: TypeAlias = Literal["-"] | tuple[float, tuple[float, ...]]
 
-# Settings of matplotlib for all figures, which the user's own must not disturb. Their
-# values are of the types that each of them takes.
-RC: dict[Any, Any] = {
-    "font.family": "DejaVu Sans",
-    "font.size": 8.5,
-    "axes.labelsize": 9,
-    "axes.titlesize": 9,
-    "axes.linewidth": 0.8,
-    "xtick.labelsize": 8,
-    "ytick.labelsize": 8,
-    "legend.fontsize": 8.5,
-    "axes.unicode_minus": True,
-    "grid.color": "0.9",
-    "grid.linewidth": 0.6,
-    "axes.axisbelow": True,
-    "figure.facecolor": "white",
-    "savefig.facecolor": "white",
-    "savefig.bbox": None,
-    "svg.hashsalt": "bifurc",
-    "svg.fonttype": "path",
-    "text.usetex": False,
-    "text.parse_math": False,  # names of the user's may hold a dollar sign
-    "path.simplify": True,
-    "lines.dash_capstyle": "butt",
-    "lines.solid_capstyle": "butt",
-    "axes.edgecolor": "0.4",
-    "figure.constrained_layout.w_pad": 0.08,
-    "figure.constrained_layout.h_pad": 0.08,
-}
-
 # Okabe and Ito (2008), without the yellow that is too light on white
 COLORS = (
     "#0072B2",

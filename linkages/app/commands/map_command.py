@@ -45,6 +45,23 @@ if TYPE_CHECKING:
     metavar="I",
     help="Draw the singular values against this joint; needs --out.",
 )
+@click.option(
+    "--range",
+    "window",
+    type=options.Pair(":", "0:360"),
+    metavar="LOW:HIGH",
+    help="The first and the last angle in the figures, degrees.  [default: -180:180]",
+)
+@click.option(
+    "--overlay",
+    type=options.FILE,
+    metavar="FILE.csv",
+    help=(
+        "Lay points over the figures: a column of degrees (lengths in the file's unit) "
+        "for each of some joints, with their names in the first line; needs --out."
+    ),
+)
+@options.figure_options
 @options.atlas_options
 def map_command(
     linkage: str,
@@ -54,6 +71,9 @@ def map_command(
     digits: int | None,
     axes: tuple[str, ...] | None,
     against: tuple[str, ...] | None,
+    window: tuple[float, float] | None,
+    overlay: Path | None,
+    figures: options.FigureOptions,
     choice: options.AtlasOptions,
 ) -> None:
     """Map every motion form of a linkage, every bifurcation, and the graph between
@@ -64,6 +84,7 @@ def map_command(
       bifurc map bennett --param alpha=70 --param beta=30
       bifurc map special-double-subtractive-goldberg --out out
       bifurc map bricard-line-symmetric --out out --axes 1,5 --against 1
+      bifurc map bennett --out out --format pdf --size 3.4x2.6 --range 0:360
       bifurc map my_linkage.toml --json > map.json
       bifurc map five_bar.toml --lock J1=40
       bifurc map slider_crank.toml --out out --axes J1,J4
@@ -74,18 +95,18 @@ def map_command(
     from linkages.app.atlas_source import explore_linkage
     from linkages.app.choice import choose_held
     from linkages.app.files import figure_axes
-    from linkages.app.output import require_folder, say, say_written
+    from linkages.app.output import require_folder, require_out, say, say_written
 
     if as_json and digits:
         raise CommandError(
             "--digits: it has no place in the JSON document; leave out --json"
         )
-    require_out(out, axes=axes, against=against)
+    require_out(out)
     if choice.hold.is_without_centre and digits:
         raise CommandError("--digits: it does not go with --without-centre")
     require_folder(out)
     mechanism = choose_held(linkage, choice.parameters, choice.hold)
-    over = figure_axes(mechanism, axes, against)
+    over = figure_axes(mechanism, axes, against, window, overlay)
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
         atlas = explore_linkage(
@@ -100,7 +121,7 @@ def map_command(
 
         say("\n" + describe_confirmation(atlas, linkage, choice.parameters, digits))
     if out is not None:
-        say_written([*paths, *write_pictures(atlas, out, over)], out)
+        say_written([*paths, *write_pictures(atlas, out, over, figures)], out)
     verdict = judge(atlas)
     if as_json and verdict.code is not ExitCode.DONE:
         click.echo(verdict.sentence, err=True)
@@ -135,7 +156,9 @@ def write_numbers(atlas: Atlas, out: Path | None) -> list[Path]:
         return write_data(atlas, out, make_summary(atlas), more, others)
 
 
-def write_pictures(atlas: Atlas, out: Path, over: FigureAxes) -> list[Path]:
+def write_pictures(
+    atlas: Atlas, out: Path, over: FigureAxes, look: options.FigureOptions
+) -> list[Path]:
     """The paths of the figures, and of the page that `bifurc view` makes, just written
     to ``out``."""
     from linkages.app.answer.verdict import judge
@@ -145,13 +168,6 @@ def write_pictures(atlas: Atlas, out: Path, over: FigureAxes) -> list[Path]:
     from linkages.viewing.page import write_page
 
     with writing_to(out):
-        figures = write_figures(atlas, out, over)
+        figures = write_figures(atlas, out, over, look)
         document = make_view_document(atlas, judge(atlas).sentence)
         return [*figures, write_page(document, out / "map.html")]
-
-
-def require_out(out: Path | None, **figures: tuple[str, ...] | None) -> None:
-    """Raise `CommandError` for options of figures where no figure is written."""
-    for name, value in figures.items():
-        if value is not None and out is None:
-            raise CommandError(f"--{name}: figures are only drawn with --out DIR")

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.form_order import listed_numbers
 from bifurc.tables import section, section_of
 from bifurc.torus import wrap
 from linkages.app.texts.configurations import SHOWN_SHARE
-from linkages.app.texts.form_names import listed_numbers
 from linkages.app.texts.numbers import in_degrees, in_lengths, known_to
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
