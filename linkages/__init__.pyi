@@ -16,6 +16,7 @@ from .mechanisms.joint import Joint as Joint
 from .mechanisms.joint import JointKind as JointKind
 from .mechanisms.mechanism import Mechanism as Mechanism
 from .mechanisms.subject import mechanism_of as mechanism_of
+from .pictures.plot_linkage import plot_linkage as plot_linkage
 from .readout.readout import Readout as Readout
 from .slices.assemblies import Assemblies as Assemblies
 from .slices.assemblies import isolated_assemblies as isolated_assemblies

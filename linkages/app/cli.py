@@ -17,6 +17,7 @@ from linkages.app.output import library_messages
 
 # each in a module of its own, `linkages.app.commands`
 COMMANDS = (
+    "animate",
     "clearance",
     "convert",
     "export",

@@ -171,6 +171,11 @@ def write_figures(
     forms = [form.name for form in choose_forms(atlas, options.forms)]
     selection = Selection(forms if options.forms else (), over.window, over.overlay)
     others = _figures_over(over, selection)
+    if atlas.subject.get("kind") != "system":
+        from linkages.pictures.plot_linkage import plot_linkage
+
+        form = selection.forms[0] if selection.forms else None
+        others["linkage"] = partial(plot_linkage, form=form)
     size: dict[Any, Any] = {SIZE: options.size} if options.size else {}
     with rc_context(size):
         return replace_files(

@@ -474,9 +474,10 @@ class FigureOptions:
     forms: tuple[str, ...] = ()
 
 
-def _check_size(
+def check_size(
     ctx: click.Context, param: click.Parameter, size: tuple[float, float] | None
 ) -> tuple[float, float] | None:
+    """The size of a figure, inches; raises `click.BadParameter`."""
     if size is not None and not all(
         SMALLEST_FIGURE <= side <= LARGEST_FIGURE for side in size
     ):
@@ -500,7 +501,7 @@ FIGURE_OPTIONS: dict[str, Option] = {
     "size": click.option(
         "--size",
         type=Pair("x", "3.4x2.6"),
-        callback=_check_size,
+        callback=check_size,
         metavar="WxH",
         help=(
             "Width and height of the figures, inches; they are higher where panels "
