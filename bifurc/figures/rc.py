@@ -16,6 +16,7 @@ from matplotlib.font_manager import FontProperties
 
 from bifurc.figures.style import COLORS, DASHES, Style
 
+SALT = "svg.hashsalt"  # by which it is seen that these settings are set
 # Their values are of the types that each of them takes.
 RC: dict[Any, Any] = {
     "font.family": ["DejaVu Sans"],
@@ -30,7 +31,7 @@ RC: dict[Any, Any] = {
     "axes.axisbelow": True,
     "axes.edgecolor": "0.4",
     "legend.frameon": False,
-    "svg.hashsalt": "bifurc",
+    SALT: "bifurc",
     "pdf.fonttype": 42,  # letters that journals can search and edit
     "text.parse_math": False,  # names of the user's may hold a dollar sign
     "lines.dash_capstyle": "butt",
@@ -45,7 +46,10 @@ DEFAULT: Any = rcParamsDefault
 @contextmanager
 def drawing_style() -> Iterator[None]:
     """A block in which figures are drawn: settings are those of this project, but for
-    what the user has set."""
+    what the user has set. Inside of such a block they stay as they are."""
+    if CURRENT[SALT] == RC[SALT]:
+        yield
+        return
     own = {key: value for key, value in RC.items() if not is_of_user(key)}
     with rc_context(own):
         yield
