@@ -49,6 +49,9 @@ from .problem import Problem as Problem
 from .routes.route import Leg as Leg
 from .routes.route import Route as Route
 from .routes.route import find_route as find_route
+from .routes.route import find_routes as find_routes
+from .routes.wishes import Cost as Cost
+from .routes.wishes import Wishes as Wishes
 from .search.branches.certification import certify_atlas as certify_atlas
 from .search.explore import explore as explore
 from .seeds import Audit as Audit
