@@ -36,6 +36,11 @@ from .files.dataset import from_dataset as from_dataset
 from .files.dataset import load_atlas as load_atlas
 from .files.dataset import save_atlas as save_atlas
 from .files.dataset import to_dataset as to_dataset
+from .following.follow import FollowedPoint as FollowedPoint
+from .following.follow import FollowError as FollowError
+from .following.follow import follow_singular_point as follow_singular_point
+from .following.places import FollowedPlace as FollowedPlace
+from .following.places import PlaceKind as PlaceKind
 from .function_problem import FunctionProblem as FunctionProblem
 from .function_problem import NumericalProblem as NumericalProblem
 from .graphs import arc_graph as arc_graph
@@ -45,6 +50,7 @@ from .large.large_branch import LargePoint as LargePoint
 from .large.large_problem import LargeProblem as LargeProblem
 from .large.trace_large_branch import LargeSettings as LargeSettings
 from .large.trace_large_branch import trace_large_branch as trace_large_branch
+from .parametrised import ParametrisedProblem as ParametrisedProblem
 from .problem import Problem as Problem
 from .routes.route import Leg as Leg
 from .routes.route import Route as Route

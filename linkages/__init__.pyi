@@ -16,6 +16,9 @@ from .mechanisms.joint import Joint as Joint
 from .mechanisms.joint import JointKind as JointKind
 from .mechanisms.mechanism import Mechanism as Mechanism
 from .mechanisms.subject import mechanism_of as mechanism_of
+from .parameters.followed import follow_points as follow_points
+from .parameters.members import Members as Members
+from .parameters.special import special_values as special_values
 from .pictures.plot_linkage import plot_linkage as plot_linkage
 from .readout.readout import Readout as Readout
 from .slices.assemblies import Assemblies as Assemblies

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from bifurc.equations.tape import Node, Operation, Tape, TapeWriter
 
 
@@ -17,6 +19,52 @@ def with_gradients(tape: Tape, rows: Sequence[int]) -> Tape:
     for row in rows:
         outputs += [gradients.of(outputs[row], j) for j in range(tape.n)]
     return writer.tape(outputs)
+
+
+def with_null_vectors(tape: Tape, n: int, basis: np.ndarray) -> Tape:
+    """The equations of a point where F' loses rank: F(u, p) = 0 (m equations), F_u V = 0
+    (m k) and V'V = I, with the skew part of B'V = 0 (k^2), for a ``basis`` B (n, k).
+
+    The unknowns of the ``tape`` are u (n,) and then p; those of the result are u, p and
+    the entries of V, column by column. Of all bases V of one null space the last equations
+    leave the one that is turned against B by as little as can be, and its opposite.
+    """
+    n_vectors = basis.shape[1]
+    writer = TapeWriter(tape.n + n * n_vectors)
+    slots = tape.write_on(writer)
+    outputs = [slots[slot] for slot in tape.outputs.tolist()]
+    vectors = [
+        [writer.unknown(tape.n + n * column + row) for row in range(n)]
+        for column in range(n_vectors)
+    ]
+    gradients = _Gradients(writer)
+    rows = [[gradients.of(output, j) for j in range(n)] for output in outputs]
+    outputs += [_dot(writer, row, vector) for vector in vectors for row in rows]
+    return writer.tape(outputs + _turned_least(writer, vectors, basis))
+
+
+def _turned_least(
+    writer: TapeWriter, vectors: Sequence[Sequence[int]], basis: np.ndarray
+) -> list[int]:
+    """The slots of V'V - I, below the diagonal and on it, and of the skew part of B'V,
+    for vectors V (k, n) by their slots and a ``basis`` B (n, k)."""
+    fixed = [[writer.constant(float(b)) for b in column] for column in basis.T]
+    outputs = []
+    for i, one in enumerate(vectors):
+        for j, other in enumerate(vectors[:i]):
+            outputs.append(_dot(writer, one, other))
+            first, second = _dot(writer, fixed[i], other), _dot(writer, fixed[j], one)
+            outputs.append(writer.subtract(first, second))
+        outputs.append(writer.add(_dot(writer, one, one), writer.constant(-1.0)))
+    return outputs
+
+
+def _dot(writer: TapeWriter, one: Sequence[int], other: Sequence[int]) -> int:
+    """The slot of the sum of the products of slots."""
+    total = writer.constant(0.0)
+    for a, b in zip(one, other, strict=True):
+        total = writer.add(total, writer.multiply(a, b))
+    return total
 
 
 class _Gradients:

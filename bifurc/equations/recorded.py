@@ -41,6 +41,10 @@ class Recorder(TapeWriter):
 
     refusal: str = ""
 
+    def number(self, slot: int) -> RecordedNumber:
+        """What a slot holds, as a number to compute with."""
+        return RecordedNumber(self, slot)
+
     def refuse(self, reason: str) -> NoReturn:
         """Raise `NotRecordable`, and remember it."""
         self.refusal = self.refusal or reason
@@ -60,7 +64,7 @@ def _operators(name: str) -> tuple[Callable[..., Any], Callable[..., Any]]:
     return method, reflected
 
 
-def _refusal(reason: str) -> Callable[..., NoReturn]:
+def _refusal(reason: str) -> Callable[..., Any]:
     """A method of recorded numbers that leaves no trace on a tape."""
 
     def method(self: RecordedNumber, *_: object) -> NoReturn:
@@ -85,7 +89,7 @@ class RecordedNumber:
     # --- arithmetic -------------------------------------------------------------------
 
     def _of(self, slot: int) -> RecordedNumber:
-        return RecordedNumber(self.writer, slot)
+        return self.writer.number(slot)
 
     def _slot_of(self, other: object) -> int | None:
         """The slot of the other operand; None where it is no number."""
@@ -238,7 +242,7 @@ def unknowns_of(writer: Recorder) -> RecordedArray:
     """The unknowns (n,) of a tape that is being written."""
     unknowns = np.empty(writer.n, dtype=object)
     for i in range(writer.n):
-        unknowns[i] = RecordedNumber(writer, writer.unknown(i))
+        unknowns[i] = writer.number(writer.unknown(i))
     return unknowns.view(RecordedArray)
 
 
@@ -272,5 +276,5 @@ def _all_recorded(array: Any, writer: Recorder) -> np.ndarray:
         element = recorded[place]
         if not isinstance(element, RecordedNumber):
             slot = writer.constant(float(element))
-            recorded[place] = RecordedNumber(writer, slot)
+            recorded[place] = writer.number(slot)
     return recorded

@@ -201,6 +201,22 @@ class Findings:
         points = other(other.length * PLACES)
         return _are_on([one], points, reach_of_places(self.problem, points))
 
+    # --- shifts -----------------------------------------------------------------------
+
+    def shift_home(self, samples: np.ndarray) -> np.ndarray:
+        """The shift (n,) that brings ``samples`` (k, n) of a curve, or a single point,
+        to what is listed for all that are the same but for shifts; 0 where none
+        lead."""
+        home = self.book.seeds.home
+        return np.zeros(samples.shape[1]) if home is None else home(samples)
+
+    def moved_home(self, points: np.ndarray) -> np.ndarray:
+        """Points (k, n), each where it is listed."""
+        if self.book.seeds.home is None:
+            return points
+        moved = [point + self.shift_home(point[None]) for point in points]
+        return np.array(moved).reshape(points.shape)
+
     # --- near motions -----------------------------------------------------------------
 
     def near_motion_through(self, point: np.ndarray) -> SeedFate | None:
@@ -368,10 +384,11 @@ class Findings:
     ) -> SeedFate:
         """That of a seed at the rigid assembly at ``u`` (n,), which is recorded if new;
         see `assembly_at`."""
-        known = self.assembly_at(u, stiffness, hidden)
+        place = self.moved_home(u[None])[0]
+        known = self.assembly_at(place, stiffness, hidden)
         if known is not None:
             return known
-        return SeedFate(Fate.RIGID, self.rigid.add(RigidAssembly(u, hidden)))
+        return SeedFate(Fate.RIGID, self.rigid.add(RigidAssembly(place, hidden)))
 
     # --- all of them ------------------------------------------------------------------
 

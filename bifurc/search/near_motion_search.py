@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from bifurc.curves.misclosure import NearMotionTrace
 from bifurc.curves.near_motion import near_surfaces, trace_near_motion
 from bifurc.decisions import closes_to_rounding, is_same_point, nearly_closes
 from bifurc.limits import Deadline
@@ -25,6 +26,7 @@ STEPS = 12
 LONGEST = 0.5  # step, over the problem's scale
 # Singular value, over the largest, below which no step is taken along its direction.
 FLAT = 1e-6
+SAMPLES = 256  # of a near motion, by which it is told how far it is moved
 WORK_AT_ONCE = 1e6  # points between two looks at the clock, times n^3
 
 
@@ -101,6 +103,8 @@ class NearMotionSearch:
         self.run = run
         self.problem = run.problem
         self.findings = run.findings
+        # near motions that are listed elsewhere, where shifts lead from these to them
+        self._elsewhere: list[NearMotionTrace] = []
 
     def through(self, point: np.ndarray) -> SeedFate | None:
         """That of a seed on the near motion through a point (n,), which is traced if it is
@@ -108,12 +112,28 @@ class NearMotionSearch:
         fate = self.findings.near_motion_through(point)
         if fate is not None or not len(self._not_on_known(point[None])):
             return fate
-        tracing, deadline = self.run.settings.tracing, self.run.deadline
-        near = trace_near_motion(self.problem, point, tracing, deadline)
-        if near is None or closes_to_rounding(near.misclosure):
-            return None  # nothing, or a form runs there
+        near = self._traced(point)
+        if near is None:
+            return None
+        shift = self.findings.shift_home(near.branch.sample(SAMPLES))
+        if np.any(shift):
+            # where limits cut it off, the one that is listed may be longer
+            self._elsewhere.append(near)
+            start = near.branch(np.array([0.5 * near.branch.length])) + shift
+            fate = self.findings.near_motion_through(start[0])
+            near = self._traced(start[0]) if fate is None else None
+            if near is None:
+                return fate
         near = replace(near, branch=canonical_course(self.problem, near.branch))
         return self.findings.add_near_motion(near)
+
+    def _traced(self, point: np.ndarray) -> NearMotionTrace | None:
+        """The near motion through a point (n,); None where there is nothing, or a form
+        runs there."""
+        tracing, deadline = self.run.settings.tracing, self.run.deadline
+        near = trace_near_motion(self.problem, point, tracing, deadline)
+        is_one = near is not None and not closes_to_rounding(near.misclosure)
+        return near if is_one else None
 
     def look(self) -> None:
         """Trace the near motions next to where starts end that miss, where nothing
@@ -150,6 +170,7 @@ class NearMotionSearch:
     def _trace(self, waiting: np.ndarray) -> None:
         """Trace the near motions through points (k, n), first those through points that
         are far from singular."""
+        waiting = self.findings.moved_home(waiting)
         values = singular_values(self.problem, waiting)[:, max(self.problem.n - 2, 0)]
         waiting = waiting[np.argsort(-values, kind="stable")]
         waiting = self._not_on_known(waiting)
@@ -171,7 +192,8 @@ class NearMotionSearch:
         """Those of the points (k, n) that lie on no known near motion or short
         stretch."""
         findings = self.findings
-        for near in (*findings.near_motions.values(), *findings.short_stretches):
+        known = (*findings.near_motions.values(), *findings.short_stretches)
+        for near in (*known, *self._elsewhere):
             if len(points):
                 points = points[~near.runs_through(self.problem, points)]
         return points

@@ -186,8 +186,7 @@ class SeedJudge:
     def _moved_home(self, point: np.ndarray) -> np.ndarray:
         """A solution (n,) on the curve that is listed for the one through ``point``
         (n,), where curves are the same but for shifts."""
-        home = self.findings.book.seeds.home
-        if home is None:
+        if self.findings.book.seeds.home is None:
             return point
         for _ in range(MOST_MOVES):
             if self.findings.branch_through(point) is not None:
@@ -196,7 +195,7 @@ class SeedJudge:
             if not self.tracer.is_curve(branch):
                 break
             samples = branch.sample(SAMPLES)
-            shift = home(samples)
+            shift = self.findings.shift_home(samples)
             if not np.any(shift):
                 break
             shifted = samples + shift

@@ -282,6 +282,16 @@ param_option = click.option(
 )
 
 
+free_param_option = click.option(
+    "--param",
+    "parameters",
+    multiple=True,
+    metavar="KEY[=VALUE|=LOW:HIGH]",
+    help="A parameter with its value, or a free one, within its usual range or from low "
+    "to high; angles in degrees.",
+)
+
+
 def _say_more(ctx: click.Context, param: click.Parameter, value: bool) -> None:
     if value:
         say_more()

@@ -19,6 +19,9 @@ from linkages.construction import exact
 
 # the other side of an operation: each number type decides itself what it works with
 Operand: TypeAlias = Any
+# the module of the functions, by the package of a number type; those on a tape take
+# NumPy's
+_LIBRARIES = {"sympy": "sympy", "mpmath": "mpmath", "bifurc": "numpy"}
 EXACT = (Fraction, exact.Quadratic, exact.Angle, exact.HalfAngle)
 
 
@@ -47,9 +50,9 @@ def _library(*values: Number) -> ModuleType:
     else:
         return math  # as a rule, and thousands of times when a linkage is identified
     roots = {type(v).__module__.split(".")[0] for v in values}
-    for name in ("sympy", "mpmath"):
-        if name in roots:
-            return import_module(name)
+    for root, library in _LIBRARIES.items():
+        if root in roots:
+            return import_module(library)
     some_exact = any(isinstance(v, EXACT) for v in values)
     if some_exact and not any(isinstance(v, float) for v in values):
         return exact

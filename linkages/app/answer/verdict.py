@@ -81,8 +81,11 @@ def _remark(atlas: Atlas) -> str:
 
 def _mobile(atlas: Atlas) -> str:
     forms = count_of(len(atlas.forms), "form")
-    if atlas.forms and translates_of(atlas) is not None:
-        forms += " (up to whole turns)"
+    translates = translates_of(atlas)
+    if atlas.forms and translates is not None:
+        distinct = translates.distinct_forms
+        fewer = f"{distinct} " if distinct < len(atlas.forms) else ""
+        forms += f" ({fewer}up to whole turns)"
     if not atlas.surfaces:
         components = count_of(atlas.components, "component")
         bifurcations = count_of(len(atlas.bifurcations), "bifurcation")

@@ -102,6 +102,30 @@ def test_of_parallel_screws_all_are_counted_that_are_partly_within_the_limits():
     assert not translates.are_all
 
 
+def loop_of_screws(pitches, seed):
+    """A loop of four parallel axes at random places, with such pitches."""
+    rng = np.random.default_rng(seed)
+    angles = np.sort(rng.uniform(0.0, 2 * np.pi, 4))
+    radii = rng.uniform(0.5, 1.5, 4)
+    names = ("a", "b", "c", "d", "a")
+    joints = []
+    for k, pitch in enumerate(pitches):
+        x, y = radii[k] * np.array([np.cos(angles[k]), np.sin(angles[k])])
+        pair, kind = names[k : k + 2], "helical" if pitch else "revolute"
+        own = {"pitch": pitch} if pitch else {}
+        joints.append(Joint(f"J{k}", kind, pair, (x, y, 0), Z, **own))
+    return Mechanism(tuple(joints))
+
+
+# equal advances cancel: the body between the revolute joints moves along a circle, and
+# a circle meets another one twice; or three turns that add up to none leave a triangle
+@pytest.mark.parametrize("pitches", [(0.3, 0.3, 0, 0), (0.3, 0.3, 0.3, 0)])
+@pytest.mark.parametrize("seed", [0, 1, 5])
+def test_assemblies_beside_near_motions_are_listed_once(pitches, seed):
+    atlas = map_of(loop_of_screws(pitches, seed))
+    assert len(atlas.rigid) == 2
+
+
 def lattice(shifts, high):
     """The lattice of these shifts in a plane, with limits from -1.5 to ``high``."""
     basis = np.array(shifts, dtype=float)

@@ -196,6 +196,7 @@ def test_forms_that_bifurcations_join_are_counted_once():
     statement = atlas.completeness.statement
     assert "of 6 forms listed here 2 differ otherwise" in statement
     assert "stands for at least 6 forms within the limits" in statement
+    assert "6 forms (2 up to whole turns)" in judge(atlas).sentence
     document = describe_mechanism(atlas, subject_at(atlas).readout)
     assert document["translates"] == {
         "joints": ["J2"],

@@ -1,0 +1,84 @@
+"""Equations with free parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bifurc.domain import Domain
+from bifurc.equations.tape import Tape
+from bifurc.errors import ProblemError
+from bifurc.function_problem import FunctionProblem
+
+
+@dataclass(frozen=True, eq=False)
+class ParametrisedProblem:
+    """The equations F(u, p) = 0 of unknowns u (n,) and parameters p (q,), on a ``tape``
+    of u and then p; ``domain`` is that of u, ``parameters`` that of p."""
+
+    tape: Tape
+    domain: Domain
+    parameters: Domain
+
+    @property
+    def n(self) -> int:
+        """Number of unknowns, without the parameters."""
+        return len(self.domain.names)
+
+    @property
+    def q(self) -> int:
+        """Number of parameters."""
+        return len(self.parameters.names)
+
+    def jacobian(self, u: np.ndarray, p: np.ndarray) -> np.ndarray:
+        """F_u (m, n) at u (n,) and p (q,)."""
+        point = np.concatenate([u, p])[None]
+        jacobian: np.ndarray = self.tape.compiled.jacobians(point)[0, :, : self.n]
+        return jacobian
+
+    @staticmethod
+    def recorded(
+        function: Callable[[np.ndarray, np.ndarray], Sequence[float] | np.ndarray],
+        bounds: Sequence[Sequence[float]],
+        parameter_bounds: Sequence[Sequence[float]],
+        *,
+        names: Sequence[str] | None = None,
+        parameter_names: Sequence[str] | None = None,
+    ) -> ParametrisedProblem:
+        """The problem of a Python callable F(u, p), which is recorded: called once with
+        numbers that write down what is done with them.
+
+        ``bounds`` (n, 2) and ``parameter_bounds`` (q, 2) are finite. Raises `ProblemError`
+        where it cannot be recorded, with the reason, as `FunctionProblem` does.
+        """
+        n = len(bounds)
+        all_names = [*(names or [f"u{k + 1}" for k in range(n)])]
+        all_names += parameter_names or [
+            f"p{k + 1}" for k in range(len(parameter_bounds))
+        ]
+        problem = FunctionProblem(
+            lambda both: function(both[:n], both[n:]),
+            [*bounds, *parameter_bounds],
+            names=all_names,
+        )
+        tape = problem.equations.tape
+        if tape is None:
+            allowed = f"of functions that can be recorded; {problem.recording.reason}"
+            raise ProblemError("function", function, allowed)
+        return ParametrisedProblem(
+            tape, _part(problem.domain, slice(n)), _part(problem.domain, slice(n, None))
+        )
+
+
+def _part(domain: Domain, part: slice) -> Domain:
+    """The domain of some of the unknowns."""
+    bounds = domain.bounds[part]
+    return Domain(
+        domain.names[part],
+        domain.units[part],
+        domain.periods[part],
+        bounds,
+        scale=float(np.median(np.diff(bounds, axis=1))) / 4.0,
+    )

@@ -1,0 +1,47 @@
+"""The command `bifurc special`."""
+
+from __future__ import annotations
+
+import math
+
+import click
+
+from linkages.app import options
+from linkages.app.exit_codes import ExitCode, exit_code_table
+
+
+@click.command("special", epilog=exit_code_table())
+@click.argument("linkage", metavar="NAME")
+@options.free_param_option
+@options.SEARCH_OPTIONS["budget"]
+@options.json_option("; angles in radians")
+def special_command(
+    linkage: str, parameters: tuple[str, ...], as_json: bool, budget: float
+) -> None:
+    """Find the values of a parameter at which the map of a linkage changes: a bifurcation
+    appears or vanishes, forms become one, or a form comes from nothing.
+
+    Every value is the solution of equations, and is known to nearly all digits of a
+    double; maps beside it and at it show what changes. The parameter is free as --param
+    gamma or --param gamma=10:20, others have values; angles are in degrees.
+
+    \b
+    Examples:
+      bifurc special four-bar --param d=0.3:7
+      bifurc special spherical-four-bar --param alpha12=20:160
+    """
+    from bifurc.limits import Deadline
+    from linkages.app.output import say, say_json
+    from linkages.app.parameter_ranges import choose_members
+    from linkages.app.texts.parameters_text import changes_document, describe_changes
+    from linkages.parameters.special import special_values
+
+    members, refusals = choose_members(linkage, parameters, most=1)
+    special = special_values(members, deadline=Deadline(budget))
+    if as_json:
+        say_json(changes_document(members, special))
+    else:
+        (refusal,) = refusals.values()
+        say(describe_changes(members, refusal, special))
+    if not special.is_whole and not math.isfinite(budget):
+        click.get_current_context().exit(ExitCode.INTERRUPTED)

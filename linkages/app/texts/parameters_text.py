@@ -1,0 +1,251 @@
+"""What `bifurc follow` and `bifurc special` say, as text and as plain values."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from bifurc.branch import Outcome
+from bifurc.following.follow import FollowedPoint
+from bifurc.following.places import FollowedPlace, PlaceKind
+from bifurc.tables import count_of
+from bifurc.torus import wrap
+from linkages.app.texts.numbers import in_degrees
+from linkages.entry import Parameter, ParameterKind
+from linkages.parameters.followed import Followed, MemberComparison
+from linkages.parameters.members import Members
+from linkages.parameters.special import MapChange, MapShape, SpecialValues
+
+SAMPLES = 200  # of a curve in JSON
+MOST_DIGITS = 15
+
+
+# --- follow ---------------------------------------------------------------------------
+
+
+def describe_followed(
+    members: Members, refusals: Mapping[str, str], points: Sequence[Followed]
+) -> str:
+    """What became of each point; ``refusals``: why there are no members beyond the range
+    of a parameter."""
+    lines = [_headline(members)]
+    lines += [
+        f"beyond the range of {name} there are no members: {reason}"
+        for name, reason in refusals.items()
+        if reason
+    ]
+    for point in points:
+        lines += ["", f"{point.point.name} ({point.point.kind.value})"]
+        lines += [f"  {line}" for line in _lines(members, point)]
+    return "\n".join(lines)
+
+
+def _headline(members: Members) -> str:
+    spans = [
+        f"{one.name} from {_shown(one, members.ranges[one.name][0])} to "
+        f"{_shown(one, members.ranges[one.name][1])}"
+        for one in members.free
+    ]
+    return f"{members.family.title}: {' and '.join(spans)}"
+
+
+def _lines(members: Members, point: Followed) -> list[str]:
+    curve, comparison = point.curve, point.comparison
+    if curve is None or comparison is None:
+        return [f"not followed: {point.reason}"]
+    lines = [_course(members, curve)]
+    lines += [_place_line(members, place) for place in curve.places]
+    if not curve.places and len(members.free) == 1:
+        lines.append("none of its kind meets it on the way")
+    return [*lines, *_comparison_lines(comparison, curve.problem.nullity)]
+
+
+def _comparison_lines(comparison: MemberComparison, nullity: int) -> list[str]:
+    lines = [
+        f"{count_of(comparison.members, 'member')} built anew: they close there to "
+        f"{comparison.gap:.1e}, {count_of(nullity, 'singular value')} at most "
+        f"{comparison.singular_value:.1e}"
+    ]
+    if comparison.refusal:
+        lines.append(f"others of the curve are none: {comparison.refusal}")
+    return lines
+
+
+def _course(members: Members, curve: FollowedPoint) -> str:
+    """From where to where a curve goes."""
+    if curve.branch.closed:
+        return "a closed curve"
+    ends = [
+        ", ".join(
+            f"{one.name} {_shown(one, value)}"
+            for one, value in zip(members.free, curve.parameters(s), strict=True)
+        )
+        for s in (0.0, curve.branch.length)
+    ]
+    course = f"from {ends[0]} to {ends[1]}"
+    if curve.branch.outcome is Outcome.LEFT_REGION:
+        return course
+    return f"{course}; it ended, {curve.branch.outcome.value}"
+
+
+def _place_line(members: Members, place: FollowedPlace) -> str:
+    values = ", ".join(
+        f"{one.name} = {_known(one, value, place.error)}"
+        for one, value in zip(members.free, place.p, strict=True)
+    )
+    what = place.kind.value
+    if place.kind is PlaceKind.BIRTH:
+        side = "above" if place.is_minimum else "below"
+        what = f"it meets another one, and both are there {side} only"
+    elif place.parameter is not None:
+        extreme = "least" if place.is_minimum else "largest"
+        what = f"{members.free[place.parameter].name} is {extreme}"
+    return f"{values}: {what}, at {_angles(place.u)}"
+
+
+def _angles(u: np.ndarray) -> str:
+    centred = wrap(u, np.full(len(u), 2 * np.pi))
+    return "(" + " ".join(in_degrees(angle) for angle in centred) + ") deg"
+
+
+def _shown(parameter: Parameter, value: float, digits: int = 6) -> str:
+    """A value of a parameter, angles in degrees."""
+    if parameter.kind is ParameterKind.ANGLE:
+        return f"{math.degrees(value):.{digits}g} deg"
+    return f"{value:.{digits}g}"
+
+
+def _known(parameter: Parameter, value: float, error: float) -> str:
+    """A value with the digits that are known."""
+    size = abs(value) or 1.0
+    digits = int(-math.log10(max(error / size, 10.0**-MOST_DIGITS)))
+    return _shown(parameter, value, max(digits, 1))
+
+
+def followed_document(members: Members, points: Sequence[Followed]) -> dict[str, Any]:
+    """The same as plain values, angles in rad: ``curves`` by samples, and the ``points``
+    at which something happens on them."""
+    names = members.problem.domain.names
+    curves: list[dict[str, Any]] = []
+    places: list[dict[str, Any]] = []
+    for point in points:
+        curve, comparison = point.curve, point.comparison
+        if curve is None or comparison is None:
+            curves.append({"point": point.point.name, "reason": point.reason})
+            continue
+        s = curve.branch.arclengths(SAMPLES)
+        curves.append(
+            {
+                "point": point.point.name,
+                "kind": point.point.kind.value,
+                "outcome": curve.branch.outcome.name.lower(),
+                "parameters": _columns(members.ranges, curve.parameters(s)),
+                "unknowns": _columns(names, curve.unknowns(s)),
+                "members": comparison.members,
+                "closure_gap": comparison.gap,
+                "singular_value": comparison.singular_value,
+            }
+        )
+        places += [
+            {
+                "point": point.point.name,
+                "kind": place.kind.value,
+                "parameters": _row(members.ranges, place.p),
+                "unknowns": _row(names, place.u),
+                "error": place.error,
+            }
+            for place in curve.places
+        ]
+    return {"curves": curves, "points": places}
+
+
+def _columns(
+    names: Sequence[str] | Mapping[str, object], values: np.ndarray
+) -> dict[str, list[float]]:
+    return {name: values[:, k].tolist() for k, name in enumerate(names)}
+
+
+def _row(
+    names: Sequence[str] | Mapping[str, object], values: np.ndarray
+) -> dict[str, float]:
+    return dict(zip(names, values.tolist(), strict=True))
+
+
+# --- special --------------------------------------------------------------------------
+
+
+def describe_changes(members: Members, refusal: str, special: SpecialValues) -> str:
+    """The values at which the map changes."""
+    (parameter,) = members.free
+    lines = [_headline(members)]
+    if refusal:
+        lines.append(f"beyond that there are no members: {refusal}")
+    if not special.is_whole:
+        lines.append("The search was ended early: there may be more than is listed.")
+    if not special.changes:
+        lines.append("No value was found at which the map changes.")
+    for change in special.changes:
+        value = _known(parameter, change.value, change.error)
+        lines += ["", f"{parameter.name} = {value}: {change.what}"]
+        if change.u is not None:
+            lines.append(f"  at {_angles(change.u)}")
+        for where, shape in (
+            ("below", change.before),
+            ("there", change.at),
+            ("above", change.after),
+        ):
+            lines.append(f"  {where}: {_shape_text(shape)}")
+    return "\n".join(lines)
+
+
+def _shape_text(shape: MapShape | None) -> str:
+    if shape is None:
+        return "no member"
+    text = (
+        f"{count_of(shape.forms, 'form')} in {count_of(shape.components, 'component')}, "
+        f"{count_of(shape.bifurcations, 'bifurcation')}"
+    )
+    if shape.other_points:
+        text += f", {count_of(shape.other_points, 'other singular point')}"
+    if shape.surfaces:
+        text += f", {count_of(shape.surfaces, 'surface')}"
+    at_rest = [", ".join(map(str, joints)) for joints in shape.at_rest if joints]
+    if at_rest:
+        text += f"; at rest in a form: joints {' and in another '.join(at_rest)}"
+    return text
+
+
+def changes_document(members: Members, special: SpecialValues) -> dict[str, Any]:
+    """The same as plain values, angles in rad."""
+    (parameter,) = members.free
+    names = members.problem.domain.names
+    return {
+        "parameter": parameter.name,
+        "is_whole": special.is_whole,
+        "changes": [
+            {
+                "value": change.value,
+                "kind": change.kind.value,
+                "text": change.what,
+                "digits": _digits(change),
+                "error": change.error,
+                "unknowns": None if change.u is None else _row(names, change.u),
+                "before": _shape_row(change.before),
+                "at": _shape_row(change.at),
+                "after": _shape_row(change.after),
+            }
+            for change in special.changes
+        ],
+    }
+
+
+def _digits(change: MapChange) -> int:
+    share = change.error / (abs(change.value) or 1.0)
+    return int(-math.log10(max(share, 10.0**-MOST_DIGITS)))
+
+
+def _shape_row(shape: MapShape | None) -> dict[str, Any] | None:
+    return None if shape is None else shape._asdict()

@@ -1,0 +1,82 @@
+"""Singular points followed over the members of a family, and compared with members that
+are built anew."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bifurc.atlas import MeetingPoint
+from bifurc.following.follow import FollowedPoint, FollowError, follow_singular_point
+from bifurc.limits import Deadline
+from linkages.closure.system import ClosureSystem
+from linkages.parameters.members import Members
+from linkages.values import GeometryError
+
+MEMBERS = 50  # that are built anew along a curve
+
+
+@dataclass(frozen=True)
+class MemberComparison:
+    """With how many members, built anew, a curve was compared, the largest closure
+    ``gap`` (over the characteristic length), the largest ``singular_value`` of those that
+    are 0 at the point; and why the constructor refuses others, empty where it does not."""
+
+    members: int
+    gap: float
+    singular_value: float
+    refusal: str
+
+
+@dataclass(frozen=True, eq=False)
+class Followed:
+    """What became of the ``point`` of a map: its ``curve`` and the ``comparison``, or the
+    ``reason`` why it cannot be followed."""
+
+    point: MeetingPoint
+    curve: FollowedPoint | None = None
+    comparison: MemberComparison | None = None
+    reason: str = ""
+
+
+def follow_points(
+    members: Members, points: Sequence[MeetingPoint], deadline: Deadline | None = None
+) -> list[Followed]:
+    """What becomes of the ``points`` of the map of the member from which the free
+    parameters move."""
+    followed = []
+    for point in points:
+        nullity = members.problem.n - point.point.rank
+        try:
+            curve = follow_singular_point(
+                members.problem,
+                point.point.u,
+                members.start,
+                nullity,
+                deadline=deadline,
+            )
+        except FollowError as error:
+            followed.append(Followed(point, reason=str(error)))
+            continue
+        followed.append(Followed(point, curve, compare(members, curve)))
+    return followed
+
+
+def compare(members: Members, curve: FollowedPoint) -> MemberComparison:
+    """Members along a curve, each built anew and compared with it."""
+    count, gap, largest, refusal = 0, 0.0, 0.0, ""
+    for s in np.linspace(0.0, curve.branch.length, MEMBERS):
+        try:
+            closure = ClosureSystem(members.build(curve.parameters(s)))
+        except GeometryError as error:
+            refusal = refusal or str(error)
+            continue
+        u = curve.unknowns(s)[None]
+        rank = closure.n - curve.problem.nullity
+        sigma = np.linalg.svd(closure.jacobians(u)[0], compute_uv=False)
+        count += 1
+        gap = max(gap, float(np.abs(closure.residuals(u)).max()))
+        largest = max(largest, float(sigma[rank:].max(initial=0.0)))
+    return MemberComparison(count, gap, largest, refusal)

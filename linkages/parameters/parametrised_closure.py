@@ -1,0 +1,71 @@
+"""The closure equations of the members of a family, with parameters among the
+unknowns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from bifurc.domain import Domain
+from bifurc.equations.valued import ValuedRecorder
+from bifurc.parametrised import ParametrisedProblem
+from linkages.closure.loop_parts import parts_of_loop
+from linkages.closure.motors import IDENTITY, Number, product, turn
+from linkages.entry import Entry, ParameterKind
+from linkages.loop import Loop
+
+X, Z = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+AT_ORIGIN = np.zeros(3)
+
+
+def parametrised_closure(
+    family: Entry,
+    values: Mapping[str, float],
+    ranges: Mapping[str, tuple[float, float]],
+) -> ParametrisedProblem:
+    """The closure of the members of a ``family`` in the n joint angles (rad) and the
+    parameters that have ``ranges``; the others, and these at first, have their ``values``.
+
+    Translations are measured in the characteristic length of the first member. All
+    conditions of the family hold while parameters move: the constructor itself is recorded.
+    Raises `GeometryError` as that does.
+    """
+    complete = family.complete(values)
+    first = family.build(**complete)
+    writer = ValuedRecorder([0.0] * first.n + [complete[name] for name in ranges])
+    numbers = [writer.number(writer.unknown(k)) for k in range(writer.n)]
+    free = dict(zip(ranges, numbers[first.n :], strict=True))
+    loop = family.build(**{**complete, **free})
+    tape = writer.tape(_residuals(writer, loop, numbers, first.characteristic_length))
+    return ParametrisedProblem(
+        tape=tape,
+        domain=parts_of_loop(first).domain,
+        parameters=_domain(family, ranges),
+    )
+
+
+def _domain(family: Entry, ranges: Mapping[str, tuple[float, float]]) -> Domain:
+    """Parameters of a family that have ``ranges``."""
+    units = {ParameterKind.ANGLE: "rad", ParameterKind.LENGTH: "length"}
+    kinds = {parameter.name: parameter.kind for parameter in family.parameters}
+    return Domain(
+        names=tuple(ranges),
+        units=tuple(units.get(kinds[name], "") for name in ranges),
+        periods=np.full(len(ranges), np.inf),
+        bounds=np.array(list(ranges.values()), dtype=float).reshape(-1, 2),
+    )
+
+
+def _residuals(
+    writer: ValuedRecorder, loop: Loop, angles: Sequence[Number], unit: float
+) -> list[int]:
+    """The slots of twice the vector part of the motor of a loop, as a mechanism's."""
+    motor = IDENTITY
+    rows = zip(angles, loop.twists, loop.lengths, loop.offsets, strict=False)
+    for angle, twist, length, offset in rows:
+        for axis, by, advance in ((Z, angle, offset), (X, twist, length)):
+            half = 0.5 * by
+            step = turn(axis, AT_ORIGIN, np.cos(half), np.sin(half), advance / unit)
+            motor = product(motor, step)
+    return [(2.0 * number).slot for number in (*motor.real[1:], *motor.dual[1:])]

@@ -1,0 +1,340 @@
+"""The values of a parameter at which the map of a family changes.
+
+Members over the range are mapped. Where a map has a near miss, the equations of a
+bifurcation with the parameter among the unknowns are solved from there: that is a value at
+which a bifurcation appears. Bifurcations that are there all along are followed; where the
+parameter turns back two of them are born. Between members with different maps and no such
+value, further ones are mapped.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from enum import Enum
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from bifurc import torus
+from bifurc.atlas import Atlas
+from bifurc.decisions import is_null, is_same_point, is_start_solved
+from bifurc.following.follow import FollowedPoint, FollowError, follow_singular_point
+from bifurc.following.singular_problem import SingularPointProblem
+from bifurc.limits import Deadline
+from bifurc.numerics.null_spaces import null_spaces
+from bifurc.numerics.singular_values import singular_values
+from bifurc.settings import SearchSettings
+from bifurc.singular.point import Kind
+from linkages.labels import FormLabels
+from linkages.mapping import map_linkage
+from linkages.parameters.members import Members
+from linkages.subject import subject_at
+from linkages.values import GeometryError
+
+MEMBERS = 8  # that are mapped over the range at first
+OFF_CENTRE = (
+    0.618  # of their spacing: members next to the ends or the middle are special
+)
+HALVINGS = 12  # of an interval whose ends have different maps
+BESIDE = 1e-3  # of the range, or less: how far from a value maps are compared
+NULLITY = 2  # at a crossing of two curves
+NEARBY = 1e-4  # rad: beside a special value points move with the root of a rounding
+PLACES = 60  # of a form, of which one is nearest to losing rank
+SAMPLES = 400  # of a followed curve, by which another start on it is known
+ROUNDING = 4e-16  # of a place, that doubles leave
+
+
+class ChangeKind(Enum):
+    """How a value was found at which a map changes."""
+
+    # The equations of a singular point hold at this value alone.
+    SINGULAR = "singular point"
+    # Two bifurcations that are there on one side are one there.
+    BIRTH = "birth"
+    # Maps on both sides differ; no equation was found that says why.
+    BETWEEN_MAPS = "between maps"
+
+
+WORDS = {
+    ChangeKind.SINGULAR: "at this value alone there is a singular point",
+    ChangeKind.BIRTH: "two singular points become one",
+    ChangeKind.BETWEEN_MAPS: "maps beside it differ, for a reason that was not found",
+}
+
+
+class MapShape(NamedTuple):
+    """What two maps have in common that are alike: the numbers of forms, of components, of
+    bifurcations, of other singular points and of surfaces, and the joints that stand still
+    in each form."""
+
+    forms: int
+    components: int
+    bifurcations: int
+    other_points: int
+    surfaces: int
+    at_rest: tuple[tuple[int, ...], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class MapChange:
+    """The map changes at this ``value`` of the parameter, known to ``error``: the
+    ``kind`` says why, in a configuration ``u`` (n,) where there is one; the
+    maps ``before``, ``at`` the value and ``after`` it, None where there is no member."""
+
+    value: float
+    error: float
+    kind: ChangeKind
+    u: np.ndarray | None
+    before: MapShape | None = None
+    at: MapShape | None = None
+    after: MapShape | None = None
+    point: Kind | None = None
+
+    @property
+    def what(self) -> str:
+        """What happens there, in words."""
+        words = WORDS[self.kind]
+        if self.kind is ChangeKind.BETWEEN_MAPS or self.at is None:
+            return words
+        if self.point is None:
+            return f"{words}, which the map there does not list"
+        return f"{words}, of the kind {self.point.value}"
+
+
+class _TimeIsOver(Exception):
+    """The deadline of a search has passed."""
+
+
+@dataclass
+class _SpecialSearch:
+    """The changes found so far, the ``shapes`` of the maps that were made, by their
+    values, the maps ``at`` changes and how far from these others were made, and the curves
+    of singular points that are there over a range."""
+
+    members: Members
+    settings: SearchSettings
+    deadline: Deadline | None
+    shapes: dict[float, MapShape | None] = field(default_factory=dict)
+    changes: list[MapChange] = field(default_factory=list)
+    at: dict[float, Atlas | None] = field(default_factory=dict)
+    beside: dict[float, float] = field(default_factory=dict)
+    curves: list[FollowedPoint] = field(default_factory=list)
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """From where to where the parameter goes."""
+        low, high = self.members.problem.parameters.bounds[0].tolist()
+        return low, high
+
+    def look_over_range(self) -> None:
+        """Look at members over the whole range."""
+        low, high = self.range
+        for k in range(MEMBERS):
+            self.look_at(low + (high - low) * (k + OFF_CENTRE) / MEMBERS)
+
+    def look_at(self, value: float) -> None:
+        """Map the member at a value, and look for changes from there."""
+        if value in self.shapes:
+            return
+        atlas = self._map(value)
+        self.shapes[value] = None if atlas is None else shape_of(atlas)
+        if atlas is None:
+            return
+        for u in _weakest_places(atlas):
+            self._from(u, value)
+        for point in atlas.points:
+            self._from(point.point.u, value, self.members.problem.n - point.point.rank)
+
+    def look_beside(self, change: MapChange) -> None:
+        """Map the member at a change, and those on both sides of it."""
+        value = change.value
+        if value in self.beside:
+            return
+        low, high = self.range
+        others = [one.value for one in self.changes if one is not change]
+        room = min(abs(value - other) for other in (*others, low, high))
+        step = max(min(BESIDE * (high - low), room / 3.0), 2.0 * change.error)
+        self.at[value] = self._map(value)
+        for other in (value - step, value + step):
+            self.look_at(other)
+        self.beside[value] = step
+
+    def compared(self, change: MapChange) -> MapChange:
+        """A change with the maps beside it and at the value itself, as far as these were
+        made."""
+        value = change.value
+        step = self.beside.get(value)
+        atlas = self.at.get(value)
+        return replace(
+            change,
+            before=None if step is None else self.shapes[value - step],
+            at=None if atlas is None else shape_of(atlas),
+            after=None if step is None else self.shapes[value + step],
+            point=None if atlas is None else _kind_at(atlas, change.u),
+        )
+
+    def _map(self, value: float) -> Atlas | None:
+        """The map at a value; None where there is no member."""
+        if self.deadline is not None and self.deadline.passed:
+            raise _TimeIsOver
+        try:
+            linkage = self.members.load(np.array([value]))
+        except GeometryError:
+            return None
+        atlas = map_linkage(linkage, settings=self.settings)
+        if atlas.provenance.interrupted:
+            raise KeyboardInterrupt
+        return atlas
+
+    def _from(self, u: np.ndarray, value: float, nullity: int = NULLITY) -> None:
+        """Solve the equations of a bifurcation from a configuration (n,) of a member."""
+        problem = SingularPointProblem(
+            self.members.problem, u, np.array([value]), nullity
+        )
+        points, gaps = problem.project(problem.start[None])
+        n = self.members.problem.n
+        found = float(points[0, n])
+        low, high = self.range
+        if not (is_start_solved(float(gaps[0])) and low < found < high):
+            return
+        sigma, _ = null_spaces(problem, points)
+        if not np.any(is_null(sigma[0])):
+            error = ROUNDING * (1.0 + abs(found)) / float(sigma[0, -1])
+            self._add(MapChange(found, error, ChangeKind.SINGULAR, points[0, :n]))
+            return
+        self._follow(points[0, :n], points[0, n : n + 1], nullity)
+
+    def _follow(self, u: np.ndarray, p: np.ndarray, nullity: int) -> None:
+        """Follow a bifurcation that is there over a range; where the parameter turns back,
+        the map changes."""
+        point = np.concatenate([u, p])
+        if any(_runs_through(curve, point) for curve in self.curves):
+            return
+        try:
+            curve = follow_singular_point(
+                self.members.problem, u, p, nullity, deadline=self.deadline
+            )
+        except FollowError:
+            return
+        self.curves.append(curve)
+        for place in curve.places:
+            value, kind = float(place.p[0]), ChangeKind.BIRTH
+            self._add(MapChange(value, place.error, kind, place.u))
+
+    def _add(self, change: MapChange) -> None:
+        low, high = self.range
+        if not any(
+            is_same_point(abs(one.value - change.value), high - low)
+            for one in self.changes
+        ):
+            self.changes.append(change)
+
+
+@dataclass(frozen=True, eq=False)
+class SpecialValues:
+    """The ``changes`` that were found, in order, and whether the search ``is_whole``: not
+    ended by Ctrl-C or a deadline."""
+
+    changes: tuple[MapChange, ...]
+    is_whole: bool
+
+
+def special_values(
+    members: Members,
+    settings: SearchSettings | None = None,
+    deadline: Deadline | None = None,
+) -> SpecialValues:
+    """The values of the only free parameter, within its range, at which the map of the
+    ``members`` changes.
+
+    Between two neighbouring changes all maps that were made are alike. What shows on none
+    of them, as a form that is there over a short range only, is not among the changes.
+    """
+    search = _SpecialSearch(
+        members, settings or SearchSettings(certify=False), deadline
+    )
+    is_whole = True
+    try:
+        search.look_over_range()
+        _settle(search)
+    except (KeyboardInterrupt, _TimeIsOver):
+        is_whole = False
+    changes = sorted(search.changes, key=lambda change: change.value)
+    return SpecialValues(tuple(map(search.compared, changes)), is_whole)
+
+
+def _settle(search: _SpecialSearch) -> None:
+    """Look beside every change and at it, and between maps that differ without one, until
+    nothing new comes of it."""
+    known = -1
+    while known < len(search.changes):
+        known = len(search.changes)
+        for change in list(search.changes):
+            search.look_beside(change)
+        for first, last in list(pairwise(sorted(search.shapes))):
+            _explain(search, first, last, HALVINGS)
+
+
+def _explain(search: _SpecialSearch, first: float, last: float, halvings: int) -> None:
+    """Find why the maps at two values differ, by maps between them."""
+    if search.shapes[first] == search.shapes[last]:
+        return
+    if any(first <= change.value <= last for change in search.changes):
+        return
+    middle = 0.5 * (first + last)
+    if not halvings:
+        error, kind = 0.5 * (last - first), ChangeKind.BETWEEN_MAPS
+        search.changes.append(MapChange(middle, error, kind, None))
+        return
+    search.look_at(middle)
+    _explain(search, first, middle, halvings - 1)
+    _explain(search, middle, last, halvings - 1)
+
+
+def _kind_at(atlas: Atlas, u: np.ndarray | None) -> Kind | None:
+    """The kind of the singular point of an atlas at a configuration (n,), as near as
+    parameters of this many digits lead to it; None where there is none."""
+    if u is None:
+        return None
+    for point in atlas.points:
+        gap = torus.difference(point.point.u, u, atlas.periods)
+        if np.linalg.norm(gap) < NEARBY:
+            return point.kind
+    return None
+
+
+def shape_of(atlas: Atlas) -> MapShape:
+    """What maps are compared by."""
+    at_rest = sorted(FormLabels.of(form).inactive_joints for form in atlas.forms)
+    return MapShape(
+        len(atlas.forms),
+        atlas.components,
+        len(atlas.bifurcations),
+        len(atlas.points) - len(atlas.bifurcations),
+        len(atlas.surfaces),
+        tuple(at_rest),
+    )
+
+
+def _weakest_places(atlas: Atlas) -> list[np.ndarray]:
+    """Configurations (n,) from which a bifurcation is looked for: near misses, the place of
+    each form that is nearest to losing rank, as on an oval that shrinks to a point, and
+    one on each near motion, from which forms come."""
+    places = [event.u for event in atlas.near_misses]
+    if atlas.forms:
+        closure = subject_at(atlas).closure
+        for form in atlas.forms:
+            samples = form.branch.sample(PLACES)
+            sigma = singular_values(closure, samples)[:, closure.n - NULLITY]
+            places.append(samples[int(np.argmin(sigma))])
+    return places + [motion.sample for motion in atlas.near_motions]
+
+
+def _runs_through(curve: FollowedPoint, point: np.ndarray) -> bool:
+    """Whether a followed curve passes a point (n + q,), whatever the null space."""
+    count = len(point)
+    samples = curve.branch.sample(SAMPLES)[:, :count]
+    periods = curve.problem.domain.periods[:count]
+    gaps = np.linalg.norm(torus.difference(samples, point, periods), axis=1)
+    return bool(gaps.min() <= curve.branch.length / SAMPLES)
