@@ -151,7 +151,7 @@ class DegreeLocator(Locator):
     def tick_values(self, vmin: float, vmax: float) -> Sequence[float]:
         """The places of the ticks between two angles."""
         assert self.axis is not None
-        most = max(min(self.axis.get_tick_space(), MOST_TICKS), 1)
+        most = max(min(self.axis.get_tick_space(), MOST_TICKS), 2)
         steps = [step for step in DEGREE_STEPS if (vmax - vmin) / step <= most]
         step = steps[0] if steps else 360
         aside = FLAT if self._has_ends else -FLAT  # of a step

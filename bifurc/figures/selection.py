@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from bifurc.atlas import Atlas, MeetingPoint
-from bifurc.errors import ProblemError
+from bifurc.errors import ProblemError, RouteError
 from bifurc.form_order import listed_numbers
 
 
@@ -16,8 +17,8 @@ from bifurc.form_order import listed_numbers
 class Selection:
     """What of an atlas is drawn.
 
-    ``forms`` are names of forms or their numbers in tables, from 1; all where there
-    are none.
+    ``forms`` are names of forms, in full or by the part that tells them apart, or their
+    numbers in tables, from 1; all where there are none.
     ``window`` are the first and the last angle that are shown, in degrees, at most a
     turn. ``overlay`` are points of the user's that are laid over: their values, as axes
     show them, by the names of the unknowns; it is drawn where both unknowns of a plane
@@ -71,8 +72,9 @@ EVERYTHING = Selection()
 
 def _index_of(atlas: Atlas, form: str | int) -> int:
     names = [one.name for one in atlas.forms]
-    if form in names:
-        return names.index(str(form))
+    if isinstance(form, str):
+        with suppress(RouteError):
+            return atlas.form(form)
     if isinstance(form, int) and 1 <= form <= len(names):
         return listed_numbers(atlas)[form - 1]
     allowed = f"one of {', '.join(names)}, or a number from 1 to {len(names)}"
