@@ -78,7 +78,7 @@ class MeetingPoint:
     surfaces: tuple[int, ...] = ()
 
     def __repr__(self) -> str:
-        forms = ", ".join(str(form) for form, _ in self.passes)
+        forms = ", ".join(str(form + 1) for form, _ in self.passes)
         words = [self.kind.value, f"rank {self.point.rank}", f"forms {forms or 'none'}"]
         if self.surfaces:
             words.append(f"surfaces {', '.join(map(str, self.surfaces))}")
@@ -102,8 +102,8 @@ class Event:
     def __repr__(self) -> str:
         kind = f"near miss {self.value:.4g}"
         if self.index >= 0:
-            kind = f"dead point of unknown {self.index}"
-        return f"<Event: {kind} on form {self.form} at s = {self.s:.6g}>"
+            kind = f"dead point of unknown {self.index + 1}"
+        return f"<Event: {kind} on form {self.form + 1} at s = {self.s:.6g}>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,21 +134,31 @@ class Surface:
         return f"<Surface {self.name!r}: {', '.join(filter(None, words))}>"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class NearMotion:
     """A curve along which the system is nearly solved, or a surface.
 
     Across it no correction makes the relative residual smaller than ``misclosure``
-    everywhere. Its ``length``, and whether it ``is_closed``; ``sample`` (n,) is a point
-    of it. Its ``mobility`` is 1 for a curve; of a surface, with a mobility of 2 or
-    more, the length is 0.
+    everywhere. ``sample`` (n,) is a point of it. Its ``mobility`` is 1 for a curve, the
+    ``branch``; a surface, with a mobility of 2 or more, has none. It is no motion: along
+    the branch the equations are solved but for the misclosure.
     """
 
+    name: str
     misclosure: float
-    length: float
-    is_closed: bool
+    branch: Branch | None
     sample: np.ndarray
     mobility: int = 1
+
+    @property
+    def length(self) -> float:
+        """The arclength of the curve; 0 of a surface."""
+        return 0.0 if self.branch is None else self.branch.length
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the curve comes back to its start."""
+        return self.branch is not None and self.branch.closed
 
 
 @dataclass(frozen=True)
@@ -183,7 +193,9 @@ class Atlas:
     where there are forms or surfaces. ``provenance`` says
     how the atlas came about. ``subject`` says what was mapped, in values that JSON can
     hold: whoever maps something more than equations defines it; a ``scale`` in it is
-    what each unknown is multiplied with to be in the user's unit. ``diagram``: what
+    what each unknown is multiplied with to be in the user's unit, ``drawn`` the
+    configuration in which it was given, ``drivers`` the unknowns, by index, whose dead
+    points matter. ``diagram``: what
     happens as a parameter changes, where one was named or events were asked for.
     """
 
@@ -204,6 +216,12 @@ class Atlas:
     diagram: Diagram | None = None
 
     # --- queries ----------------------------------------------------------------------
+
+    @property
+    def drawn(self) -> np.ndarray | None:
+        """The configuration (n,) in which what was mapped was given, if any."""
+        values = self.subject.get("drawn")
+        return None if values is None else np.array(values, dtype=float)
 
     @property
     def bifurcations(self) -> tuple[MeetingPoint, ...]:

@@ -157,11 +157,6 @@ class Branch:
         """Points (count, n) at equally spaced arclengths."""
         return self(self.arclengths(count))
 
-    def ends_of_pieces(self, derivative: int = 0) -> np.ndarray:
-        """Where each of the p pieces begins, and where each of them ends (2, p, n), or
-        the derivatives in s there."""
-        return self.compiled.ends_of_pieces(derivative)
-
     def places(self, fractions: np.ndarray) -> np.ndarray:
         """Arclengths (p, k) at ``fractions`` (k,) of each of the p pieces, from 0 where
         it begins to 1 where it ends."""
@@ -288,28 +283,6 @@ class Branch:
         changes sign, all of them as `turnings` says."""
         turnings = self.turnings(unknown)
         return np.array([one.s for one in turnings if one.before * one.after < 0.0])
-
-    # --- heights ----------------------------------------------------------------------
-
-    def rates_of_height(self, coefficients: np.ndarray, s: np.ndarray) -> np.ndarray:
-        """The rates in s (k,) of a height, at arclengths s (k,).
-
-        It is the sum over the unknowns of a weight times (cos(angular u - phase) +
-        linear u); the ``coefficients`` (4, n) are the weights, the phases, and the
-        factors angular and linear.
-        """
-        return self.compiled.rates_of_height(coefficients, s)
-
-    def level_places(
-        self,
-        coefficients: np.ndarray,
-        low: np.ndarray,
-        high: np.ndarray,
-        tolerance: float = 1e-15,
-    ) -> np.ndarray:
-        """Arclengths (k,), one between each of ``low`` and ``high`` (k,), at which the
-        rate of a height, which has opposite signs there, is zero."""
-        return self.compiled.level_places(coefficients, low, high, tolerance)
 
     # --- what is derived from the pieces ----------------------------------------------
 

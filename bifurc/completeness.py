@@ -6,12 +6,16 @@ which these are put at last. A program asks the records; the words are for peopl
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import tomllib
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from enum import Enum, StrEnum
-from typing import Any
+from enum import StrEnum
+from pathlib import Path
+from typing import Any, Generic, TypeVar
 
 from bifurc.tables import count_of
+
+Kind = TypeVar("Kind")
 
 
 class Level(StrEnum):
@@ -84,26 +88,48 @@ class Doubt(Statement):
         return self.words.format(**own, **_shown(self.data))
 
 
-class ClaimKind(Enum):
-    """Kinds of claims; the value of each is its words."""
+@dataclass(frozen=True)
+class StatementKind:
+    """A kind of statement: what it is called, and its words."""
+
+    name: str
+    words: str
+
+
+class ClaimKind(StatementKind):
+    """A kind of claim."""
 
     def claim(self, scope: Scope, level: Level | None, **data: Any) -> Claim:
         """A claim of this kind."""
-        kind = self.name.lower().replace("_", " ")
-        return Claim(kind, self.value, data, scope, level)
+        return Claim(self.name, self.words, data, scope, level)
 
     def is_kind_of(self, claim: Claim) -> bool:
         """Whether a claim is of this kind."""
-        return claim.kind == self.name.lower().replace("_", " ")
+        return claim.kind == self.name
 
 
-class DoubtKind(Enum):
-    """Kinds of doubts; the value of each is its words."""
+class DoubtKind(StatementKind):
+    """A kind of doubt."""
 
     def doubt(self, subject: str = "", amount: float = 0.0, **data: Any) -> Doubt:
         """A doubt of this kind."""
-        kind = self.name.lower().replace("_", " ")
-        return Doubt(kind, self.value, data, subject, float(amount))
+        return Doubt(self.name, self.words, data, subject, float(amount))
+
+
+class Kinds(Generic[Kind]):
+    """The kinds that a ``table`` lists, of the TOML file beside a ``module``: each is an
+    attribute, called as its key."""
+
+    def __init__(self, kind: Callable[[str, str], Kind], module: str, table: str):
+        text = Path(module).with_suffix(".toml").read_text(encoding="utf-8")
+        for key, words in tomllib.loads(text)[table].items():
+            setattr(self, key, kind(key.lower().replace("_", " "), words))
+
+    def __iter__(self) -> Iterator[Kind]:
+        return iter(vars(self).values())
+
+    def __getattr__(self, key: str) -> Kind:
+        raise AttributeError(f"there is no kind {key!r} of statements")
 
 
 def worst_level(claims: Iterable[Claim]) -> Level | None:

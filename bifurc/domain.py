@@ -63,8 +63,7 @@ class Domain:
         """Which points (k, n) lie within the region (k,), or outside by rounding: a
         curve may run in a bound."""
         outside: np.ndarray = np.maximum(self.excess(points), 0.0)
-        are_inside: np.ndarray = is_in_bounds(outside, self.scale)
-        return are_inside
+        return is_in_bounds(outside, self.scale)
 
     def difference(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         """a - b (..., n) with periodic unknowns taken to within half a period of 0."""

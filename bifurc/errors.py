@@ -2,23 +2,45 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 
 class BifurcError(Exception):
     """Base of all errors that `bifurc` and `linkages` raise."""
 
 
-class ProblemError(BifurcError, ValueError):
-    """A problem, a start or a setting that cannot be used.
-
-    ``name`` is the offending thing, ``value`` what was given, ``allowed`` what it may
-    be.
-    """
+class ValueNotAllowed(BifurcError, ValueError):
+    """What cannot be used: ``name`` is the offending thing, ``value`` what was given,
+    ``allowed`` what it may be."""
 
     def __init__(self, name: str, value: object, allowed: str):
         self.name = name
         self.value = value
         self.allowed = allowed
         super().__init__(f"{name}: {value} is not allowed; it must be {allowed}")
+
+
+class ProblemError(ValueNotAllowed):
+    """A problem, a start or a setting that cannot be used."""
+
+
+class PathError(BifurcError, ValueError):
+    """A file or a folder that cannot be used: ``path``, and a ``message`` of what in it
+    is wrong."""
+
+    def __init__(self, path: Path | str, message: str):
+        self.path = str(path)
+        self.message = message
+        super().__init__(f"{path}: {message}")
+
+
+class UnknownNameError(BifurcError, KeyError):
+    """There is nothing of that ``name``; ``nearest`` are the names most like it."""
+
+    def __init__(self, name: str, nearest: tuple[str, ...]):
+        self.name = name
+        self.nearest = nearest
+        super().__init__(name)
 
 
 class RouteError(BifurcError, LookupError):

@@ -26,7 +26,7 @@ from bifurc.equations.system import CompiledSystem, ScaledTape
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.bordered import as_dense
-from bifurc.numerics.collocation import march_by_collocation
+from bifurc.numerics.collocation import PLAIN_RULES, march_by_collocation
 from bifurc.numerics.corrector import (
     project_by_least_squares,
     project_to_sphere_by_newton,
@@ -74,6 +74,7 @@ class NumericalProblem(Problem):
     """
 
     compiled: CompiledSystem | None = None
+    rules = PLAIN_RULES  # of pieces that are made by collocation
 
     @property
     def shortcuts(self) -> Shortcuts:
@@ -114,7 +115,7 @@ class NumericalProblem(Problem):
         where the curve does."""
         if self.compiled is not None and self.compiled.is_marched:
             return self.compiled.march(start, tangent, settings)
-        return march_by_collocation(self, start, tangent, settings)
+        return march_by_collocation(self, start, tangent, settings, self.rules)
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solutions (k, n) near starts (k, n) and the relative residual (k,) that is
@@ -362,8 +363,7 @@ class FunctionProblem(EquationProblem):
                 f"of {len(probes)} random points"
             )
             raise ProblemError("value of the function", values[0], allowed)
-        finite: np.ndarray = probes[is_finite]
-        return finite
+        return probes[is_finite]
 
     def _check_periods(self, probes: np.ndarray) -> None:
         """Raise `ProblemError` unless the equations are the same one period on from the

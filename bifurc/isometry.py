@@ -214,5 +214,7 @@ def _surface(surface: Surface, unknowns: Unknowns) -> Surface:
 
 
 def _near_motion(near: NearMotion, unknowns: Unknowns) -> NearMotion:
-    sample = unknowns.points(near.sample)
-    return replace(near, length=unknowns.size * near.length, sample=sample)
+    branch = near.branch
+    if branch is not None:
+        branch = unknowns.course(branch).branch
+    return replace(near, branch=branch, sample=unknowns.points(near.sample))

@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 from functools import cache
-from types import FrameType, TracebackType
+from types import FrameType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -50,12 +50,7 @@ class HeldInterrupt:
             signal.signal(signal.SIGINT, self._note)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if self._former is not None:
             signal.signal(signal.SIGINT, self._former)
         if kind is None:
@@ -83,11 +78,6 @@ class Deadline:
     seconds: float = float("inf")
     began: float = field(default_factory=time.perf_counter)
     interrupt: HeldInterrupt | None = None
-
-    @property
-    def is_endless(self) -> bool:
-        """Whether there is time without end."""
-        return self.seconds == float("inf")
 
     @property
     def left(self) -> float:

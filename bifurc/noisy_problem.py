@@ -38,8 +38,7 @@ class RoundingNoise:
 
     def _errors(self, shape: tuple[int, ...]) -> np.ndarray:
         largest = ULPS * np.finfo(float).eps
-        errors: np.ndarray = self._rng.uniform(-largest, largest, shape)
-        return errors
+        return self._rng.uniform(-largest, largest, shape)
 
 
 class NoisyMethods(NumericalProblem):

@@ -59,7 +59,7 @@ def _projected(
     """What `Problem.project` makes of the first of the starts (k, n), as many as there
     is time for, a few of them in any case."""
     deadline = deadline or current_deadline()
-    is_whole = deadline.is_endless and not problem.domain.is_large
+    is_whole = deadline.seconds == np.inf and not problem.domain.is_large
     if is_whole or not len(starts):
         return problem.project(starts)
     at_once = 1 if problem.domain.is_large else AT_ONCE

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -159,6 +159,45 @@ class March:
             f"<March {self.status.name}: {count} pieces of order {powers - 1} in "
             f"{n} unknowns, arclength {arclength:.6g}, largest residual {residual:.2g}>"
         )
+
+
+def compiled_march(
+    march: Callable[..., tuple[Any, ...]],
+    settings: MarchSettings,
+    domain: Domain,
+    unit: float = 1.0,
+    magnitude: float = 1.0,
+    **system: Any,
+) -> March:
+    """The pieces that compiled code makes of a ``system``, by the names of its
+    arguments, which counts unknowns in a ``unit`` and residuals in ``magnitude`` times
+    that unit."""
+    anchor, within = np.empty((0, len(domain.names))), 0.0
+    if settings.anchor is not None:
+        place, heading, within = settings.anchor
+        anchor = np.array([place / unit, heading])
+    status, pieces, steps, radii, residuals, _ = march(
+        **system,
+        order=settings.order,
+        tolerance=settings.tolerance,
+        shortest=settings.shortest / unit,
+        longest=settings.longest / unit,
+        count=settings.count,
+        closing=settings.closing / (magnitude * unit),
+        misclosure=settings.misclosure / (magnitude * unit),
+        anchor=anchor,
+        within=within / unit,
+        periods=domain.periods / unit,
+        bounds=domain.bounds / unit,
+        length=settings.length / unit,
+    )
+    return March(
+        status=MarchStatus(status),
+        pieces=unit * pieces,
+        steps=unit * steps,
+        radii=unit * radii,
+        residuals=magnitude * unit * residuals,
+    )
 
 
 class SphereProjection(NamedTuple):

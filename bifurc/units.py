@@ -50,9 +50,7 @@ class Units:
     def jacobian(self, outer: np.ndarray | sparray) -> np.ndarray | sparray:
         """F' (m, n) in these units, from that of the user, ``outer``, dense or sparse."""
         if isinstance(outer, np.ndarray):
-            matrix: np.ndarray = self.weights[:, None] * outer * self.sizes
-            return matrix
+            return self.weights[:, None] * outer * self.sizes
         from scipy.sparse import diags_array
 
-        sparse: sparray = diags_array(self.weights) @ outer @ diags_array(self.sizes)
-        return sparse
+        return diags_array(self.weights) @ outer @ diags_array(self.sizes)

@@ -17,21 +17,16 @@ from importlib import import_module
 from types import ModuleType
 
 import linkages.families
-from bifurc.errors import BifurcError
+from bifurc.errors import UnknownNameError
 from linkages.entry import Entry
 from linkages.networks.entries import NETWORKS
 
 NEAREST = 5  # names that are shown where there is none of that name
 
 
-class UnknownLinkageError(BifurcError, KeyError):
+class UnknownLinkageError(UnknownNameError):
     """No linkage of that name: ``name`` is what was asked for, ``nearest`` the names
     most like it."""
-
-    def __init__(self, name: str, nearest: tuple[str, ...]):
-        self.name = name
-        self.nearest = nearest
-        super().__init__(name)
 
     def __str__(self) -> str:
         if self.name.endswith(".toml"):

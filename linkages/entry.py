@@ -121,8 +121,24 @@ class Relation:
     vanishing: str = ""
 
 
+class WithParameters:
+    """What has free ``parameters``."""
+
+    parameters: tuple[Parameter, ...]
+
+    @property
+    def defaults(self) -> dict[str, float]:
+        """Default value of every parameter."""
+        return {p.name: p.default for p in self.parameters}
+
+    def draw(self, rng: np.random.Generator) -> dict[str, float]:
+        """Random parameters within their ranges (the constructor may still refuse
+        them)."""
+        return {p.name: float(rng.uniform(p.low, p.high)) for p in self.parameters}
+
+
 @dataclass(frozen=True)
-class Entry:
+class Entry(WithParameters):
     """One linkage of the catalogue.
 
     ``construct`` takes the parameters by keyword (any number type) and returns the
@@ -155,11 +171,6 @@ class Entry:
     facts: Mapping[str, Any] = field(default_factory=dict)
     is_other_view: bool = False
 
-    @property
-    def defaults(self) -> dict[str, float]:
-        """Default value of every parameter."""
-        return {p.name: p.default for p in self.parameters}
-
     @cached_property
     def closed_forms(self) -> tuple[ClosedForm, ...]:
         """The closed forms of the motion; none where the sources give none."""
@@ -182,11 +193,6 @@ class Entry:
         """
         loop = self.construct(**self.complete(values))
         return replace(loop, name=self.name)
-
-    def draw(self, rng: np.random.Generator) -> dict[str, float]:
-        """Random parameters within their ranges (the constructor may still refuse
-        them)."""
-        return {p.name: float(rng.uniform(p.low, p.high)) for p in self.parameters}
 
 
 # --- what is mapped -------------------------------------------------------------------

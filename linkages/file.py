@@ -32,10 +32,10 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 import numpy as np
 
-from bifurc.errors import BifurcError
+from bifurc.errors import PathError
 from bifurc.files.text_file import TextFileError, read_toml
 from linkages.axes import Vectors, loop_from_axes
-from linkages.formats.table import format_of
+from linkages.formats.table import TOML, format_of
 from linkages.loop import MAX_JOINTS, MIN_JOINTS, Loop
 from linkages.mechanisms.origin import WrittenNumber, counted_from_near
 from linkages.values import (
@@ -70,13 +70,8 @@ class AngleUnit(StrEnum):
     RADIANS = "rad"
 
 
-class LinkageFileError(BifurcError, ValueError):
-    """A linkage file that cannot be used: which file, and what in it must be what."""
-
-    def __init__(self, path: Path | str, message: str):
-        self.path = str(path)
-        self.message = message
-        super().__init__(f"{path}: {message}")
+class LinkageFileError(PathError):
+    """A linkage file that cannot be used."""
 
 
 @contextmanager
@@ -131,6 +126,10 @@ def read_linkage(path: Path | str) -> tuple[Loop, np.ndarray | None]:
         content = read_toml(path, WrittenNumber) if is_toml else {}
         if is_toml and not _is_of_mechanism(content):
             return _read_loop(content, path.stem)
+    if not is_toml:
+        loop = read_file(path)
+        if isinstance(loop, Loop):
+            return loop, None
     message = "describes a mechanism, and this takes a single loop of revolute joints"
     raise LinkageFileError(path, message)
 
@@ -146,7 +145,7 @@ def read_precisely(path: Path | str) -> Loop:
     import mpmath
 
     loop, configuration = read_linkage(path)
-    if configuration is not None:
+    if configuration is not None or format_of(Path(path)) not in (None, TOML):
         return loop
     with _errors_about(Path(path)):
         content: Mapping[str, Any] = read_toml(Path(path), mpmath.mpf)

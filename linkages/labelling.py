@@ -18,7 +18,7 @@ from bifurc.atlas import Atlas, Form
 from bifurc.branch import Branch
 from bifurc.decisions import unit_over_rounding
 from bifurc.isometry import Isometry, recount_atlas
-from bifurc.numerics.blur import change_by_rounding
+from bifurc.numerics.blur import blur_along, change_by_blur
 from bifurc.problem import Problem
 from bifurc.torus import wrap
 from linkages.closure.system import ClosureSystem
@@ -36,7 +36,7 @@ def name_atlas(atlas: Atlas, linkage: Linkage) -> Atlas:
     problem = ClosureSystem(linkage.loop)
     branches = [form.branch for form in atlas.forms]
     samples = [branch.sample(SAMPLES) for branch in branches]
-    changes = [change_by_rounding(problem, branch) for branch in branches]
+    changes = [change_by_blur(blur_along(problem, branch)) for branch in branches]
     identities = name_forms(samples, linkage.loop, linkage.patterns, changes)
     labels = []
     for branch, identity in zip(branches, identities, strict=True):
@@ -63,7 +63,7 @@ def _labels(problem: Problem, branch: Branch) -> FormLabels:
     the largest closure error."""
     samples = branch.sample(SAMPLES)
     deviation = np.abs(samples - samples.mean(axis=0)).max(axis=0)
-    unit = unit_over_rounding(keeps_angle, change_by_rounding(problem, branch))
+    unit = unit_over_rounding(keeps_angle, change_by_blur(blur_along(problem, branch)))
     still = np.flatnonzero(keeps_angle(deviation, unit))
     return FormLabels(
         inactive_joints=tuple(int(i) + 1 for i in still),

@@ -99,5 +99,4 @@ def _damped_step(problem: Closure, theta: np.ndarray) -> np.ndarray:
     square = np.einsum("kij,kil->kjl", jacobian, jacobian)
     normal = square + damping[:, None, None] * identity
     descent = -np.einsum("kij,ki->kj", jacobian, residual)
-    step: np.ndarray = np.linalg.solve(normal, descent[..., None])[..., 0]
-    return step
+    return np.linalg.solve(normal, descent[..., None])[..., 0]

@@ -12,6 +12,7 @@ import numpy as np
 from linkages.loop import Loop
 
 REACH = 0.22  # of the extent: half the drawn length of an axis beyond its links
+STEEP = 0.9  # cosine of the normal of a plane that is seen from above
 DIRECTIONS = 400  # from which a scene is looked at
 CONCURRENT = 1e-12  # feet that are closer are one: the axes meet in a point
 
@@ -38,10 +39,11 @@ class Scene:
 
 
 class View(NamedTuple):
-    """Where to look from, in degrees."""
+    """Where to look from, in degrees, and what is up then."""
 
     elevation: float
     azimuth: float
+    up: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
 
 class Clearance(NamedTuple):
@@ -105,8 +107,25 @@ def clearest_view(clarity: Callable[[np.ndarray], float]) -> View:
     return _view_along(max(looks_around(DIRECTIONS), key=clarity))
 
 
+def view_of_plane(normal: np.ndarray, orientation: np.ndarray) -> View:
+    """The view along the ``normal`` (3,) of a plane, with x to the right, or else y, in
+    the frame to which the rotation ``orientation`` (3, 3) leads."""
+    look = orientation @ normal
+    upward = np.array([0.0, 0.0, 1.0])
+    if abs(look[2]) > STEEP:
+        upward = np.array([0.0, 1.0, 0.0])
+    right = np.cross(upward, look)
+    largest = 0 if abs(right[0]) > 1 - STEEP else 1
+    if right[largest] < 0:
+        look = -look
+    up = upward - (upward @ look) * look
+    view = _view_along(orientation.T @ look)
+    x, y, z = (orientation.T @ (up / np.linalg.norm(up))).tolist()
+    return view._replace(up=(x, y, z))
+
+
 def _view_along(look: np.ndarray) -> View:
-    elevation = np.degrees(np.arcsin(look[2]))
+    elevation = np.degrees(np.arcsin(np.clip(look[2], -1.0, 1.0)))
     azimuth = np.degrees(np.arctan2(look[1], look[0]))
     return View(float(elevation), float(azimuth))
 

@@ -1,73 +1,19 @@
-"""What is claimed of linkages, in English: a kind each, with its words."""
+"""What is claimed of linkages: kinds, whose words stand in the table beside."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from bifurc.completeness import Claim, ClaimKind, Completeness, Level, Scope
+from bifurc.completeness import (
+    Claim,
+    ClaimKind,
+    Completeness,
+    Kinds,
+    Level,
+    Scope,
+)
 
-
-class LinkageClaim(ClaimKind):
-    """What slices, paths, dyads and whole turns can claim of a linkage."""
-
-    # --- complete slices of a loop
-    SLICES_INCOMPLETE = (
-        "{degenerate} of {slices} slices could not be made complete ({reason})"
-    )
-    SLICES_DIFFER = (
-        "at some angles of {joints} the slices and the motions hold different "
-        "configurations"
-    )
-    NO_MOTION = (
-        "there is no motion: no angle of any joint but a few has a configuration"
-    )
-    SLICES = (
-        "complete slices of all {joints} joints every {degrees} degrees: every motion in "
-        "which some joint turns by more than {degrees} degrees is here; a smaller one has "
-        "room in {room}"
-    )
-    COUNTED = "no motion is missing: at every angle {counts}"
-    # --- isolated assemblies
-    ALL_FOLLOWED = (
-        "no isolated assembly of full rank is missing: the 16 paths that lead to all of "
-        "them were followed"
-    )
-    PATHS_LOST = "isolated assemblies may be missing: {ends}"
-    RANDOM_ASSEMBLIES = "isolated assemblies are those that random starts reached"
-    # --- dyads
-    ALL_BUILT = (
-        "dyads build all configurations: there is no motion, and no assembly is missing"
-    )
-    DYADS = "complete slices, built of dyads: every motion is here {moves}"
-    DYADS_MISSING = (
-        "complete slices, built of dyads: every motion is here {moves}, and others may be "
-        "missing"
-    )
-    # --- limits
-    CUT_AT_LIMITS = (
-        "every motion within the limits is part of one without them, and these were mapped "
-        "and cut at the limits"
-    )
-    PARTS_NOT_LISTED = (
-        "{count:part} of motions without limits, the longest of {longest:.1g} rad, lie "
-        "within them and are not listed"
-    )
-    DOUBT_WITHOUT_LIMITS = "in doubt: {doubts}"
-    FOLLOWED_FROM_TURNS = (
-        "where limits cut a form off, it was followed from whole turns away"
-    )
-    # --- whole turns
-    MORE_TURNS = (
-        "at least {forms:form} in all: joints that advance may stand whole turns away "
-        "within their limits, and not all of that was tried"
-    )
-    TURNS_TRIED = (
-        "beside every form listed here others a whole turn of a joint away, which "
-        "advances, were looked for within the limits"
-    )
-    UP_TO_TURNS = "{translates}"
-
-
+LinkageClaim = Kinds(ClaimKind, __file__, "claims")
 ALL_ASSEMBLIES = (LinkageClaim.ALL_FOLLOWED, LinkageClaim.ALL_BUILT)
 
 
@@ -86,7 +32,7 @@ def has_all_assemblies(completeness: Completeness) -> bool:
     return is_claimed and not completeness.is_in_doubt
 
 
-def estimated(kind: LinkageClaim, **data: object) -> Claim:
+def estimated(kind: ClaimKind, **data: object) -> Claim:
     """A claim of motions that leaves open whether some are missing."""
     return kind.claim(Scope.MOTIONS, Level.ESTIMATED, **data)
 

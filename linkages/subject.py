@@ -252,8 +252,22 @@ class MechanismSubject(Subject):
         """The ``subject`` of its atlas."""
         from linkages.mechanisms.subject import mechanism_subject
 
-        # what unknowns are multiplied with to be in rad and in the user's unit
-        return {**mechanism_subject(self.mechanism), "scale": self.factors.tolist()}
+        return {
+            **mechanism_subject(self.mechanism),
+            # what unknowns are multiplied with to be in rad and in the user's unit
+            "scale": self.factors.tolist(),
+            "drawn": self.readout.structure.reference.tolist(),
+            "drivers": self.drivers,
+        }
+
+    @property
+    def drivers(self) -> list[int]:
+        """The unknowns, by index, of the first joint that is free, and of those with
+        limits."""
+        free = [one for one in self.mechanism.variables if one.label in self.labels]
+        limited = [one for one in free if one.limits is not None]
+        labels = {one.label for one in [*free[:1], *limited]}
+        return [k for k, label in enumerate(self.labels) if label in labels]
 
     def labelled(self, atlas: Atlas) -> Atlas:
         """With labels on the forms."""
@@ -361,6 +375,7 @@ class SingleLoopSubject(MechanismSubject):
 
     def __init__(self, readout: Readout, single: SingleLoop):
         super().__init__(readout)
+        self.single = single
         self.table: Loop = single.loop
         self.to_angles = single.to_unknowns(readout.structure).inverse
 
@@ -384,7 +399,13 @@ class SingleLoopSubject(MechanismSubject):
         """The links."""
         from linkages.links.parts import Links
 
-        return Links(self.table, self.to_angles, self.unknowns)
+        return Links(self.table, self.to_angles, self.unknowns, self.orientation)
+
+    @property
+    def orientation(self) -> np.ndarray:
+        """The rotation (3, 3) that brings the frame of the first joint of the loop to
+        where it is in the reference configuration of the mechanism."""
+        return self.single.orientation(self.readout.structure)
 
     def table_values(self) -> Mapping[str, Any]:
         return table_values(self.table)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from bifurc.errors import BifurcError
+from bifurc.errors import ValueNotAllowed
 
 FLOATS = (int, float, np.integer, np.floating)  # numbers that are floats or become one
 # beyond it doubles tell an angle to less than 1e-12 rad, to which loops close
@@ -23,15 +23,8 @@ FEWEST_DIGITS, ALL_DIGITS = 6, 17  # of numbers in errors
 ANY, SOME = range(sys.maxsize), range(1, sys.maxsize)  # entries of a list
 
 
-class GeometryError(BifurcError, ValueError):
-    """A linkage that cannot be built: ``name`` is the offending quantity, ``value``
-    what was given and ``allowed`` what it may be."""
-
-    def __init__(self, name: str, value: object, allowed: str):
-        self.name = name
-        self.value = value
-        self.allowed = allowed
-        super().__init__(f"{name}: {value} is not allowed; it must be {allowed}")
+class GeometryError(ValueNotAllowed):
+    """A linkage that cannot be built: ``name`` is the offending quantity."""
 
 
 def require(is_met: bool, name: str, value: object, allowed: str) -> None:

@@ -47,7 +47,6 @@ LONGER = {
         "linkages.closure.cut_at_limits.cut_motions",
         "linkages.closure.driving.joints_to_hold",
         "linkages.forms._four_bar_kind",
-        "linkages.identification.fitting._plain_parts_fit",
         "linkages.identification.fitting.best_member",
         "linkages.turns.turn_lattice.shifts_between",
         "linkages.turns.turn_lattice.turn_lattice",
@@ -67,7 +66,6 @@ LONGER = {
         "linkages.app.sweep.member.summarise",
         "linkages.app.texts.mechanism_text.describe_dead_points",
         "linkages.readout.dataset_variables.dataset_variables",
-        "linkages.viewing.document.make_view_document",
     ],
     "the keys of a file, one after the other, with what is refused": [
         "bifurc.systems.equation_file.system",

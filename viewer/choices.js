@@ -2,13 +2,13 @@
 
 import { leavingBranches } from "./crossings.js";
 import { drawing, element } from "./elements.js";
+import { isCurve } from "./tracks.js";
 
 const KEYS = 9; // forms that have a key of their own
 
 /** A short line as the map draws the curve of a track. */
 function swatch(track, color) {
-  const isCurve = track.kind === "form";
-  const dash = isCurve ? track.dashes.map((length) => 1.6 * length).join(" ") : "1 4";
+  const dash = isCurve(track) ? track.dashes.map((length) => 1.6 * length).join(" ") : "1 4";
   const line = drawing("line", { x1: 1, x2: 25, y1: 5, y2: 5, stroke: color, "stroke-width": 3, "stroke-dasharray": dash });
   return drawing("svg", { width: 26, height: 10, class: "bv-swatch", "aria-hidden": "true" }, line);
 }
@@ -24,7 +24,7 @@ export class FormList {
   setColors(colorOf) {
     this.buttons = this.tracks.map((track, k) => {
       const key = k < KEYS ? element("kbd", {}, String(k + 1)) : "";
-      const title = track.kind === "form" ? `${track.name}: ${describe(track)}` : track.name;
+      const title = isCurve(track) ? `${track.name}: ${describe(track)}` : track.name;
       const attributes = { title, "data-track": track.name, onclick: () => this.goToTrack(track) };
       return element("button", attributes, key, swatch(track, colorOf(track)), element("span", {}, track.name));
     });
@@ -50,7 +50,8 @@ function reveal(list, button) {
 
 function describe(track) {
   const degrees = ((track.length * 180) / Math.PI).toFixed(1);
-  return `${track.closed ? "closed" : "open"}, ${degrees} deg long`;
+  const missed = track.misclosure ? `, misses closure by ${track.misclosure.toExponential(1)}` : "";
+  return `${track.closed ? "closed" : "open"}, ${degrees} deg long${missed}`;
 }
 
 /** The branches that leave the singular point at which the linkage is. */

@@ -76,7 +76,7 @@ export class LinkageView {
     this.makeScene();
     this.makeLabels();
     this.camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
-    this.camera.up.set(0, 0, 1);
+    this.camera.up.set(...scene.view.up);
     this.orbit = new OrbitControls(this.camera, this.canvas);
     this.orbit.addEventListener("change", () => this.requestFrame());
     this.canvas.addEventListener("webglcontextrestored", () => this.requestFrame());

@@ -1,8 +1,9 @@
-// The transition map as a drawing: forms as curves, marks for singular points, near misses and assemblies, and a dot
+// The transition map as a drawing: forms and near motions as curves, marks for singular points, near misses and assemblies, and a dot
 // where the linkage is.
 
 import { drawing } from "./elements.js";
 import { linesOf, spotsOf } from "./planes.js";
+import { isCurve } from "./tracks.js";
 
 const MARGIN = { left: 52, right: 16, top: 14, bottom: 42 };
 const TALLEST = 0.58; // of the window: the frame of the map
@@ -96,7 +97,7 @@ export class TransitionMap {
   }
 
   curves() {
-    return this.tracks.filter((track) => track.kind === "form").map((track) => {
+    return this.tracks.filter(isCurve).map((track) => {
       const lines = linesOf(this.plane, track.samples);
       const path = lines.map((line) => `M${line.map((spot) => this.screen(spot).map(tenths).join(" ")).join("L")}`);
       this.noteCurve(track);
@@ -121,9 +122,9 @@ export class TransitionMap {
     }
   }
 
-  /** Surfaces as clouds of dots, assemblies and near motions as crosses. */
+  /** Surfaces as clouds of dots, assemblies and near surfaces as crosses. */
   lists() {
-    return this.tracks.filter((track) => LISTS.includes(track.kind)).map((track) => {
+    return this.tracks.filter((track) => LISTS.includes(track.kind) && !isCurve(track)).map((track) => {
       const isCloud = track.kind === "surface";
       const places = track.samples.flatMap(({ s, theta }) =>
         spotsOf(this.plane, theta).map((spot) => {
@@ -148,6 +149,15 @@ export class TransitionMap {
         this.targets.marks.push({ track, s: track.place(miss.s), x, y });
       }
     }
+    for (const { form, s, name } of this.scene.dead_points) {
+      const track = this.tracks[form];
+      for (const spot of spotsOf(this.plane, track.at(s))) {
+        const [x, y] = this.screen(spot);
+        marks.push(drawing("rect", { class: "bv-dead", x: x - 2.5, y: y - 2.5, width: 5, height: 5 }, titled(`dead point of ${name}`)));
+        this.targets.marks.push({ track, s: track.place(s), x, y });
+      }
+    }
+    marks.push(...this.drawnMarks());
     for (const point of this.scene.points) {
       for (const spot of spotsOf(this.plane, point.angles)) {
         const [x, y] = this.screen(spot);
@@ -157,6 +167,18 @@ export class TransitionMap {
       }
     }
     return marks;
+  }
+
+  /** A star where the linkage is as its file draws it. */
+  drawnMarks() {
+    const { drawn } = this.scene;
+    if (!drawn) return [];
+    return spotsOf(this.plane, drawn.angles).map((spot) => {
+      const [x, y] = this.screen(spot);
+      if (drawn.place) this.targets.marks.push({ track: this.tracks[drawn.place[0]], s: drawn.place[1], x, y });
+      const arms = [0, 1, 2, 3, 4].map((k) => starPoint(x, y, 7.5, k) + starPoint(x, y, 3, k + 0.5));
+      return drawing("path", { class: "bv-drawn", d: `M${arms.join("").slice(1)}z` }, titled("as drawn"));
+    });
   }
 
   /** The names of singular points, each where it covers least; those at one place share a label. */
@@ -259,6 +281,12 @@ function pointMark(point, x, y) {
   if (point.kind === "bifurcation") return drawing("circle", { ...attributes, cx: x, cy: y, r: 5 }, title);
   const d = point.kind === "rank drop" ? `M${x} ${y - 5.5}l5.5 5.5l-5.5 5.5l-5.5 -5.5z` : `M${x - 4} ${y - 4}h8v8h-8z`;
   return drawing("path", { ...attributes, d }, title);
+}
+
+/** A point of a star with five arms, as part of a path. */
+function starPoint(x, y, radius, k) {
+  const angle = (2 * Math.PI * k) / 5;
+  return `L${tenths(x + radius * Math.sin(angle))} ${tenths(y - radius * Math.cos(angle))}`;
 }
 
 function titled(text) {

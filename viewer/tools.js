@@ -26,9 +26,20 @@ export function legend(scene) {
   for (const kind of kinds) entries.push(`□ ${kind}`);
   if (scene.near_misses.length) entries.push("▾ near miss");
   if (scene.assemblies.length) entries.push("× rigid assembly");
-  if (scene.near_motions.length) entries.push("× near motion");
+  if (scene.near_motions.length) entries.push(nearMotions(scene.near_motions));
+  const dead = [...new Set(scene.dead_points.map(({ name }) => name))];
+  if (dead.length) entries.push(`▪ dead point of ${dead.join(", ")}`);
+  if (scene.drawn) entries.push("★ as drawn");
   if (scene.surfaces.length) entries.push("∴ mobility 2 or more");
   return element("div", { class: "bv-legend" }, ...entries.map((entry) => element("span", {}, entry)));
+}
+
+/** How near motions are drawn, and by how much they miss closure. */
+function nearMotions(motions) {
+  const [least, most] = [Math.min, Math.max].map((end) => end(...motions.map((motion) => motion.misclosure)).toExponential(1));
+  const missed = least === most ? least : `${least} to ${most}`;
+  const mark = motions.some((motion) => motion.curve) ? "┈" : "×";
+  return `${mark} near motion: no motion, closure is missed by ${missed}`;
 }
 
 /** Above the linkage: which link stands still, ghosts, and the whole picture. */

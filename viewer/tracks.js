@@ -1,19 +1,19 @@
-// Tracks: what a slider can run along. A form is a curve; a surface, the rigid assemblies and the near motions are
-// lists of configurations that are passed one by one.
+// Tracks: what a slider can run along. Forms and near motions are curves; a surface, the rigid assemblies and near
+// surfaces are lists of configurations that are passed one by one.
 
 import { unpackRows } from "./arrays.js";
 import { curveOf, drawingArclengths, evaluate } from "./pieces.js";
 
 /** All tracks of a document, the forms first. */
 export function tracksOf(scene) {
-  const tracks = scene.forms.map((form) => formTrack(form));
+  const tracks = scene.forms.map((form) => curveTrack("form", form));
   for (const surface of scene.surfaces) {
     tracks.push(listTrack("surface", surface.name, unpackRows(surface.samples)));
   }
   if (scene.assemblies.length) tracks.push(listTrack("assembly", "rigid assemblies", scene.assemblies));
-  if (scene.near_motions.length) {
-    const samples = scene.near_motions.map((motion) => motion.sample);
-    tracks.push(listTrack("near motion", "near motions", samples));
+  for (const { name, sample, misclosure, curve } of scene.near_motions) {
+    const track = curve ? curveTrack("near motion", curve) : listTrack("near motion", name, [sample]);
+    tracks.push({ ...track, misclosure });
   }
   const alone = scene.points.filter((point) => !point.passes.length);
   if (alone.length) tracks.push(pointTrack(alone));
@@ -28,11 +28,11 @@ function unassembled({ loop, mechanism }) {
   return (loop?.lengths ?? mechanism.unknowns).map(() => 0);
 }
 
-function formTrack(form) {
+function curveTrack(kind, form) {
   const curve = curveOf(form);
   const samples = drawingArclengths(curve).map((s) => ({ s, theta: evaluate(curve, s) }));
   return {
-    kind: "form",
+    kind,
     name: form.name,
     length: curve.length,
     closed: curve.closed,
@@ -69,11 +69,13 @@ function pointTrack(points) {
   return track;
 }
 
-/** The tracks as they are listed and numbered: forms by their names, as in the summary, then the others. */
+/** The tracks as they are listed and numbered: forms by their names, as in the summary, then near motions, then the
+ *  others. */
 export function inOrder(tracks) {
-  const forms = tracks.filter(isCurve);
+  const forms = tracks.filter((track) => track.kind === "form");
   forms.sort((a, b) => compareNames(a.name, b.name));
-  return [...forms, ...tracks.filter((track) => !isCurve(track))];
+  const others = tracks.filter((track) => track.kind !== "form");
+  return [...forms, ...others.filter(isCurve), ...others.filter((track) => !isCurve(track))];
 }
 
 /** Less than 0 where a name comes before another: Form 2 before Form 10, as linkages/app/forms.py has it. */
@@ -87,7 +89,7 @@ function compareNames(a, b) {
 
 /** Whether the slider moves along the track without steps. */
 export function isCurve(track) {
-  return track.kind === "form";
+  return track.form !== null;
 }
 
 /** The track of a name, of the beginning of a name that only one has, or of a number from 1; undefined where none. */

@@ -42,7 +42,8 @@ export class Viewer {
     this.smallestByTrack = new Map();
     for (const point of scene.points) point.leaving = leavingBranches(point, this.tracks).length + point.surfaces.length;
     const first = this.listed[0];
-    this.position = new Position(first, this.startOf(first));
+    const [form, s] = scene.drawn?.place ?? [];
+    this.position = form === undefined ? new Position(first, this.startOf(first)) : new Position(this.tracks[form], s);
     this.passes = (track) => this.passesByTrack.get(track);
     this.player = new Player(this.position, this.passes, () => this.showPlaying());
     this.player.onEnd = () => this.routeBar.say("arrived");

@@ -170,7 +170,6 @@ def _exit(problem: System, piece: np.ndarray, low: float, high: float) -> float:
     level = 0.0 if already < -problem.domain.slack else problem.domain.slack
 
     def outside(x: np.ndarray) -> np.ndarray:
-        excess: np.ndarray = problem.domain.excess(points_on_piece(piece, x)) - level
-        return excess
+        return problem.domain.excess(points_on_piece(piece, x)) - level
 
     return float(bracketed_roots(outside, begin, np.array([high]))[0])

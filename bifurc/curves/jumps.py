@@ -50,7 +50,7 @@ def repeats_itself(problem: System, branch: Branch) -> bool:
 def kinks(branch: Branch, from_ends: float = 0.0) -> np.ndarray:
     """Arclengths (k,) at which a curve goes on in another direction, farther
     ``from_ends`` than that."""
-    slopes = branch.ends_of_pieces(derivative=1)
+    slopes = branch.compiled.ends_of_pieces(derivative=1)
     begins, ends = slopes / np.linalg.norm(slopes, axis=2, keepdims=True)
     arclengths = branch.breaks[1:]
     after = np.roll(begins, -1, axis=0)

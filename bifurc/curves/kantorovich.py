@@ -110,7 +110,7 @@ class Joints:
     @staticmethod
     def of(problem: System, branch: Branch) -> Joints:
         """The joints of a branch."""
-        begins, ends = branch.ends_of_pieces()
+        begins, ends = branch.compiled.ends_of_pieces(0)
         left, right = ends[:-1], begins[1:]
         arclengths = branch.breaks[1:-1]
         if branch.closed:
@@ -143,7 +143,7 @@ def check_arcs(
     across the curve are unique: by the bound on F'', and where that refuses, also on
     shorter arcs, by F'' itself, which takes many times as long."""
     nodes = _Nodes.on(problem, branch, arcs, joints)
-    checks = nodes.checks_by_bound()
+    checks = nodes.checks()
     refused = checks.refused
     refused = refused[~checks.is_promising[refused]]
     if len(refused):
@@ -153,23 +153,17 @@ def check_arcs(
 
 @dataclass(frozen=True)
 class _Nodes:
-    """Arcs at their N nodes: ``points`` and the curve's ``slopes`` (a, N, n),
-    ``residuals`` (a, N, m), ``jacobians`` (a, N, m, n), and ``left`` (a, m, n - 1), the
-    combinations G of the equations, the weakest last. ``images`` (a, 2, m) are those of
-    the steps at their ends. On ellipses (a, e) about the arcs ``travel`` bounds how far
-    u is from where it is in the middle, ``curvature`` |F''|. ``degree`` is that of the
-    pieces."""
+    """Arcs at their N nodes: ``points`` (a, N, n), and by name the ``arrays`` of
+    `bifurc._core.Arcs`: ``slopes`` (a, N, n) of the curve, ``residuals`` (a, N, m),
+    ``jacobians`` (a, N, m, n), ``left`` (a, m, n - 1), the combinations G of the
+    equations, the weakest last, ``images`` (a, 2, m) of the steps at their ends. On
+    ellipses (a, e) about the arcs ``travel`` bounds how far u is from where it is in the
+    middle, ``curvature`` |F''|. ``degree`` is that of the pieces."""
 
     problem: System
     edges: np.ndarray
     points: np.ndarray
-    slopes: np.ndarray
-    residuals: np.ndarray
-    jacobians: np.ndarray
-    left: np.ndarray
-    images: np.ndarray
-    travel: np.ndarray
-    curvature: np.ndarray
+    arrays: dict[str, np.ndarray]
     degree: int
 
     @staticmethod
@@ -191,74 +185,50 @@ class _Nodes:
         travel = _core.travel_of_arcs(CHEBYSHEV, points, degree)
         assert problem.curvature is not None
         curvature = problem.curvature.at_complex_points(travel.ravel())
-        return _Nodes(
-            problem=problem,
-            edges=edges,
-            points=points,
-            slopes=branch(s, 1).reshape(*shape, -1),
-            residuals=residuals.reshape(*shape, -1),
-            jacobians=jacobians,
-            left=np.ascontiguousarray(left[:, :, : problem.n - 1]),
-            images=joints.at(arcs.ravel()).reshape(len(arcs), 2, -1),
-            travel=travel,
-            curvature=curvature.reshape(travel.shape),
-            degree=degree,
-        )
+        arrays = {
+            "slopes": branch(s, 1).reshape(*shape, -1),
+            "residuals": residuals.reshape(*shape, -1),
+            "jacobians": jacobians,
+            "left": np.ascontiguousarray(left[:, :, : problem.n - 1]),
+            "images": joints.at(arcs.ravel()).reshape(len(arcs), 2, -1),
+            "travel": travel,
+            "curvature": curvature.reshape(travel.shape),
+        }
+        return _Nodes(problem, edges, points, arrays, degree)
 
     def part(self, rows: np.ndarray) -> _Nodes:
         """The arcs ``rows`` (r,) of these."""
-        return _Nodes(
-            problem=self.problem,
-            edges=self.edges[rows],
-            points=self.points[rows],
-            slopes=self.slopes[rows],
-            residuals=self.residuals[rows],
-            jacobians=self.jacobians[rows],
-            left=self.left[rows],
-            images=self.images[rows],
-            travel=self.travel[rows],
-            curvature=self.curvature[rows],
-            degree=self.degree,
-        )
-
-    def checks_by_bound(self) -> ArcChecks:
-        """What follows from omega = K |H^-1|^2, where F stays small enough for K."""
-        return self._checks(None)
+        arrays = {name: array[rows] for name, array in self.arrays.items()}
+        edges, points = self.edges[rows], self.points[rows]
+        return _Nodes(self.problem, edges, points, arrays, self.degree)
 
     def checks_by_second_derivative(self) -> ArcChecks:
         """What follows from F'' at the nodes: near a surface it is small where H^-1 is
         large."""
         flat = self.points.reshape(-1, self.problem.n)
         hessians = self.problem.hessians(flat) / self.problem.magnitude
-        return self._checks(hessians.reshape(len(flat), -1, self.problem.n))
+        return self.checks(hessians.reshape(len(flat), -1, self.problem.n))
 
-    def _checks(self, hessians: np.ndarray | None) -> ArcChecks:
+    def checks(self, hessians: np.ndarray | None = None) -> ArcChecks:
+        """What follows from omega = K |H^-1|^2, where F stays small enough for K; or from
+        F'' itself, of which ``hessians`` are the values at the nodes."""
         doubts, least_at_a_node, is_uneven = _core.doubts_of_arcs(
-            CHEBYSHEV, self._second_derivative, self.arcs, self.degree, hessians
+            CHEBYSHEV,
+            self._second_derivative,
+            _core.Arcs(**self.arrays),
+            self.degree,
+            hessians,
         )
         # on a part of an arc that is neither, everything would be the same
         is_long = np.ptp(self.edges, axis=1) > LONG * self.problem.domain.scale
-        is_solved = is_closed_to_rounding(_largest_rows(self.residuals))
-        is_joined = is_closed_to_rounding(_largest_rows(self.images))
+        is_solved = is_closed_to_rounding(_largest_rows(self.arrays["residuals"]))
+        is_joined = is_closed_to_rounding(_largest_rows(self.arrays["images"]))
         may_change = is_long | is_uneven | ~is_joined
         return ArcChecks(
             edges=self.edges,
             holds=is_unique(doubts),
             is_promising=(least_at_a_node <= PROMISING) & may_change,
             is_closed=is_solved & is_joined,
-        )
-
-    @property
-    def arcs(self) -> _core.Arcs:
-        """The arcs in compiled form."""
-        return _core.Arcs(
-            slopes=self.slopes,
-            residuals=self.residuals,
-            jacobians=self.jacobians,
-            left=self.left,
-            images=self.images,
-            travel=self.travel,
-            curvature=self.curvature,
         )
 
     @property

@@ -110,7 +110,7 @@ def _largest_value(problem: System, branch: Branch, profile: Profile) -> float:
     tops = _minima_in_row(-heights, branch.closed)
     tops = tops[heights[tops] > NEAR_THE_TOP * heights.max()]
     middles = nodes[tops]
-    reach = np.gradient(nodes)[tops]
+    reach = _spacing(nodes, tops)
     rows = np.arange(len(tops))
     largest = float(heights.max())
     for _ in range(ROUNDS):
@@ -155,14 +155,11 @@ def _places_to_look(branch: Branch, profile: Profile) -> np.ndarray:
     meet.
     """
     squares = profile.values[..., : profile.rank] ** 2
-    spacing = np.gradient(profile.arclength.ravel())
     places = np.concatenate(
         [
             _around_lowest_nodes(branch, profile),
-            _around_interpolated_minima(branch, profile, spacing, squares[..., -1]),
-            _around_interpolated_minima(
-                branch, profile, spacing, squares.prod(axis=-1)
-            ),
+            _around_interpolated_minima(branch, profile, squares[..., -1]),
+            _around_interpolated_minima(branch, profile, squares.prod(axis=-1)),
         ]
     )
     if branch.closed:
@@ -179,11 +176,10 @@ def _around_lowest_nodes(branch: Branch, profile: Profile) -> np.ndarray:
 
 
 def _around_interpolated_minima(
-    branch: Branch, profile: Profile, spacing: np.ndarray, quantity: np.ndarray
+    branch: Branch, profile: Profile, quantity: np.ndarray
 ) -> np.ndarray:
     """Arclengths (4 k,) on both sides of the minima of the interpolant of a quantity
-    (p, nodes), near and a little farther away: as far as the ``spacing`` of the nodes
-    there."""
+    (p, nodes), near and a little farther away: as far as the nodes are apart there."""
     fine = _fine_grid()
     grid = branch.places(fine.fractions)  # (p, FINE + 1)
     interpolated = quantity @ fine.from_nodes.T
@@ -198,10 +194,17 @@ def _around_interpolated_minima(
     middles, near = arclengths[lowest], 2 * steps[lowest]
     nodes = profile.arclength.ravel()
     node = np.minimum(np.searchsorted(nodes, middles), len(nodes) - 1)
-    far = spacing[node]
+    far = _spacing(nodes, node)
     return np.concatenate(
         [middles - far, middles - near, middles + near, middles + far]
     )
+
+
+def _spacing(nodes: np.ndarray, numbers: np.ndarray) -> np.ndarray:
+    """How far apart the ``nodes`` are about those of these ``numbers`` (k,)."""
+    before, after = np.maximum(numbers - 1, 0), np.minimum(numbers + 1, len(nodes) - 1)
+    spacing: np.ndarray = (nodes[after] - nodes[before]) / (after - before)
+    return spacing
 
 
 def _minima_in_row(values: np.ndarray, closed: bool) -> np.ndarray:

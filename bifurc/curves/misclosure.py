@@ -201,15 +201,13 @@ class NearMotionTrace:
             is_bridge, SPREAD * np.sqrt(misses * problem.domain.scale), known
         )
         reach = np.clip(reach, is_same_point.threshold * problem.domain.scale, within)
-        is_on: np.ndarray = distance < reach
-        return is_on
+        return distance < reach
 
 
 def bridges_of(branch: Branch, tolerance: float) -> np.ndarray:
     """Which pieces (p,) of a near motion followed to a ``tolerance`` lead straight on
     where the valley is not single."""
-    is_bridge: np.ndarray = branch.residuals > EXACT * tolerance
-    return is_bridge
+    return branch.residuals > EXACT * tolerance
 
 
 @dataclass(frozen=True)

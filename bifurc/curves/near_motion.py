@@ -116,8 +116,7 @@ def _beside(problem: System, start: np.ndarray) -> np.ndarray:
     _, right = null_spaces(problem, start[None])
     step = BESIDE * problem.domain.scale * right[0, -1]
     ahead = np.array([start - step, start + step])
-    corrected: np.ndarray = correct_to_valley(problem, ahead, CORRECTIONS)[0]
-    return corrected
+    return correct_to_valley(problem, ahead, CORRECTIONS)[0]
 
 
 def _clearest(valley: ValleyProblem, places: np.ndarray, missed: float) -> np.ndarray:
@@ -286,8 +285,7 @@ def _assemblies(problem: System, course: _Course) -> np.ndarray:
         )
     ):
         kept.pop()
-    separate: np.ndarray = zeros.solutions[kept]
-    return separate
+    return zeros.solutions[kept]
 
 
 def _zeros(problem: System, course: _Course) -> _Zeros:

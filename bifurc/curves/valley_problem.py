@@ -38,15 +38,12 @@ from bifurc.decisions import has_one_form, has_valley, is_beside_drop, nearly_cl
 from bifurc.function_problem import NumericalProblem
 from bifurc.numerics.collocation import (
     PieceRules,
-    march_by_collocation,
     reparametrised,
 )
 from bifurc.numerics.corrector import correct_across
 from bifurc.numerics.null_spaces import Decomposition, decompose
 from bifurc.problem import Problem
 from bifurc.system import (
-    March,
-    MarchSettings,
     Piece,
     hessian_at,
     relative_gaps,
@@ -151,13 +148,6 @@ class ValleyProblem(NumericalProblem, SplitCurve):
         return float(sizes[1] / max(sizes[0], TINY))
 
     # --- pieces -----------------------------------------------------------------------
-
-    def march(
-        self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
-    ) -> March:
-        """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,), by
-        collocation, up to where the valley is not single."""
-        return march_by_collocation(self, start, tangent, settings, self.rules)
 
     def _is_single_on(self, piece: Piece) -> bool:
         """Whether the valley is single all along a piece."""

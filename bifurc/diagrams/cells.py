@@ -136,8 +136,7 @@ def _sizes(values: np.ndarray, rounding: float) -> np.ndarray:
     finite = np.where(np.isfinite(values), np.abs(values), 0.0)
     median, largest = np.median(finite, axis=1), finite.max(axis=1)
     typical = np.where(median > 0.0, median, largest)
-    sizes: np.ndarray = np.maximum(typical, rounding / TOLERANCE)
-    return sizes
+    return np.maximum(typical, rounding / TOLERANCE)
 
 
 def _kinds_of(

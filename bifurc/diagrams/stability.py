@@ -394,8 +394,7 @@ class Spectrum:
         scaled = scaled / np.maximum(rows, SMALLEST)
         values = np.linalg.svd(np.nan_to_num(scaled), compute_uv=False)
         smallest = np.minimum(values[:, -1], 1.0)
-        errors: np.ndarray = RESIDUAL / np.maximum(smallest, RESIDUAL / LARGEST_ERROR)
-        return errors
+        return RESIDUAL / np.maximum(smallest, RESIDUAL / LARGEST_ERROR)
 
 
 def _inverses(matrices: np.ndarray) -> np.ndarray:

@@ -86,10 +86,6 @@ class _Gap(NamedTuple):
         return min(knot.rounding for knot in ends)
 
     @property
-    def sign_after(self) -> float:
-        return 0.0 if self.after is None else self.after.sign
-
-    @property
     def changes_sign(self) -> bool:
         if self.before is None or self.after is None:
             return False
@@ -122,7 +118,8 @@ def zeros_along(
     jumps: list[Zero] = []
     for gap, s, holds in zip(changing, places.tolist(), is_zero, strict=True):
         kind = ZeroKind.CROSSING if holds else ZeroKind.JUMP
-        (zeros if holds else jumps).append(Zero(s, kind, s, s, gap.sign_after))
+        sign = 0.0 if gap.after is None else gap.after.sign
+        (zeros if holds else jumps).append(Zero(s, kind, s, s, sign))
     if is_measured:
         crossing = [gap for gap, holds in zip(changing, is_zero, strict=True) if holds]
         zeros = _with_stretches(function, crossing, zeros, branch.length)

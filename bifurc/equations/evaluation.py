@@ -124,7 +124,9 @@ class Equations:
         """F (k, m) at points (k, n)."""
         points = np.atleast_2d(points)
         if self.tape is not None:
-            return self.tape.compiled.residuals(_contiguous(points))
+            return self.tape.compiled.residuals(
+                np.ascontiguousarray(points, dtype=float)
+            )
         function = self.function  # called thousands of times a curve
         with np.errstate(all="ignore"):  # beyond the rim of where it is defined
             # a copy: it may change its argument
@@ -140,7 +142,9 @@ class Equations:
         """F' (k, m, n) at points (k, n), dense."""
         points = np.atleast_2d(points)
         if self.tape is not None:
-            return self.tape.compiled.jacobians(_contiguous(points))
+            return self.tape.compiled.jacobians(
+                np.ascontiguousarray(points, dtype=float)
+            )
         jacobians = [as_dense(self.jacobian_by_calls(point)) for point in points]
         return np.array(jacobians).reshape(len(points), self.m, points.shape[1])
 
@@ -190,10 +194,6 @@ class Equations:
         return None if tape is None else partial(rounding_of_constants, tape)
 
 
-def _contiguous(values: np.ndarray) -> np.ndarray:
-    return np.ascontiguousarray(values, dtype=float)
-
-
 VALUES = 13  # along each line
 ORDERS = range(5, 10)  # of differences that are compared
 LONG, SHORT = 1e-3, 1e-4  # steps between values, over the size of the region
@@ -223,8 +223,7 @@ def noise_of(
             estimates.append(np.where(is_smooth, over_short, over_long))
     if not estimates:
         return None
-    median: np.ndarray = np.median(estimates, axis=0)
-    return median
+    return np.median(estimates, axis=0)
 
 
 def _along(

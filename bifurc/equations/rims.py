@@ -43,8 +43,7 @@ class Rims(NamedTuple):
         lengths = np.linalg.norm(slopes, axis=2)
         # where a rim is a point of zero slope the value is zero as well
         known = np.where(lengths > 0.0, lengths, 1.0)
-        depths: np.ndarray = values / known
-        return depths
+        return values / known
 
     def texts(self, names: Sequence[str]) -> list[str]:
         """What is 0 on each rim (k), in the ``names`` (n,) of the unknowns, and of which

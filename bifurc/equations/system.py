@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
@@ -27,6 +28,7 @@ from bifurc.system import (
     Shortcuts,
     Solver,
     SphereProjection,
+    compiled_march,
 )
 
 if TYPE_CHECKING:
@@ -247,36 +249,19 @@ class ScaledTape:
         settings: MarchSettings,
     ) -> March:
         """The same, rounding being what it is to a ``share`` of the magnitude."""
-        unit = self._unit
-        anchor, within = np.empty((0, self.tape.n)), 0.0
-        if settings.anchor is not None:
-            place, heading, within = settings.anchor
-            anchor = np.array([place / unit, heading])
-        status, pieces, steps, radii, residuals, _ = self.tape.compiled.march(
+        outer = self._domain.bounds + self._domain.slack * np.array([-1.0, 1.0])
+        return compiled_march(
+            self.tape.compiled.march,
+            replace(settings, tolerance=settings.tolerance * self._scale / self._unit),
+            # a march along one of the bounds need not end after every piece
+            replace(self._domain, bounds=outer),
+            self._unit,
+            share,
             units=self._units,
             weights=self._weights / share,
-            start=_contiguous(start) / unit,
+            start=_contiguous(start) / self._unit,
             tangent=_contiguous(tangent),
-            order=settings.order,
-            tolerance=settings.tolerance * self._scale / unit,
-            shortest=settings.shortest / unit,
-            longest=settings.longest / unit,
-            count=settings.count,
-            closing=settings.closing / (share * unit),
-            misclosure=settings.misclosure / (share * unit),
-            anchor=anchor,
-            within=within / unit,
-            periods=self._domain.periods / unit,
-            bounds=self._outer_bounds / unit,
-            length=settings.length / unit,
             is_sparse=self.is_factored_sparse,
-        )
-        return March(
-            status=MarchStatus(status),
-            pieces=unit * pieces,
-            steps=unit * steps,
-            radii=unit * radii,
-            residuals=share * unit * residuals,
         )
 
     def valley_points_at_nodes(self, nodes: CurveNodes) -> np.ndarray | None:
@@ -285,12 +270,6 @@ class ScaledTape:
         units = np.ones(self.tape.n)
         weights = np.full(self.tape.m, 1.0 / self._magnitude)
         return self.tape.compiled.valley_points_at_nodes(units, weights, *nodes)
-
-    @property
-    def _outer_bounds(self) -> np.ndarray:
-        """The bounds (n, 2), wider by what counts as inside: a march along one of them
-        need not end after every piece."""
-        return self._domain.bounds + self._domain.slack * np.array([-1.0, 1.0])
 
     def _share_of_magnitude(self, start: np.ndarray) -> float:
         """The magnitude of F' over which rounding is what a march takes it to be, over

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,7 +13,8 @@ from matplotlib.axis import Axis
 from matplotlib.lines import Line2D
 from matplotlib.ticker import Locator
 
-from bifurc.atlas import Atlas
+from bifurc.atlas import Atlas, Event
+from bifurc.branch import Branch
 from bifurc.decisions import closes_to_rounding
 from bifurc.figures.layout import fix_names_of_axes
 from bifurc.figures.planes import (
@@ -22,15 +23,19 @@ from bifurc.figures.planes import (
     curve_points,
     cut_to_frame,
     place_in_frame,
+    shown_branches,
 )
 from bifurc.figures.rc import line_style
 from bifurc.figures.selection import EVERYTHING, Selection
-from bifurc.figures.style import Properties, hollow
-from bifurc.singular.point import Mark
+from bifurc.figures.style import Properties, Style, hollow, near_motion_style
+from bifurc.singular.point import Kind, Mark
 
 RIGID_LABEL = "rigid assembly"
 SURFACE_LABEL = "mobility 2 or more"
 OVERLAY_LABEL = "points laid over"
+AS_DRAWN_LABEL = "as drawn"
+AS_DRAWN: Properties = {"marker": "*", "markersize": 8, "color": "black"}
+DEAD: Properties = {"marker": "s", "markersize": 3.2, "color": "0.25"}
 RIGID: Properties = {"marker": "x", "color": "0.3"}
 OVERLAY: Properties = {
     "marker": "+",
@@ -58,7 +63,7 @@ def widen_flat_axes(
 ) -> None:
     """Show more of an axis along which nothing changes but for rounding; ``factors``
     are those of the axes, by which unknowns are multiplied to be shown."""
-    samples = [form.branch.sample(FLAT_SAMPLES) for form in atlas.forms]
+    samples = [branch.sample(FLAT_SAMPLES) for branch in shown_branches(atlas)]
     largest = max((float(np.abs(one).max(initial=0.0)) for one in samples), default=0.0)
     width, height = (factor * (largest or 1.0) for factor in factors)
     if np.ptp(axes.get_xlim()) < FLAT * width:
@@ -114,13 +119,12 @@ def draw_forms(
     """The forms in a plane that are drawn, with axes to match; lines carry the names of
     the forms, for a legend."""
     clip_on = is_part_of_turn(plane)
-    for i in settings.selection.indices(atlas):
-        form = atlas.forms[i]
-        points = plane.project(curve_points(form.branch))
+    for curve in drawn_curves(atlas, settings.selection):
+        points = plane.project(curve_points(curve.branch))
         if len(points):
             rows = cut_to_frame(points, plane.scales)
-            style: Properties = {"linewidth": settings.line_width, **line_style(i).line}
-            axes.plot(*rows.T, clip_on=clip_on, zorder=2, label=form.name, **style)
+            line = {"linewidth": settings.line_width, **curve.style.line}
+            axes.plot(*rows.T, clip_on=clip_on, zorder=2, label=curve.name, **line)
     horizontal, vertical = plane.scales
     _label_axis(axes.xaxis, horizontal)
     _label_axis(axes.yaxis, vertical)
@@ -134,6 +138,32 @@ def draw_forms(
     axes.grid(True)
     for spine in axes.spines.values():
         spine.set_zorder(1)  # forms that lie on the edge of the frame are drawn over it
+
+
+class DrawnCurve(NamedTuple):
+    """A form or a near motion as it is drawn."""
+
+    name: str
+    branch: Branch
+    style: Style
+
+
+def drawn_curves(atlas: Atlas, selection: Selection) -> list[DrawnCurve]:
+    """The forms that are drawn, in the order of their names; and the near motions with
+    a curve, dotted, where no forms are chosen."""
+    curves = []
+    for i in selection.indices(atlas):
+        form = atlas.forms[i]
+        curves.append(DrawnCurve(form.name, form.branch, line_style(i)))
+    if selection.forms:
+        return curves
+    index = len(atlas.forms)
+    for near in atlas.near_motions:
+        if near.branch:
+            name = f"{near.name}, misses closure by {near.misclosure:.1e}"
+            curves.append(DrawnCurve(name, near.branch, near_motion_style(index)))
+            index += 1
+    return curves
 
 
 class DegreeLocator(Locator):
@@ -182,6 +212,7 @@ def draw_marks(
         style: Properties = {"markersize": settings.mark_size or 5.5, **RIGID}
         places = plane.copies(solution).T
         axes.plot(*places, ls="", clip_on=clip_on, zorder=3, **style)
+    _draw_as_given(axes, atlas, plane)
     _draw_singular_points(axes, atlas, plane, settings)
     _draw_overlay(axes, atlas, plane, settings.selection)
 
@@ -212,7 +243,29 @@ def _draw_overlay(axes: Axes, atlas: Atlas, plane: Plane, selection: Selection) 
         axes.plot(*shown.T, ls="", clip_on=clip_on, zorder=5, **OVERLAY)
 
 
+def _draw_as_given(axes: Axes, atlas: Atlas, plane: Plane) -> None:
+    """The configuration as drawn, if there is one, and dead points of drivers."""
+    for event in _driven(atlas):
+        style = {"clip_on": is_part_of_turn(plane), "zorder": 3.5, **DEAD}
+        axes.plot(*plane.copies(event.u).T, ls="", **style)
+    if atlas.drawn is not None:
+        style = {"clip_on": is_part_of_turn(plane), "zorder": 5, **AS_DRAWN}
+        axes.plot(*plane.copies(atlas.drawn).T, ls="", **style)
+
+
 # --- the legend -----------------------------------------------------------------------
+
+
+def _driven(atlas: Atlas) -> list[Event]:
+    """The dead points of the unknowns that drive, and do not stand still."""
+    drivers = atlas.subject.get("drivers", ())
+    events = [event for event in atlas.dead_points if event.index in drivers]
+    moving = []
+    for event in events:
+        values = atlas.forms[event.form].branch.sample(FLAT_SAMPLES)[:, event.index]
+        if np.ptp(values) > FLAT:
+            moving.append(event)
+    return moving
 
 
 def legend_entries(atlas: Atlas, selection: Selection = EVERYTHING) -> list[Line2D]:
@@ -220,9 +273,9 @@ def legend_entries(atlas: Atlas, selection: Selection = EVERYTHING) -> list[Line
     kind, of isolated solutions, of surfaces and of what is laid over, as far as there
     are any."""
     entries = []
-    for i in selection.indices(atlas):
-        style: Properties = {"linewidth": 1.8, **line_style(i).line}
-        entries.append(Line2D([], [], label=atlas.forms[i].name, **style))
+    for curve in drawn_curves(atlas, selection):
+        line = {"linewidth": 1.8, **curve.style.line}
+        entries.append(Line2D([], [], label=curve.name, **line))
     marks: list[tuple[str, Properties]] = []
     for kind in dict.fromkeys(point.kind for point in selection.points(atlas)):
         marks.append((kind.value, hollow(kind.mark)))
@@ -230,6 +283,10 @@ def legend_entries(atlas: Atlas, selection: Selection = EVERYTHING) -> list[Line
         marks.append((RIGID_LABEL, RIGID))
     if atlas.surfaces:
         marks.append((SURFACE_LABEL, {"marker": ".", "color": "0.6"}))
+    for index in sorted({event.index for event in _driven(atlas)}):
+        marks.append((f"dead point of {atlas.names[index]}", DEAD))
+    if atlas.drawn is not None:
+        marks.append((AS_DRAWN_LABEL, AS_DRAWN))
     if selection.overlay:
         marks.append((OVERLAY_LABEL, OVERLAY))
     for label, style in marks:
@@ -244,10 +301,20 @@ def note_emptiness(axes: Axes, atlas: Atlas) -> None:
     """Say so in the middle of the frame where there is no form."""
     if atlas.forms:
         return
-    note = "no form"
-    if closes_to_rounding(atlas.closure_gap) and atlas.closure_gap > 0:
-        note += " within the bounds"
-    elif 0 < atlas.closure_gap < np.inf:
-        note += f"\nclosure gap {atlas.closure_gap:.1e}"
     style: Properties = {"ha": "center", "va": "center", "color": "0.4"}
+    note = "\n".join(emptiness(atlas))
     axes.text(0.5, 0.5, note, transform=axes.transAxes, **style)
+
+
+def emptiness(atlas: Atlas) -> list[str]:
+    """What is said where there is no form, a line each."""
+    if atlas.near_motions:
+        least = min(near.misclosure for near in atlas.near_motions)
+        return ["no form", f"near motions miss closure by {least:.1e} or more"]
+    if len(atlas.rigid) or any(point.kind is Kind.ISOLATED for point in atlas.points):
+        return ["no form", "it closes, and is rigid"]
+    if closes_to_rounding(atlas.closure_gap) and atlas.closure_gap > 0:
+        return ["no form within the bounds"]
+    if 0 < atlas.closure_gap < np.inf:
+        return ["no form", f"closure gap {atlas.closure_gap:.1e}"]
+    return ["no form"]

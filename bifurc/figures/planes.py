@@ -127,6 +127,12 @@ def scale_of(
     return Scale(factor, 0.5 * factor * period, f"{name} ({unit})" if unit else name)
 
 
+def shown_branches(atlas: Atlas) -> list[Branch]:
+    """The curves that are drawn: those of the forms, then those of near motions."""
+    forms = [form.branch for form in atlas.forms]
+    return forms + [near.branch for near in atlas.near_motions if near.branch]
+
+
 def curve_points(branch: Branch) -> np.ndarray:
     """Points (k, n) along a whole branch, dense where its pieces are short; a closed
     one comes back to its start."""
@@ -252,9 +258,10 @@ def choose_plane(atlas: Atlas) -> tuple[int, int]:
     closest, and how much of the frame the forms cover.
     """
     n = len(atlas.names)
-    if n < 2 or not atlas.forms:
+    branches = shown_branches(atlas)
+    if n < 2 or not branches:
         return 0, min(1, n - 1)
-    samples = np.array([form.branch.sample(SAMPLES) for form in atlas.forms])
+    samples = np.array([branch.sample(SAMPLES) for branch in branches])
     points = np.array([point.point.u for point in atlas.bifurcations]).reshape(-1, n)
     periodic = np.isfinite(atlas.periods)
     ranges = np.ptp(samples.reshape(-1, n), axis=0)

@@ -32,7 +32,13 @@ from bifurc.figures.drawing import (
 from bifurc.figures.form_graph import plot_form_graph, shows_transitions
 from bifurc.figures.labels import label_points
 from bifurc.figures.layout import Canvas, Margins, PanelPlan, figure_of, lay_out
-from bifurc.figures.planes import choose_plane, indices_of, plane_of, scale_of
+from bifurc.figures.planes import (
+    choose_plane,
+    indices_of,
+    plane_of,
+    scale_of,
+    shown_branches,
+)
 from bifurc.figures.rc import drawing_style
 from bifurc.figures.rendering import contents_of
 from bifurc.figures.selection import EVERYTHING, Selection
@@ -78,7 +84,7 @@ def plot_transition_map(
             figure, (ax,), _ = lay_out(figure, plan, legend_entries(atlas, selection))
         draw_forms(ax, atlas, plane, settings)
         draw_marks(ax, atlas, plane, settings)
-        note_emptiness(ax, atlas)
+        _note_emptiness(ax, atlas)
         label_points(ax, atlas, plane, selection)
     return figure_of(ax)
 
@@ -113,8 +119,14 @@ def plot_joint_angles(
             if has_panel_below:
                 axes.set_xlabel("")
                 axes.tick_params(labelbottom=False)
-        note_emptiness(sheet.panels[0], atlas)
+        _note_emptiness(sheet.panels[0], atlas)
     return figure_of(sheet.canvas)
+
+
+def _note_emptiness(axes: Axes, atlas: Atlas) -> None:
+    """Say so where there is neither a form nor a near motion."""
+    if not shown_branches(atlas):
+        note_emptiness(axes, atlas)
 
 
 def _room_for_ticks(atlas: Atlas) -> float:

@@ -12,11 +12,11 @@ from mpl_toolkits.mplot3d import Axes3D, proj3d
 
 from bifurc import torus
 from bifurc.atlas import Atlas
-from bifurc.figures.drawing import DegreeLocator, legend_entries
+from bifurc.figures.drawing import DegreeLocator, drawn_curves, legend_entries
 from bifurc.figures.labels import joined
 from bifurc.figures.layout import Canvas, Margins, PanelPlan, figure_of, lay_out
 from bifurc.figures.planes import Scale, curve_points, indices_of, scale_of
-from bifurc.figures.rc import drawing_style, line_style
+from bifurc.figures.rc import drawing_style
 from bifurc.figures.selection import EVERYTHING, Selection
 from bifurc.figures.style import hollow
 
@@ -69,11 +69,10 @@ def _draw_forms(
     scales: Sequence[Scale],
     selection: Selection,
 ) -> None:
-    """Every form, with breaks where it leaves the frame."""
+    """Every form and near motion, with breaks where it leaves the frame."""
     half = np.array([scale.half for scale in scales])
-    for i in selection.indices(atlas):
-        form = atlas.forms[i]
-        points = curve_points(form.branch)
+    for curve in drawn_curves(atlas, selection):
+        points = curve_points(curve.branch)
         if not len(points):
             continue
         shown = _shown(points[:, list(indices)], scales)
@@ -83,7 +82,7 @@ def _draw_forms(
                 low, high = scale.limits
                 column[(column < low) | (column > high)] = np.nan
         rows = np.insert(shown, np.flatnonzero(is_jump) + 1, np.nan, axis=0)
-        axes.plot(*rows.T, linewidth=1.6, label=form.name, **line_style(i).line)
+        axes.plot(*rows.T, linewidth=1.6, label=curve.name, **curve.style.line)
 
 
 def _draw_points(

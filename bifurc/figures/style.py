@@ -32,6 +32,9 @@ DASHES: tuple[Dashes, ...] = (
 )
 
 
+DOTS: Dashes = (0, (1.0, 1.0))
+
+
 class Style(NamedTuple):
     """Colour and dashes of a form."""
 
@@ -48,6 +51,12 @@ def form_style(index: int) -> Style:
     """Style of form number ``index``: colours and dashes repeat, but not together
     before 24 forms."""
     return Style(COLORS[index % len(COLORS)], DASHES[index % len(DASHES)])
+
+
+def near_motion_style(index: int) -> Style:
+    """Style of a near motion with ``index`` forms and near motions before it: dotted,
+    for it is no motion."""
+    return Style(COLORS[index % len(COLORS)], DOTS)
 
 
 def color_on_dark(color: str) -> str:

@@ -71,7 +71,7 @@ RECORDS: dict[str, Callable[[Atlas], Sequence[Any]]] = {
 }
 
 
-def _samples(form: Form) -> np.ndarray:
+def samples_of(form: Form) -> np.ndarray:
     """Points (k, n) at which the singular values were taken."""
     if not len(form.branch.pieces):
         return np.empty((0, form.branch.n))
@@ -82,6 +82,15 @@ def _covering_name(surface: Surface) -> str:
     return "" if surface.charts is None else surface.charts.outcome.name
 
 
+def _outcome_name(near: NearMotion) -> str:
+    return "" if near.branch is None else near.branch.outcome.name
+
+
+def _order_of(branch: Branch | None) -> int:
+    """The degree of the pieces of a branch."""
+    return -1 if branch is None else branch.pieces.shape[1] - 1
+
+
 def _certificate_text(form: Form) -> str:
     return "" if form.certificate is None else to_text(form.certificate.as_values())
 
@@ -89,10 +98,12 @@ def _certificate_text(form: Form) -> str:
 # What a record has in the variables that are no attribute of it as they stand.
 VALUES: dict[str, Callable[[Any], Any]] = {
     "arclength": lambda form: form.profile.arclength.ravel(),
-    "configuration": _samples,
+    "configuration": samples_of,
     "singular_values": lambda form: form.profile.values.reshape(-1, form.branch.n),
     "sample_nodes": lambda form: form.profile.arclength.shape[1],
-    "piece_order": lambda form: form.branch.pieces.shape[1] - 1,
+    "piece_order": lambda form: _order_of(form.branch),
+    "near_motion_outcome": _outcome_name,
+    "near_motion_order": lambda near: _order_of(near.branch),
     "labels": lambda form: to_text(dict(form.labels)),
     "certificate": _certificate_text,
     "pass_form": lambda point: [form for form, _ in point.passes],
@@ -163,11 +174,12 @@ def atlas_frame(atlas: Atlas) -> Frame:
     where there is none)."""
     angles = all(unit == "rad" for unit in atlas.units)
     shared = len(set(atlas.units)) == 1 and atlas.units[0] != ""
-    orders = [form.branch.pieces.shape[1] for form in atlas.forms]
+    branches = [form.branch for form in atlas.forms]
+    orders = map(_order_of, [*branches, *(near.branch for near in atlas.near_motions)])
     return Frame(
         joint=JOINT if angles else "unknown",
         unit=atlas.units[0] if shared else "1",
-        sizes=_sizes(len(atlas.names)) | {"power": max(orders, default=1)},
+        sizes=_sizes(len(atlas.names)) | {"power": max(orders, default=0) + 1},
     )
 
 
@@ -208,7 +220,7 @@ def read_atlas(dataset: xr.Dataset, frame: Frame, **others: Any) -> Atlas:
         dead_points=_records(Event, rows, "dead_point"),
         rigid=np.array(rigid).reshape(-1, frame.sizes[JOINT]),
         surfaces=tuple(_surface(row, periods) for row in rows["surface"]),
-        near_motions=_records(NearMotion, rows, "near_motion"),
+        near_motions=tuple(_near_motion(row, periods) for row in rows["near_motion"]),
         diagram=_read_diagram(dataset, rows),
         **others,
     )
@@ -229,6 +241,18 @@ def _read_diagram(dataset: xr.Dataset, rows: dict[str, list[Row]]) -> Diagram | 
         branchings=_records(Branching, rows, "branching"),
         remarks=tuple(row["diagram_remark"] for row in rows["diagram_remark"]),
     )
+
+
+def _near_motion(row: Row, periods: np.ndarray) -> NearMotion:
+    """A near motion of unknowns with ``periods`` (n,)."""
+    make = TABLES["near_motion"].make
+    branch = None
+    if row["near_motion_outcome"]:
+        outcome = Outcome[row["near_motion_outcome"]]
+        pieces = row["near_motion_coefficient"][:, : row["near_motion_order"] + 1]
+        others = {"pieces": pieces, "periods": periods, "outcome": outcome}
+        branch = make(Branch, row, "branch", **others)
+    return make(NearMotion, row, branch=branch)
 
 
 def _form(row: Row, periods: np.ndarray) -> Form:

@@ -137,7 +137,4 @@ def _cubic_terms(
         curved = system.solve(right)[: problem.n]
         mixed = problem.second_derivative(point, along, curved)
         values.append(left @ (mixed + problem.third_derivative(point, along) / 6.0))
-    coefficients: np.ndarray = np.linalg.solve(
-        monomials(vectors, 3), np.array(values)
-    ).T
-    return coefficients
+    return np.linalg.solve(monomials(vectors, 3), np.array(values)).T

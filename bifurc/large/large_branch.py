@@ -83,8 +83,7 @@ class LargeBranch:
 
     def __call__(self, s: float) -> np.ndarray:
         """u (n,) at an arclength."""
-        point: np.ndarray = self.units.outwards(self.branch(s))
-        return point
+        return self.units.outwards(self.branch(s))
 
     def tangent(self, s: float) -> np.ndarray:
         """du/ds (n,) at an arclength."""
@@ -93,14 +92,9 @@ class LargeBranch:
 
     def parameters(self, s: np.ndarray) -> np.ndarray:
         """The parameter (k,) at arclengths (k,)."""
-        in_units = self.parameter_curve(s)[:, 0]
+        in_units = last_unknown(self.branch)(s)[:, 0]
         values: np.ndarray = self.units.sizes[-1] * in_units
         return values
-
-    @property
-    def parameter_curve(self) -> Branch:
-        """The parameter alone, in units, as a branch of one unknown."""
-        return last_unknown(self.branch)
 
     @property
     def folds(self) -> tuple[LargePoint, ...]:

@@ -149,8 +149,7 @@ class LargeProblem:
             value = floats_of("value of the function", value)
         if value.shape != (self.n - 1,):
             self._refuse_length(value.shape if value.ndim != 1 else len(value))
-        floats: np.ndarray = value.astype(float, copy=False)
-        return floats
+        return value.astype(float, copy=False)
 
     def _refuse_length(self, length: object) -> None:
         allowed = f"{self.n - 1}, one less than the {self.n} unknowns"
@@ -183,8 +182,7 @@ class LargeProblem:
         if matrix.shape[1] == rows:
             last = np.ones(rows) if point is None else self._by_parameter(point)
             matrix = hstack([matrix, csr_array(last[:, None])])
-        checked: csr_array = csr_array(matrix)
-        return checked
+        return csr_array(matrix)
 
     def _by_parameter(self, point: np.ndarray) -> np.ndarray:
         """The derivative (n - 1,) of F by the parameter, by central differences."""
@@ -228,8 +226,7 @@ class LargeProblem:
 
     def _complex_step(self, point: np.ndarray, along: np.ndarray) -> np.ndarray:
         value = np.asarray(self.function(point + 1j * COMPLEX_STEP * along))
-        derivative: np.ndarray = np.imag(value) / COMPLEX_STEP
-        return derivative
+        return np.imag(value) / COMPLEX_STEP
 
     def _steps(self, point: np.ndarray) -> np.ndarray:
         """A step (n,) of each unknown for differences: by its size, which for the

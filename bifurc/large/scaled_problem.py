@@ -23,8 +23,8 @@ from bifurc.large.bordered_system import (
     bordered_system,
 )
 from bifurc.large.large_problem import LargeProblem
-from bifurc.numerics.collocation import PieceRules, march_by_collocation
-from bifurc.system import Accuracy, March, MarchSettings, Shortcuts, Solver
+from bifurc.numerics.collocation import PieceRules
+from bifurc.system import Accuracy, Shortcuts, Solver
 from bifurc.units import Units
 
 if TYPE_CHECKING:
@@ -35,7 +35,6 @@ DIFFERENCE = 1e-5  # length of the step of a difference of F'
 SECOND_DIFFERENCE = 3e-3  # the same of a second difference
 ROUNDS = 3  # of inverse iteration, by which the size of F' is seen
 ALONG_AXIS = 1e-3  # share of the random vector that the first tangent comes from
-RULES = PieceRules(norm=2)  # entries are small where they are many
 BESIDE = 0.1  # how far beside a singular start F' is of an ordinary size
 
 
@@ -45,6 +44,8 @@ class ScaledProblem(NumericalProblem):
     The magnitude is about the smallest singular value of F' at the ``start`` (n,) of
     the user, so that what is left of F over it is an error of the unknowns.
     """
+
+    rules = PieceRules(norm=2)  # entries are small where they are many
 
     def __init__(self, problem: LargeProblem, start: np.ndarray):
         n = problem.n
@@ -116,13 +117,6 @@ class ScaledProblem(NumericalProblem):
     def shortcuts(self) -> Shortcuts:
         """F' as a sparse matrix, and the solver of systems with it."""
         return Shortcuts(self.n - 1, self.jacobian, self.bordered_solver)
-
-    def march(
-        self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
-    ) -> March:
-        """Pieces of the curve from ``start`` (n,) along ``tangent`` (n,), by
-        collocation."""
-        return march_by_collocation(self, start, tangent, settings, RULES)
 
     def bordered_solver(self, point: np.ndarray, tangent: np.ndarray) -> Solver:
         """What solves systems with F' at a point (n,), over the magnitude, and the row

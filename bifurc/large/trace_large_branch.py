@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -35,10 +35,9 @@ SHORTER = 0.1  # a second step, over the first, which shows the error of a diffe
 SETTLED = 1e-9  # a step after which the next one, its square, would be rounding
 
 
-def _default_tracing() -> TraceSettings:
-    return TraceSettings(
-        order=6, tolerance=1e-6, shortest=1e-7, longest=1.0, max_length=6.0
-    )
+TRACING = TraceSettings(
+    order=6, tolerance=1e-6, shortest=1e-7, longest=1.0, max_length=6.0
+)
 
 
 @dataclass(frozen=True)
@@ -52,7 +51,7 @@ class LargeSettings:
     `ProblemError` for negative numbers and other kinds of things.
     """
 
-    tracing: TraceSettings = field(default_factory=_default_tracing)
+    tracing: TraceSettings = TRACING
     values: int = 0
     places: int = 6
     both_ways: bool = False

@@ -86,15 +86,10 @@ def blur_along(problem: System, branch: Branch) -> float:
     return float(np.sort(distances)[len(PLACES) // 2])
 
 
-def change_by_rounding(problem: System, branch: Branch) -> float:
-    """The largest change of an unknown along a curve, over the scale, that rounding may
-    make; the largest rate as well."""
-    return change_by_blur(blur_along(problem, branch))
-
-
 def change_by_blur(blur: float) -> float:
-    """That of a curve of which points are known to a distance ``blur``, over the
-    scale."""
+    """The largest change of an unknown along a curve, over the scale, that rounding may
+    make where its points are known to a distance ``blur``, over the scale; the largest
+    rate as well."""
     return MADE * blur
 
 

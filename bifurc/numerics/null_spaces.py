@@ -98,8 +98,7 @@ def cosines_between_planes(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Cosines (..., d), decreasing, of the principal angles between spaces with
     orthonormal bases (..., n, d)."""
     products = np.swapaxes(one, -1, -2) @ other
-    cosines: np.ndarray = np.linalg.svd(products, compute_uv=False)
-    return cosines
+    return np.linalg.svd(products, compute_uv=False)
 
 
 def _padded(sigma: np.ndarray, n: int) -> np.ndarray:

@@ -24,7 +24,7 @@ from bifurc.routes.places import (
 from bifurc.routes.surface_legs import Crossing
 from bifurc.routes.ways import GOAL, START, Stage, WayGraph
 from bifurc.routes.wishes import NONE, Wishes
-from bifurc.surfaces.geodesic import place_at, resample
+from bifurc.surfaces.geodesic import place_at, spread
 from bifurc.torus import wrap
 
 NO_WAY = 1e-9  # length below which a leg is none
@@ -238,7 +238,7 @@ def _leg_over_surface(
     way = crossing.path if forwards else crossing.path[::-1]
     path = way[:1]
     if intervals:
-        path = resample(search.surface_problem(k), search.charts[k], way, intervals)
+        path = spread(search.surface_problem(k), search.charts[k], way, intervals)
     name = search.atlas.surfaces[k].name
     return Leg(name, 0.0, crossing.length, at, travel, 2, path)
 

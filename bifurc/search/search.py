@@ -233,7 +233,8 @@ class Search:
         and beside one in a narrow valley of |F| they come down too slowly."""
         if not self.problem.accuracy.is_exact or self.problem.n < 2:
             return
-        seeds = self.findings.book.seeds
+        findings = self.findings
+        seeds = findings.book.seeds
         order = np.argsort(seeds.gaps, kind="stable")
         ends, gaps = seeds.missed[order], seeds.gaps[order]
         is_inside = self.problem.domain.are_inside(ends)
@@ -242,7 +243,7 @@ class Search:
         for k in np.flatnonzero(is_near):
             if self.run.is_over:
                 return
-            if self._is_known_about(ends[k]):
+            if findings.is_known_about(ends[k], BRANCH_REACH, SEED_REACH):
                 continue
             looks += 1
             sighting = None
@@ -251,19 +252,16 @@ class Search:
             if sighting is not None:
                 yield half_branch_starts(sighting.point)
             elif stops_short(float(gaps[k])):
-                self.findings.gaps_of_stops.append(float(gaps[k]))
+                findings.gaps_of_stops.append(float(gaps[k]))
         is_slow = is_inside & ~is_near
         is_slow[is_slow] = ~is_at_rest(self._slopes(ends[is_slow]))
         for end in ends[is_slow][:LOOKS_WHERE_SLOW]:
-            if self.run.is_over or self._is_known_about(end):
+            is_known = findings.is_known_about(end, BRANCH_REACH, SEED_REACH)
+            if self.run.is_over or is_known:
                 continue
             sighting = self.points.near(end, 2, SLOW_REACH)
             if sighting is not None:
                 yield half_branch_starts(sighting.point)
-
-    def _is_known_about(self, end: np.ndarray) -> bool:
-        """Whether a branch, a singular point or an assembly is next to a point (n,)."""
-        return self.findings.is_known_about(end, BRANCH_REACH, SEED_REACH)
 
     def _slopes(self, ends: np.ndarray) -> np.ndarray:
         """The slopes (k,) of |F| at ends (k, n) of starts, over the size of F' there."""

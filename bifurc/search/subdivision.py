@@ -131,8 +131,7 @@ def _box(problem: Problem) -> np.ndarray:
     periods = problem.domain.periods
     turn = np.column_stack([-WIDER * periods, (1.0 + WIDER) * periods])
     is_circle = np.isfinite(periods) & np.isinf(problem.domain.bounds[:, 0])
-    box: np.ndarray = np.where(is_circle[:, None], turn, problem.domain.bounds)
-    return box
+    return np.where(is_circle[:, None], turn, problem.domain.bounds)
 
 
 class _Boxes(NamedTuple):
@@ -248,7 +247,7 @@ class _Division:
         """The arclength at which a branch does not hand over from one piece to the next,
         or from the last one of a closed curve to the first; None where it does, but
         beside singular points."""
-        begins, ends = branch.ends_of_pieces()
+        begins, ends = branch.compiled.ends_of_pieces(0)
         following = np.roll(begins, -1, axis=0)
         gaps = np.linalg.norm(self.problem.domain.difference(following, ends), axis=1)
         if not branch.closed:

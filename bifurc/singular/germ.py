@@ -32,7 +32,7 @@ from bifurc.singular.puiseux import (
     half_branches,
     invariants_of,
     pairs_of,
-    without_zeros,
+    terms_above,
 )
 from bifurc.system import PreciseResidual, System, relative_jacobians
 
@@ -226,10 +226,6 @@ class _Reduction:
         self.null_space = self.null_space @ turn
         self._axes = _matrix(self.null_space)
 
-    def distance_from(self, point: np.ndarray) -> float:
-        """How far the place is from a point (n,)."""
-        return float(np.linalg.norm(self.place() - point))
-
     def move_to(self, point: np.ndarray) -> None:
         """Go to a point (n,)."""
         self._u = _matrix(point[:, None])
@@ -406,7 +402,8 @@ def _settled_terms(
     for multiplicity in multiplicities:
         reduction.move_to(located.u)
         straight = _settled_as(reduction, multiplicity, terms)
-        if straight is not None and reduction.distance_from(located.u) < reach:
+        moved = float(np.linalg.norm(reduction.place() - located.u))
+        if straight is not None and moved < reach:
             return straight
     return None
 
@@ -453,7 +450,7 @@ def _settled_as(
     with mpmath.workdps(LAST + SPARE):
         unit = _own_unit(terms, multiplicity.order)
         straight = _straightened(terms, unit, multiplicity.order)
-        clean = without_zeros(straight.terms)
+        clean = terms_above(straight.terms)
         if min(i + j for i, j in clean) < multiplicity.order:
             return None
         return straight._replace(terms=clean)

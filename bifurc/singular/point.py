@@ -3,9 +3,11 @@ it, and its kind."""
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import dataclass
 from enum import Enum
-from typing import NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,7 +22,9 @@ class Mark(NamedTuple):
     fill: str = "white"
 
 
-SQUARE = Mark()
+TABLE: dict[str, Any] = tomllib.loads(
+    Path(__file__).with_suffix(".toml").read_text(encoding="utf-8")
+)
 
 
 class Kind(Enum):
@@ -38,93 +42,60 @@ class Kind(Enum):
     plural: str
     columns: tuple[str, ...]
 
-    def __new__(
-        cls,
-        value: str,
-        initial: str = "S",
-        mark: Mark = SQUARE,
-        title: str = "Other singular points",
-        plural: str = "",
-        columns: tuple[str, ...] = (),
-    ) -> Kind:
-        kind = object.__new__(cls)
-        kind._value_ = value
-        kind.initial, kind.mark, kind.title = initial, mark, title
-        kind.plural, kind.columns = plural, columns
-        return kind
+    def __init__(self, value: str):
+        facets = TABLE.get(value, {})
+        self.initial = facets.get("initial", "S")
+        self.mark = Mark(**facets.get("mark", {}))
+        self.title = facets.get("title", "Other singular points")
+        self.plural = facets.get("plural", "")
+        self.columns = tuple(facets.get("columns", ()))
 
     # --- where the rank of F' drops ---------------------------------------------------
 
     # Two or more branches meet.
-    BIFURCATION = "bifurcation", "B", Mark("o", 6.5), "Bifurcations"
+    BIFURCATION = "bifurcation"
     # One smooth branch passes; of a large problem, second order shows no other.
-    RANK_DROP = "rank drop", "R", Mark("D"), "Rank drops (a single branch passes)"
+    RANK_DROP = "rank drop"
     # Branches meet a component of dimension 2 or more.
-    DIMENSION_CHANGE = (
-        "dimension change",
-        "D",
-        SQUARE,
-        "Changes of dimension (a surface is met)",
-    )
+    DIMENSION_CHANGE = "dimension change"
     # Two half-branches leave to the same side.
-    CUSP = ("cusp",)
+    CUSP = "cusp"
     # No branch passes.
-    ISOLATED = ("isolated",)
+    ISOLATED = "isolated"
     # The point lies on a component of dimension 2 or more, and no branch passes.
-    SURFACE = ("singular point of a surface",)
+    SURFACE = "singular point of a surface"
     # Two ways of looking disagree.
-    UNDECIDED = ("undecided",)
+    UNDECIDED = "undecided"
     # Of a large problem: other curves pass in directions of their own.
-    CROSSING = ("crossing",)
+    CROSSING = "crossing"
     # The rank drops by two or more, and the directions of other curves are not computed.
-    MULTIPLE = ("multiple singular point, directions not computed",)
+    MULTIPLE = "multiple singular point, directions not computed"
     # The smallest singular value has a minimum above zero.
-    NEAR_MISS = ("near miss",)
+    NEAR_MISS = "near miss"
 
     # --- along a parameter ------------------------------------------------------------
 
     # The parameter turns back: a limit point.
-    FOLD = (
-        "fold",
-        "F",
-        SQUARE,
-        "Folds ({parameter} turns back)",
-        "folds",
-        ("unknowns", "error"),
-    )
+    FOLD = "fold"
     # A pair of eigenvalues crosses the imaginary axis.
-    HOPF = (
-        "Hopf point",
-        "H",
-        Mark("^"),
-        "Hopf points",
-        "Hopf points",
-        ("unknowns", "frequency", "pair"),
-    )
+    HOPF = "Hopf point"
     # A function of the user's takes a value.
-    EVENT = "event", "E", SQUARE, "Events", "events", ("event", "unknowns")
+    EVENT = "event"
     # It takes the value and turns back, or stays within rounding of it.
-    TOUCH = (
-        "touch",
-        "T",
-        Mark("d"),
-        "Events that are touched",
-        "touches",
-        ("event", "unknowns", "error"),
-    )
+    TOUCH = "touch"
 
     # --- how branches cross, seen along a parameter -----------------------------------
 
     # Both go on to either side.
-    TRANSCRITICAL = "transcritical", "B", Mark("o", 6.5, "0.85")
+    TRANSCRITICAL = "transcritical"
     # One of them turns back. Whether it is stable where the other is not, is not known.
-    PITCHFORK = "pitchfork", "B", Mark("o", 6.5, "0.6")
+    PITCHFORK = "pitchfork"
     # The one that turns back has fewer unstable directions than the other beside it.
-    SUPERCRITICAL = "supercritical pitchfork", "B", Mark("o", 6.5)
+    SUPERCRITICAL = "supercritical pitchfork"
     # It has more of them.
-    SUBCRITICAL = "subcritical pitchfork", "B", Mark("o", 6.5, "black")
+    SUBCRITICAL = "subcritical pitchfork"
     # More than two branches, or one that stands still without turning back.
-    OTHER = "branch point", "B", Mark("o", 6.5)
+    OTHER = "branch point"
 
 
 @dataclass(frozen=True)

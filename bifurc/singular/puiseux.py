@@ -112,14 +112,14 @@ class Series:
 def order_of(terms: Terms) -> int:
     """The degree of the lowest terms that plainly do not vanish, 0 where none is: the
     multiplicity of the origin."""
-    return min((i + j for i, j in _plain(terms)), default=0)
+    return min((i + j for i, j in terms_above(terms, IN_DOUBT)), default=0)
 
 
 def half_branches(terms: Terms, degree: int) -> tuple[HalfBranch, ...] | None:
     """The real half-branches of f = 0 at the origin, of which the ``terms`` up to a total
     ``degree`` are known and none but those that vanish are left out; None where they do
     not separate the branches. No branch may be tangent to x = 0."""
-    if (0, order_of(terms)) not in _plain(terms):
+    if (0, order_of(terms)) not in terms_above(terms, IN_DOUBT):
         return None
     halves: list[HalfBranch] = []
     for side in (1, -1):
@@ -137,7 +137,7 @@ def half_branches(terms: Terms, degree: int) -> tuple[HalfBranch, ...] | None:
 def branches(terms: Terms, degree: int) -> tuple[Series, ...] | None:
     """All branches of f = 0 at the origin, real and complex, each once, of ``terms`` as
     for `half_branches`; None where these do not separate them."""
-    if (0, order_of(terms)) not in _plain(terms):
+    if (0, order_of(terms)) not in terms_above(terms, IN_DOUBT):
         return None
     own = _separated(_Remainder(terms, degree + 1), _roots_of_branches)
     if own is None:
@@ -204,7 +204,7 @@ def _separated(first: _Remainder, roots_of: _RootsOf) -> list[_Remainder] | None
         if not waiting:
             return separated
         remainder = waiting.pop()
-        plain = _plain(remainder.terms)
+        plain = terms_above(remainder.terms, IN_DOUBT)
         multiplicity = min(j for i, j in plain if i == 0)
         if multiplicity == 1:
             separated.append(remainder)
@@ -276,7 +276,7 @@ def _substituted(remainder: _Remainder, edge: _Edge, root: mpmath.mpf) -> _Remai
             share = comb(j, k) * value * root ** (j - k)
             terms[power, k] = terms.get((power, k), mpmath.mpf(0)) + share
     return _Remainder(
-        without_zeros(terms),
+        terms_above(terms),
         known,
         remainder.ramification * b,
         (*(b * e for e in remainder.exponents), _exponent(remainder, edge)),
@@ -290,18 +290,9 @@ def _exponent(remainder: _Remainder, edge: _Edge) -> int:
     return before * edge.slope.denominator + edge.slope.numerator
 
 
-def without_zeros(terms: Terms) -> dict[tuple[int, int], mpmath.mpf]:
-    """The terms that do not vanish, in doubt or not."""
-    return _terms_above(terms, 1.0)
-
-
-def _plain(terms: Terms) -> dict[tuple[int, int], mpmath.mpf]:
-    """The terms that plainly do not vanish."""
-    return _terms_above(terms, IN_DOUBT)
-
-
-def _terms_above(terms: Terms, unit: float) -> dict[tuple[int, int], mpmath.mpf]:
-    """The terms that do not vanish beside the largest, in a ``unit``."""
+def terms_above(terms: Terms, unit: float = 1.0) -> dict[tuple[int, int], mpmath.mpf]:
+    """The terms that do not vanish beside the largest, in doubt or not; in the ``unit``
+    `IN_DOUBT` those that plainly do not."""
     largest = max((abs(value) for value in terms.values()), default=mpmath.mpf(0))
     return {
         key: value

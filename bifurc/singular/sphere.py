@@ -248,14 +248,12 @@ class _FourierSeries:
 
     def __call__(self, angles: np.ndarray) -> np.ndarray:
         """Values at angles (...)."""
-        values: np.ndarray = (self._waves(angles) @ self._coefficients).real
-        return values
+        return (self._waves(angles) @ self._coefficients).real
 
     def rates(self, angles: np.ndarray) -> np.ndarray:
         """Derivatives at angles (...)."""
         terms = 1j * self._orders * self._coefficients
-        rates: np.ndarray = (self._waves(angles) @ terms).real
-        return rates
+        return (self._waves(angles) @ terms).real
 
     def _waves(self, angles: np.ndarray) -> np.ndarray:
         """The terms of the series (..., k) at angles (...), without coefficients."""
@@ -271,10 +269,6 @@ class _FourierSeries:
             self._coefficients, low - FIRST, high - FIRST, ROOT_TOLERANCE
         )
         return FIRST + offsets
-
-    def times_sign(self, angles: np.ndarray, signs: np.ndarray) -> np.ndarray:
-        """Values at angles (...), times ``signs`` (...)."""
-        return np.asarray(signs * self(angles))
 
 
 class _Zeros(NamedTuple):
@@ -299,7 +293,8 @@ def _find_zeros(function: _FourierSeries, zero: float) -> _Zeros:
 
         at = ANGLES[dips]
         bracket = (at - step, at, at + step)
-        bottom = find_minimum(function.times_sign, bracket, args=(signs[dips],))
+        upright = (signs[dips],)
+        bottom = find_minimum(lambda x, sign: sign * function(x), bracket, args=upright)
         # a dip that goes through zero has a sign change on either side
         is_crossed = bottom.f_x < -zero
         middle = bottom.x[is_crossed]
@@ -371,8 +366,7 @@ def _without_duplicates(points: np.ndarray, radius: float) -> np.ndarray:
     graph = csr_array((links, tuple(pairs.T)), shape=(count, count))
     _, cluster = connected_components(graph, directed=False)
     _, first = np.unique(cluster, return_index=True)
-    distinct: np.ndarray = points[first]
-    return distinct
+    return points[first]
 
 
 def _separate_surfaces(problem: Problem, points: np.ndarray) -> Section:

@@ -75,20 +75,12 @@ def shortest_path(
         radius = float(np.median(charts.radii[chain]))
         coarse = max(spacing, COARSE * radius)
         intervals = _count_intervals(points, coarse)
-        paths.append(_spread(problem, charts, points, intervals, ROUNDS))
+        paths.append(spread(problem, charts, points, intervals, ROUNDS))
     path = min(paths, key=path_length)
     intervals = _count_intervals(path, spacing)
     if 2 * len(path) < 3 * intervals:
-        return resample(problem, charts, path, intervals)
+        return spread(problem, charts, path, intervals)
     return path
-
-
-def resample(
-    problem: Problem, charts: ChartAtlas, path: np.ndarray, intervals: int
-) -> np.ndarray:
-    """A path (intervals + 1, n) on the surface along a tight one (k, n), evenly spread
-    and tight as well. Raises `SurfacePathError`."""
-    return _spread(problem, charts, path, intervals, FINAL_ROUNDS)
 
 
 def place_at(
@@ -217,17 +209,18 @@ def _points_along(
 # --- pulling --------------------------------------------------------------------------
 
 
-def _spread(
+def spread(
     problem: Problem,
     charts: ChartAtlas,
     points: np.ndarray,
     intervals: int,
-    rounds: int,
+    rounds: int = FINAL_ROUNDS,
 ) -> np.ndarray:
     """A path (intervals + 1, n) on the surface, evenly spread along the chords between
-    ``points`` (k, n), after up to so many rounds of pulling."""
-    path = _place_evenly(points, intervals)
-    _lift(problem, charts, path)
+    ``points`` (k, n), after up to so many rounds of pulling: few where the points are
+    those of a tight path. Raises `SurfacePathError`."""
+    path = _place_along(points, np.linspace(0.0, 1.0, intervals + 1))
+    path[1:-1] = _lifted(problem, charts, path[1:-1])
     if len(path) < 3 or _chord_lengths(path).mean() == 0:
         return path
     tight_path = _PulledPath(problem, charts, path)
@@ -235,11 +228,6 @@ def _spread(
         if not tight_path.pull():
             break
     return tight_path.path
-
-
-def _lift(problem: Problem, charts: ChartAtlas, path: np.ndarray) -> None:
-    """Correct the inner points of a path (k, n) onto the surface, in place."""
-    path[1:-1] = _lifted(problem, charts, path[1:-1])
 
 
 def _lifted(problem: Problem, charts: ChartAtlas, points: np.ndarray) -> np.ndarray:
@@ -373,12 +361,6 @@ def _count_intervals(points: np.ndarray, spacing: float) -> int:
     """How many intervals of about ``spacing`` the chords make: an even number."""
     length = float(_chord_lengths(points).sum())
     return 2 * max(1, round(length / (2.0 * spacing)))
-
-
-def _place_evenly(points: np.ndarray, intervals: int) -> np.ndarray:
-    """Points (intervals + 1, n) evenly spread along the chords between ``points`` (k,
-    n), the ends included."""
-    return _place_along(points, np.linspace(0.0, 1.0, intervals + 1))
 
 
 def _place_along(points: np.ndarray, shares: np.ndarray) -> np.ndarray:

@@ -43,7 +43,7 @@ from bifurc.equations.expression import (
     parse_expression,
 )
 from bifurc.equations.symbolic import SymbolicFunction, SymbolicProblem
-from bifurc.errors import BifurcError, ProblemError
+from bifurc.errors import PathError, ProblemError
 from bifurc.files.text_file import TextFileError, read_toml
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
@@ -60,13 +60,8 @@ RATE = re.compile(r"\s*([^\W\d]\w*)\s*'\s*==?")
 INFINITE = {"inf": math.inf, "+inf": math.inf, "-inf": -math.inf}
 
 
-class EquationFileError(BifurcError, ValueError):
-    """A file of equations that cannot be used: which file, and what in it is wrong."""
-
-    def __init__(self, path: Path | str, message: str):
-        self.path = str(path)
-        self.message = message
-        super().__init__(f"{path}: {message}")
+class EquationFileError(PathError):
+    """A file of equations that cannot be used."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, TypeVar
 
 import click
@@ -16,6 +16,7 @@ from linkages.app.options import HoldOptions
 from linkages.catalogue import entry
 from linkages.entry import Entry, Linkage, Parameter, ParameterKind
 from linkages.file import read_precisely
+from linkages.files.csv_table import from_modified
 from linkages.linkage import is_linkage_file, load
 from linkages.loop import LARGEST, SMALLEST, Loop
 from linkages.networks.entries import NETWORKS, NetworkEntry
@@ -185,6 +186,11 @@ def hold_joints(text: str, linkage: Linkage | Mechanism, hold: HoldOptions) -> I
     """
     if hold == HoldOptions():
         return Inputs(linkage)
+    if hold.is_modified:
+        refusal = f"--modified-dh: it takes a table, and {text} is none"
+        table = require_kind(linkage, Linkage, refusal).loop
+        linkage = Linkage(from_modified(table))
+        return hold_joints(text, linkage, replace(hold, is_modified=False))
     if hold.is_without_centre:
         _require_network(text, linkage)
     from linkages.mechanisms.mechanism import Mechanism

@@ -8,36 +8,19 @@ from __future__ import annotations
 
 import difflib
 from importlib import import_module
+from pkgutil import iter_modules
 
 import click
 
 from bifurc.errors import BifurcError
+from linkages.app import commands
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.output import library_messages
 
-# each in a module of its own, `linkages.app.commands`
-COMMANDS = (
-    "animate",
-    "clearance",
-    "convert",
-    "export",
-    "figure",
-    "follow",
-    "identify",
-    "list",
-    "map",
-    "network",
-    "route",
-    "show",
-    "solve",
-    "special",
-    "sweep",
-    "tolerance",
-    "verify",
-    "view",
-)
-
-
+# each in a module of its own
+COMMANDS = [
+    module.name.removesuffix("_command") for module in iter_modules(commands.__path__)
+]
 LONGEST = 500  # characters of an error
 
 
@@ -59,7 +42,7 @@ class Commands(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """The names of the commands."""
-        return list(COMMANDS)
+        return COMMANDS
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """The command of a name, just imported; None where there is none."""

@@ -131,21 +131,24 @@ def seed_option(text: str) -> Option:
     return number_option("--seed", click.IntRange(0, LARGEST_SEED), 0, text)
 
 
-def with_record(
-    command: Command, name: str, record: type, options: Mapping[str, Option]
-) -> Command:
-    """``command`` with ``options`` by the names of their values: it takes all of them
+def record_options(
+    name: str, record: type, options: Mapping[str, Option]
+) -> Callable[[Command], Command]:
+    """What gives a command ``options`` by the names of their values: it takes all of them
     as one ``record``, whose fields are so called, behind ``name``."""
 
-    @wraps(command)
-    def taking_record(**values: object) -> None:
-        own = {key: values.pop(key) for key in options}
-        command(**{name: record(**own)}, **values)
+    def with_options(command: Command) -> Command:
+        @wraps(command)
+        def taking_record(**values: object) -> None:
+            own = {key: values.pop(key) for key in options}
+            command(**{name: record(**own)}, **values)
 
-    decorated: Command = taking_record
-    for option in reversed(list(options.values())):
-        decorated = option(decorated)
-    return decorated
+        decorated: Command = taking_record
+        for option in reversed(list(options.values())):
+            decorated = option(decorated)
+        return decorated
+
+    return with_options
 
 
 @dataclass(frozen=True)
@@ -199,25 +202,23 @@ SEARCH_OPTIONS: dict[str, Option] = {
         help="End the search after so long, with what was found.  [default: none]",
     ),
 }
-
-
-def search_options(command: Command) -> Command:
-    """``command`` with the options of a search, which it takes as one `SearchOptions`
-    called ``search``."""
-    return with_record(command, "search", SearchOptions, SEARCH_OPTIONS)
+search_options = record_options("search", SearchOptions, SEARCH_OPTIONS)
 
 
 @dataclass(frozen=True)
 class HoldOptions:
-    """Joints of a mechanism that are held: what stands on the command line.
+    """Joints of a mechanism that are held, and how a table is read: what stands on the
+    command line.
 
     ``locks`` are "J=40" each, ``driver`` is the joint that has to move all others.
     ``is_without_centre``: of a network only the loop that its outer bars leave.
+    ``is_modified``: in the rows of a table stand the links before the joints.
     """
 
     locks: tuple[str, ...] = ()
     driver: str | None = None
     is_without_centre: bool = False
+    is_modified: bool = False
 
     @property
     def names(self) -> str:
@@ -226,6 +227,7 @@ class HoldOptions:
             "--lock": bool(self.locks),
             "--drive": self.driver is not None,
             "--without-centre": self.is_without_centre,
+            "--modified-dh": self.is_modified,
         }
         return ", ".join(name for name, is_given in given.items() if is_given)
 
@@ -257,13 +259,14 @@ HOLD_OPTIONS: dict[str, Option] = {
         is_flag=True,
         help="Of a network with locks, take the single loop that its outer bars leave.",
     ),
+    "is_modified": click.option(
+        "--modified-dh",
+        "is_modified",
+        is_flag=True,
+        help="Read a table in the modified convention of Denavit and Hartenberg.",
+    ),
 }
-
-
-def hold_options(command: Command) -> Command:
-    """``command`` with the options for joints that are held, which it takes as one
-    `HoldOptions` called ``hold``."""
-    return with_record(command, "hold", HoldOptions, HOLD_OPTIONS)
+hold_options = record_options("hold", HoldOptions, HOLD_OPTIONS)
 
 
 form_option = click.option(
@@ -292,9 +295,10 @@ free_param_option = click.option(
 )
 
 
-def _say_more(ctx: click.Context, param: click.Parameter, value: bool) -> None:
+def _say_more(ctx: click.Context, param: click.Parameter, value: bool) -> bool:
     if value:
         say_more()
+    return value
 
 
 verbose_option = click.option(
@@ -305,16 +309,24 @@ verbose_option = click.option(
     callback=_say_more,
     help="Say more on standard error.",
 )
+whole_option = click.option(
+    "-v",
+    "--verbose",
+    is_flag=True,
+    callback=_say_more,
+    help="Show all tables and claims, and say more on standard error.",
+)
 
 
 @dataclass(frozen=True)
 class AtlasOptions:
     """What atlas a command works on, besides its name: ``parameters`` of a linkage, how
-    joints are held, how it is searched."""
+    joints are held, how it is searched; and whether it is shown whole, ``verbose``."""
 
     parameters: tuple[str, ...] = ()
     search: SearchOptions = SearchOptions()
     hold: HoldOptions = HoldOptions()
+    verbose: bool = False
 
 
 def atlas_options(command: Command) -> Command:
@@ -326,11 +338,12 @@ def atlas_options(command: Command) -> Command:
         parameters: tuple[str, ...],
         search: SearchOptions,
         hold: HoldOptions,
+        verbose: bool,
         **values: object,
     ) -> None:
-        command(choice=AtlasOptions(parameters, search, hold), **values)
+        command(choice=AtlasOptions(parameters, search, hold, verbose), **values)
 
-    searched = search_options(verbose_option(taking_options))
+    searched = search_options(whole_option(taking_options))
     return hold_options(param_option(searched))
 
 
@@ -408,12 +421,7 @@ PRINT_OPTIONS: dict[str, Option] = {
         ),
     ),
 }
-
-
-def print_options(command: Command) -> Command:
-    """``command`` with the options of printed parts, which it takes as one
-    `PrintOptions` called ``printing``."""
-    return with_record(command, "printing", PrintOptions, PRINT_OPTIONS)
+print_options = record_options("printing", PrintOptions, PRINT_OPTIONS)
 
 
 class Words(click.ParamType[tuple[str, ...]]):
@@ -531,7 +539,4 @@ FIGURE_OPTIONS: dict[str, Option] = {
 }
 
 
-def figure_options(command: Command) -> Command:
-    """``command`` with the options of figures, which it takes as one `FigureOptions`
-    called ``figures``."""
-    return with_record(command, "figures", FigureOptions, FIGURE_OPTIONS)
+figure_options = record_options("figures", FigureOptions, FIGURE_OPTIONS)

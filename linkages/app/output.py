@@ -41,6 +41,12 @@ def say_json(document: Mapping[str, object] | Sequence[object]) -> None:
     say(json.dumps(document, allow_nan=False))
 
 
+def say_aside(text: str) -> None:
+    """Print what is no part of an answer, if anything, on standard error."""
+    if text:
+        click.echo(text, err=True)
+
+
 def _discard_standard_output() -> None:
     """Lead standard output to nowhere: what is left in its buffer would fail again when
     the program ends."""

@@ -159,7 +159,9 @@ class ClosedForm:
         )
 
     @cached_property
-    def _quadratic(self) -> Callable[..., Sequence[Number]]:
+    def evaluate_quadratic(self) -> Callable[..., Sequence[Number]]:
+        """Gives the coefficients (A, B, C) for a pair of the input joint and the
+        constants, of any number type."""
         return _compiled([*joint(1), *self._constant_symbols], list(self.quadratic))
 
     def evaluate_constants(self, parameters: Mapping[str, Number]) -> list[Number]:
@@ -168,10 +170,6 @@ class ClosedForm:
         tangents = [numbers.tan(parameters[name] / 2) for name in self.angles]
         lengths = [parameters[name] for name in self.lengths]
         return list(self._constants(*tangents, *lengths))
-
-    def evaluate_quadratic(self, first: Pair, constants: list[Number]) -> list[Number]:
-        """Coefficients (A, B, C) for a pair of the input joint, of any number type."""
-        return list(self._quadratic(*first, *constants))
 
     def evaluate_pairs(
         self, first: Pair, second: Pair | None, constants: list[Number]
@@ -194,7 +192,7 @@ class ClosedForm:
         second: tuple[np.ndarray, ...] = ()
         is_real = np.ones(len(theta_1), dtype=bool)
         if self.relation is not None:
-            coefficients = self._quadratic(*first, *constants)
+            coefficients = self.evaluate_quadratic(*first, *constants)
             a, b, c = (_broadcast(x, theta_1) for x in coefficients)
             second, is_real = _root(a, b, c, root)
         out = np.empty((len(theta_1), self.n))

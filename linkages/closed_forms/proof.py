@@ -101,7 +101,7 @@ def exact_angles(
     first = (t_1, one)
     second = None
     if form.relation is not None:
-        a, b, c = form.evaluate_quadratic(first, constants)
+        a, b, c = form.evaluate_quadratic(*first, *constants)
         if a == 0:
             return None
         square = _exact(b * b - 4 * a * c)

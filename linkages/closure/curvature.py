@@ -171,8 +171,7 @@ class _Chain:
         bounds = np.sqrt(0.25 + dual**2)
         both = np.logical_and.outer(self._turns, self._turns)
         one = np.logical_xor.outer(self._turns, self._turns)
-        result: np.ndarray = np.where(both, bounds, np.where(one, 0.5, 0.0))
-        return result
+        return np.where(both, bounds, np.where(one, 0.5, 0.0))
 
     def _sizes(self, reach: np.ndarray) -> np.ndarray:
         """How fast the point moves with each element (e,): as far as it is from the
@@ -188,8 +187,7 @@ class _Chain:
         both = np.logical_and.outer(self._turns, self._turns)
         one = np.logical_xor.outer(self._turns, self._turns)
         of_slide = np.where(one, self._before_stretched[later], 0.0)
-        result: np.ndarray = np.where(both, sizes[later], of_slide)
-        return result
+        return np.where(both, sizes[later], of_slide)
 
     def _of_rod(
         self, rod: Rod, sizes: np.ndarray, second: np.ndarray, distance: float

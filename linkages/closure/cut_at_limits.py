@@ -199,8 +199,7 @@ def cut_motions(structure: Structure, single: SingleLoop, branch: Branch) -> Str
         edges = np.unique(np.concatenate([cuts[0], turning]))
 
         def unknown(places: np.ndarray, column: int = column) -> np.ndarray:
-            values: np.ndarray = unknowns(places)[:, column]
-            return values
+            return unknowns(places)[:, column]
 
         cuts += [edges, _passes(unknown, edges, ends)]
     places = np.unique(np.concatenate(cuts))

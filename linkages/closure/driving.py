@@ -78,10 +78,7 @@ def _next_to(problem: ClosureSystem, point: np.ndarray) -> np.ndarray:
     rng = np.random.default_rng(0)
     starts = point + NEARBY * rng.normal(size=(STARTS, problem.n))
     ends, gaps = problem.project(starts)
-    closed: np.ndarray = ends[
-        is_start_solved(gaps) & (problem.domain.excess(ends) <= 0.0)
-    ]
-    return closed
+    return ends[is_start_solved(gaps) & (problem.domain.excess(ends) <= 0.0)]
 
 
 def _moves(mechanism: Mechanism, held: dict[str, float], driver: str) -> bool:
@@ -99,8 +96,7 @@ def _null_space(matrix: np.ndarray) -> np.ndarray:
     """An orthonormal basis (n, k) of what a matrix (m, n) maps to zero."""
     _, values, right = np.linalg.svd(matrix)
     rank = int(np.count_nonzero(~is_dependent_constraint(values)))
-    basis: np.ndarray = right[rank:].T
-    return basis
+    return right[rank:].T
 
 
 def _stands_still(rates: np.ndarray) -> bool:

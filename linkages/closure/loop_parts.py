@@ -17,10 +17,10 @@ from bifurc.system import (
     CurveNodes,
     March,
     MarchSettings,
-    MarchStatus,
     PreciseResidual,
     Shortcuts,
     SphereProjection,
+    compiled_march,
 )
 from linkages import _core
 from linkages.closure.parts import NEARLY_CLOSED, ClosureParts
@@ -100,27 +100,14 @@ class ScrewSystem:
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings
     ) -> March:
         """Taylor pieces of the motion from ``start`` (n,) along ``tangent`` (n,)."""
-        anchor, within = np.empty((0, self.n)), 0.0
-        if settings.anchor is not None:
-            anchor, within = np.array(settings.anchor[:2]), settings.anchor.within
-        status, pieces, steps, radii, residuals, _ = _core.march(
+        return compiled_march(
+            _core.march,
+            settings,
+            self._domain,
             start=start,
             tangent=tangent,
             geometry=self.geometry,
-            order=settings.order,
-            tolerance=settings.tolerance,
-            shortest=settings.shortest,
-            longest=settings.longest,
-            count=settings.count,
-            closing=settings.closing,
-            misclosure=settings.misclosure,
-            anchor=anchor,
-            within=within,
-            periods=self._domain.periods,
-            bounds=self._domain.bounds,
-            length=settings.length,
         )
-        return March(MarchStatus(status), pieces, steps, radii, residuals)
 
     def project(self, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Closed configurations (k, n) near ``starts`` and the residual (k,) left at

@@ -8,9 +8,8 @@ axes (`lock`, by the spatial triangle of `composite_link`).
 
 summation and subtraction: `superpose` along one link, `lock` straight or folded
 common link-pair: `superpose` along two links
-common Bennett-linkage: `superpose` with `isomerize`
+common Bennett-linkage: `superpose` with links exchanged
 kink angle: `lock` at any angle
-isomerization: `isomerize`
 hybrid on a common joint axis: `share_joint`
 
 Sources: Goldberg (1943); Waldron (1968); Wohlhart (1991a, 1991b); Baker (1993a); Song
@@ -116,20 +115,6 @@ def superpose(first: Loop, second: Loop, shared: int = 1) -> Loop:
     return _loop([*a[:n], *b[:m][::-1]], offsets, first, second)
 
 
-def isomerize(loop: Loop, joint: int) -> Loop:
-    """``loop`` with the two links at ``joint`` exchanged: the opposite pair of their
-    Bennett loop.
-
-    Raises `GeometryError` when the links have different Bennett ratios or the joint an
-    offset. Source: Wohlhart (1991b).
-    """
-    _refuse_no_bennett(loop, joint)
-    links = _links(loop)
-    i = _index(loop, joint)
-    links[i - 1], links[i] = links[i], links[i - 1]
-    return _loop(links, list(loop.offsets), loop)
-
-
 def share_joint(
     first: Loop,
     second: Loop,
@@ -191,20 +176,6 @@ def _refuse_different(one: Link, other: Link, name: str) -> None:
     gap = decided(sin((one.twist - other.twist) / 2))
     if gap is not None and abs(gap) > EQUAL:
         raise GeometryError(f"twist of {name}, difference", f"{2 * gap:.6g} rad", "0")
-
-
-def _refuse_no_bennett(loop: Loop, joint: int) -> None:
-    i = _index(loop, joint)
-    links = _links(loop)
-    before = links[i - 1]
-    after = links[i]
-    require_equal(
-        f"links at joint {joint}: length times sine of the other twist",
-        after.length * sin(before.twist),
-        before.length * sin(after.twist),
-        "for one Bennett ratio",
-    )
-    _refuse_offset(loop.offsets[i], f"offset of joint {joint}", loop)
 
 
 def _refuse_offset(value: Number, name: str, loop: Loop) -> None:

@@ -194,14 +194,10 @@ def _fourth(degrees: list[float], theta_1: float, root: int) -> float:
 
 
 FUNCTIONS: dict[str, Any] = {
-    "sin": np.sin,
-    "cos": np.cos,
-    "tan": np.tan,
+    **{name: getattr(np, name) for name in ("sin", "cos", "tan", "abs", "round")},
     "atan": np.arctan,
     "atan2": np.arctan2,
     "sqrt": np.emath.sqrt,
-    "abs": np.abs,
-    "round": np.round,
     "least": lambda *values: np.min(np.abs(values)),
     "unless": lambda is_left_out, value: np.where(is_left_out, np.nan, value),
     "m": _ratio,

@@ -14,7 +14,8 @@ words), and conditions that are only stricter than needed, are not listed.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import cache, partial
 from importlib import resources
 from pkgutil import resolve_name
@@ -106,15 +107,45 @@ def _word_erratum(see: str = "", seen: str = "", **fields: str) -> WordErratum:
 def compare_mobility(
     linkage: str, changes: Mapping[str, str], where: Mapping[str, str]
 ) -> Amounts:
-    """What keeps the default member from moving that has other numbers: formulas of
-    those that it has, and of names defined ``where``; and what keeps it as it is."""
-    right = entry(linkage).build()
-    numbers = numbers_of(table(right))
+    """What keeps the default member from moving that has other numbers, and what keeps
+    it as it is."""
+    printed = printed_loop(linkage, changes, where)
+    return Amounts(immobility(printed), immobility(entry(linkage).build()))
+
+
+def printed_loop(
+    linkage: str, changes: Mapping[str, str], where: Mapping[str, str] = NOTHING
+) -> Loop:
+    """The default member with the numbers that a source prints: formulas of those that
+    it has, and of names defined ``where``."""
+    numbers = numbers_of(table(entry(linkage).build()))
     names = {**FUNCTIONS, **numbers}
     define(names, where)
     others = numbers | {name: evaluate(text, names) for name, text in changes.items()}
-    printed = as_loop(np.reshape(list(others.values()), (-1, 3)).T)
-    return Amounts(immobility(printed), immobility(right))
+    return as_loop(np.reshape(list(others.values()), (-1, 3)).T, linkage)
+
+
+@dataclass(frozen=True)
+class PrintedTable:
+    """A table as a source prints it in an ``equation``, of which ``numbers`` are
+    wrong."""
+
+    source: str
+    equation: str
+    linkage: str
+    numbers: tuple[str, ...]
+    loop: Loop
+
+
+def printed_tables() -> Iterator[PrintedTable]:
+    """The misprinted tables of the sources, each with the default parameters."""
+    for one in _tables()["misprint"]:
+        if "table" in one:
+            loop = printed_loop(one["linkage"], one["table"], one.get("where", NOTHING))
+            numbers = tuple(one["table"])
+            yield PrintedTable(
+                one["source"], one["equation"], one["linkage"], numbers, loop
+            )
 
 
 def immobility(loop: Loop) -> float:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bifurc.figures.style import COLORS
-from linkages.export.gltf import BinaryGltf
+from linkages.export.gltf import ARRAY_BUFFER, BinaryGltf
 from linkages.export.model import Body, LinkageModel, Motion, Poses
 from linkages.mechanisms.joint import Shape
 from linkages.values import require
@@ -174,8 +174,8 @@ def _add_meshes(
 
 def _add_arrays(file: BinaryGltf, mesh: Mesh) -> dict[str, Any]:
     """The arrays of a mesh, as the format wants them."""
-    positions = file.add_vertices(mesh.positions)
-    normals = file.add_vertices(mesh.normals)
+    positions = file.add_floats(mesh.positions, ARRAY_BUFFER)
+    normals = file.add_floats(mesh.normals, ARRAY_BUFFER)
     attributes = {"POSITION": positions, "NORMAL": normals}
     return {"attributes": attributes, "indices": file.add_triangles(mesh.triangles)}
 

@@ -50,10 +50,6 @@ class BinaryGltf:
         }
         return self._add_array(array, accessor, target)
 
-    def add_vertices(self, values: np.ndarray) -> int:
-        """Positions or normals (k, 3) of vertices."""
-        return self.add_floats(values, ARRAY_BUFFER)
-
     def add_triangles(self, indices: np.ndarray) -> int:
         """Triangles (k, 3) by the numbers of their vertices."""
         array = np.ascontiguousarray(indices, dtype="<u2").ravel()

@@ -163,8 +163,7 @@ def _cubic(a: float, c: float, s: float, r: float) -> np.ndarray:
     # tan(delta/2) is x - r over 1 + r x
     left = np.convolve([1.0, r * (a * c - 1.0), a * c], [-s, 1.0])
     right = np.convolve([c * r, a + c, -a * r], [1.0, s])
-    cubic: np.ndarray = (a + c) * left - (1.0 - a * c) * right
-    return cubic
+    return (a + c) * left - (1.0 - a * c) * right
 
 
 def _signed(twist: float) -> list[float]:

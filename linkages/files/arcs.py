@@ -109,8 +109,7 @@ def _normal(what: str, start: np.ndarray, end: np.ndarray) -> np.ndarray:
     value = "between points in one direction from the centre, or opposite to it"
     is_arc = not is_one_direction(sine)
     require(is_arc, what, value, "an arc of a great circle")
-    normal: np.ndarray = across / sine
-    return normal
+    return across / sine
 
 
 def _assembled(figure: Arcs) -> Places:

@@ -342,8 +342,7 @@ def _normal(corners: np.ndarray) -> np.ndarray:
     spokes = corners - corners[0]
     double_area = np.cross(spokes[:-1], spokes[1:]).sum(axis=0)
     length = float(np.linalg.norm(double_area))
-    normal: np.ndarray = double_area / length if length > 0.0 else np.zeros(3)
-    return normal
+    return double_area / length if length > 0.0 else np.zeros(3)
 
 
 def _joint(

@@ -96,8 +96,7 @@ class _Model:
         """The place (3,) of a pose at which a joint is, which is kept in mind."""
         self.places.append(pose.place)
         self.rounding = max(self.rounding, pose.rounding)
-        point: np.ndarray = pose.matrix()[:3, 3]
-        return point
+        return pose.matrix()[:3, 3]
 
 
 def read_mjcf(root: Element, name: str) -> Assembly:

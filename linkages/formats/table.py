@@ -12,6 +12,7 @@ from bifurc.files.text_file import read_text
 from linkages.values import GeometryError, require
 
 if TYPE_CHECKING:
+    from linkages.loop import Loop
     from linkages.mechanisms.mechanism import Mechanism
 
 MOST_BYTES = 50_000_000  # of a file of another program
@@ -30,7 +31,7 @@ class FileFormat(NamedTuple):
 
     endings: tuple[str, ...]
     words: str = ""
-    read: Callable[[Path], Mechanism] | None = None
+    read: Callable[[Path], Loop | Mechanism] | None = None
     write: str = ""
     root: str = ""
     read_root: str = ""
@@ -99,10 +100,17 @@ def _read_fold(path: Path) -> Mechanism:
     return read_fold(read_text(path), path.stem)
 
 
+def _read_csv(path: Path) -> Loop:
+    from linkages.files.csv_table import read_csv
+
+    return read_csv(read_text(path), path.stem)
+
+
+TOML = FileFormat(
+    (".toml",), ".toml", write="linkages.files.mechanism_file:mechanism_toml"
+)
 FORMATS = (
-    FileFormat(
-        (".toml",), ".toml", write="linkages.files.mechanism_file:mechanism_toml"
-    ),
+    TOML,
     FileFormat(
         (".xml", ".mjcf"),
         ".xml or .mjcf (MJCF)",
@@ -121,6 +129,7 @@ FORMATS = (
     ),
     FileFormat((".world",), ".world (CUIK)", read=_read_world),
     FileFormat((".fold",), read=_read_fold),
+    FileFormat((".csv",), read=_read_csv),
 )
 ENDINGS = tuple(ending for one in FORMATS for ending in one.endings)
 WRITTEN = tuple(ending for one in FORMATS if one.write for ending in one.endings)

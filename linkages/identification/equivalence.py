@@ -1,6 +1,7 @@
 """When two Denavit-Hartenberg tables are one linkage.
 
-A table is an array (3, n): lengths, twists (rad), offsets. The same linkage, or its
+A table is an array (3, n): lengths, twists (rad), offsets. NaN stands for a number that
+is left out, which is as far off as nothing. The same linkage, or its
 mirror image, has many: it can be read from another joint or the other way round
 (`Reading`), every joint axis and every link can be reversed (`Signs`), and a half turn
 about x turns the sign of all offsets, which is the reversal of all axes:
@@ -202,8 +203,9 @@ def _link_costs(
     for sign in (1.0, -1.0):
         length = (target[..., 0, :] - sign * candidates[:, 0]) / unit
         half = (target[..., 1, :] - sign * candidates[:, 1]) / 2
-        without = length**2 + 4 * np.sin(half) ** 2
-        turned = length**2 + 4 * np.cos(half) ** 2
+        square = _without_gaps(length**2)
+        without = square + _without_gaps(4 * np.sin(half) ** 2)
+        turned = square + _without_gaps(4 * np.cos(half) ** 2)
         costs.append(np.stack([without, turned], axis=-1))
     return costs
 
@@ -213,4 +215,10 @@ def _joint_costs(target: np.ndarray, candidates: np.ndarray, unit: float) -> np.
     given = np.atleast_2d(target[..., 2, :])
     offsets = candidates[:, 2]
     squares = [(given - offsets) ** 2, (given + offsets) ** 2]
-    return np.asarray(np.stack(squares, axis=-1) / unit**2)
+    return _without_gaps(np.stack(squares, axis=-1) / unit**2)
+
+
+def _without_gaps(costs: np.ndarray) -> np.ndarray:
+    """Costs, those of numbers that are left out being 0."""
+    known: np.ndarray = np.nan_to_num(costs, nan=0.0)
+    return known

@@ -24,7 +24,6 @@ from linkages.identification.recovery import (
     Row,
     plain_guess,
     plain_parameters,
-    plain_places,
 )
 from linkages.loop import Loop
 from linkages.values import GeometryError
@@ -37,12 +36,14 @@ STEPS = 8  # of Gauss-Newton
 FITTED = 3  # candidates that are fitted
 STEP = 1e-7  # of a difference quotient
 PARTS = (1.0, 0.3, 0.05)  # of a step, tried in turn until it is an improvement
+SCANNED = 1.0  # points of a scan that miss by more are not followed
 LONGEST_TURN = 0.2  # rad, of a hidden angle in one step
 
 
 @dataclass(frozen=True)
 class View:
-    """A table (3, n) as it reads one way, and that in normal form."""
+    """A table (3, n) as it reads one way, NaN for a number that is left out, and that in
+    normal form with a guess in its place."""
 
     reading: Reading
     values: np.ndarray
@@ -90,15 +91,17 @@ def views_of(given: np.ndarray) -> tuple[View, ...]:
 
 def joints_of(entry: Entry) -> int:
     """The number of joints of the entry's members."""
-    return int(_unchanged(entry.construct, entry.parameters).shape[1])
+    return int(changed_by(entry, ()).shape[1])
 
 
-def best_member(entry: Entry, views: Sequence[View], unit: float) -> Member | None:
+def best_member(
+    entry: Entry, views: Sequence[View], unit: float, reach: float = NEAR
+) -> Member | None:
     """The member of ``entry`` nearest to a table in one of its ``views``, or None when
     no view suggests one.
 
-    Lengths are measured in ``unit``. Where all views are far off, the member is the
-    best guess, not fitted.
+    Lengths are measured in ``unit``. Guesses that miss by less than ``reach`` are
+    fitted; where all views are farther off, the member is the best guess.
     """
     with np.errstate(all="ignore"):
         candidates = _candidates(entry, views, unit)
@@ -109,23 +112,23 @@ def best_member(entry: Entry, views: Sequence[View], unit: float) -> Member | No
     gaps = compare(targets, tables, unit)
     # of equals the first, read as given
     order = np.argsort(np.round(gaps.exact, 10), kind="stable")
-    near = [k for k in order[:FITTED] if gaps.exact[k] < NEAR]
+    near = [k for k in order[:FITTED] if gaps.exact[k] < reach]
     chosen = near or order[:1]
     members = [_member(candidates[k], unit) for k in chosen]
     least = gaps.exact.min()
     if least > NEAR / 10:
         # twists modulo pi and signs of offsets may have been read off wrongly
-        limit = min(NEAR, least / 3)
+        limit = min(reach, least / 3)
         blind = np.argsort(gaps.blind)[: 8 * FITTED]
         others = [candidates[k] for k in blind if gaps.blind[k] < limit]
         members += _with_other_signs(entry, others, unit)
     members.sort(key=lambda member: round(member.distance, 10))
-    starts = [member for member in members[:FITTED] if member.distance < NEAR]
+    starts = [member for member in members[:FITTED] if member.distance < reach]
     fits = [_fit(entry, member, unit) for member in starts]
     return min(fits or members, key=lambda member: round(member.distance, 12))
 
 
-def _build(entry: Entry, parameters: Mapping[str, float]) -> np.ndarray | None:
+def build_table(entry: Entry, parameters: Mapping[str, float]) -> np.ndarray | None:
     """The table (3, n) of the member; None where the constructor refuses it."""
     try:
         return table(entry.construct(**parameters))
@@ -170,7 +173,8 @@ def _scanned_candidates(
     tables = np.array([point.values for point in points])
     gaps = compare(view.values, tables, unit).blind
     nearest = np.argsort(gaps)[: 2 * FITTED]
-    return [_descend(entry, points[k], unit, names) for k in nearest]
+    is_far = gaps > SCANNED
+    return [_descend(entry, points[k], unit, names) for k in nearest if not is_far[k]]
 
 
 def _built(
@@ -184,7 +188,7 @@ def _built(
         if numbers in seen:
             continue
         seen.add(numbers)
-        values = _build(entry, parameters)
+        values = build_table(entry, parameters)
         if values is not None and np.all(np.isfinite(values)):
             yield Candidate(view, parameters, values)
 
@@ -197,38 +201,56 @@ def _plain_parts_fit(
 ) -> np.ndarray:
     """For each view (v,), whether the numbers that no hidden parameter changes are near
     those of the table, signs apart; true where only the hidden parameters can tell."""
-    tables = [_build(entry, plain) for plain in plains]
+    tables = [build_table(entry, plain) for plain in plains]
     is_built = np.array([values is not None for values in tables])
     fits = np.ones(len(views), dtype=bool)
     if not is_built.any():
         return fits
-    fixed = _unchanged(entry.construct, entry.parameters)
+    fixed = ~changed_by(entry, hidden_parameters(entry))
     forms = np.array([view.form for view in views])[is_built]  # (k, 3, n)
-    others = normal_form(np.array([values for values in tables if values is not None]))
-    gaps = np.abs(np.abs(forms) - np.abs(others)) / unit
+    others = np.array([values for values in tables if values is not None])
+    gaps = blind_gaps(forms, others, unit)
+    fits[is_built] = ~np.any(gaps[:, fixed] > NEAR, axis=1)
+    return fits
+
+
+def blind_gaps(forms: np.ndarray, tables: np.ndarray, unit: float) -> np.ndarray:
+    """By how much the numbers of ``tables`` (k, 3, n) differ from tables in normal form
+    ``forms`` (k, 3, n), whatever axes and links are reversed, and twists modulo pi."""
+    others = normal_form(tables)
+    gaps: np.ndarray = np.abs(np.abs(forms) - np.abs(others)) / unit
     turn = np.abs(np.sin(forms[:, 1] - others[:, 1]))
     opposite = np.abs(np.sin(forms[:, 1] + others[:, 1]))
     # a link of no length may be reversed unseen
     is_short = np.minimum(forms[:, 0], others[:, 0]) < NEAR * unit
     gaps[:, 1] = np.where(is_short, np.minimum(turn, opposite), turn)
-    fits[is_built] = ~np.any(gaps[:, fixed] > NEAR, axis=1)
-    return fits
+    return gaps
+
+
+def hidden_parameters(entry: Entry) -> tuple[str, ...]:
+    """Names of the parameters that do not stand in the table as they are."""
+    plain = plain_parameters(entry)
+    return tuple(p.name for p in entry.parameters if p.name not in plain)
+
+
+def changed_by(entry: Entry, names: Iterable[str]) -> np.ndarray:
+    """Mask (3, n) of the numbers of the table that these parameters change."""
+    return _changed_by(entry.construct, entry.parameters, tuple(names))
 
 
 @cache
-def _unchanged(
-    construct: Callable[..., Loop], parameters: tuple[Parameter, ...]
+def _changed_by(
+    construct: Callable[..., Loop],
+    parameters: tuple[Parameter, ...],
+    names: tuple[str, ...],
 ) -> np.ndarray:
-    """Mask (3, n) of the numbers of the table that only plain parameters change."""
-    plain = plain_places(construct, parameters)
     defaults = {p.name: p.default for p in parameters}
     base = table(construct(**defaults))
-    mask = np.ones(base.shape, dtype=bool)
-    for p in parameters:
-        if p.name not in plain:
-            moved = table(construct(**{**defaults, p.name: p.default * 1.013}))
-            mask &= np.abs(moved - base) < 1e-12
-    return np.asarray(mask)
+    mask = np.zeros(base.shape, dtype=bool)
+    for name in names:
+        moved = table(construct(**{**defaults, name: defaults[name] * 1.013}))
+        mask |= np.abs(moved - base) >= 1e-12
+    return mask
 
 
 def _member(candidate: Candidate, unit: float) -> Member:
@@ -244,7 +266,8 @@ def _gaps(read: np.ndarray, values: np.ndarray, unit: float) -> np.ndarray:
     twists."""
     out: np.ndarray = (read - values) / unit
     out[1] = 2 * np.sin((read[1] - values[1]) / 2)
-    return out.ravel()
+    gaps: np.ndarray = np.nan_to_num(out, nan=0.0).ravel()
+    return gaps
 
 
 def _with_other_signs(
@@ -288,11 +311,12 @@ def _fit(entry: Entry, member: Member, unit: float) -> Member:
     reversals held."""
     names = tuple(member.parameters)
     scales = _scales(entry, names, unit)
+    counts = np.isfinite(member.view.values).ravel()
     for _ in range(STEPS):
         if member.distance < DONE:
             break
-        jacobian = _jacobian(entry, member, names, unit)
-        gaps = _gaps(member.view.values, member.signs.of(member.values), unit)
+        jacobian = _jacobian(entry, member, names, unit)[counts]
+        gaps = _gaps(member.view.values, member.signs.of(member.values), unit)[counts]
         step = np.linalg.lstsq(jacobian, gaps, rcond=1e-9)[0] * scales
         changes = dict(zip(names, step.tolist(), strict=True))
         after = _improved(entry, member, changes, unit)
@@ -316,12 +340,35 @@ def _improved(
         parameters = {
             name: value + part * step[name] for name, value in member.parameters.items()
         }
-        values = _build(entry, parameters)
-        if values is not None:
-            after = _member(Candidate(member.view, parameters, values), unit)
-            if after.distance < member.distance:
-                return after
+        after = rebuild(entry, member, parameters, unit)
+        if after is not None and after.distance < member.distance:
+            return after
     return None
+
+
+def refit(entry: Entry, member: Member, unit: float) -> Member:
+    """The member at the least distance in another ``unit`` of lengths, from a near
+    one."""
+    candidate = Candidate(member.view, member.parameters, member.values)
+    return _fit(entry, _member(candidate, unit), unit)
+
+
+def gaps_of(member: Member, unit: float) -> np.ndarray:
+    """By how much a table differs from the member beside it (3 n,), lengths and offsets
+    in ``unit``, twists in rad; 0 for a number that is left out."""
+    return _gaps(member.view.values, member.signs.of(member.values), unit)
+
+
+def rebuild(
+    entry: Entry, member: Member, parameters: dict[str, float], unit: float
+) -> Member | None:
+    """The member with other parameters, beside the same view of the given table; None
+    where the constructor refuses them."""
+    values = build_table(entry, parameters)
+    if values is None:
+        return None
+    after = _member(Candidate(member.view, parameters, values), unit)
+    return replace(after, freedom=member.freedom)
 
 
 def _scales(entry: Entry, names: tuple[str, ...], unit: float) -> np.ndarray:
@@ -342,7 +389,7 @@ def _jacobian(
         # from the side that the constructor accepts
         for step in (STEP, -STEP):
             moved = member.parameters[name] + step * scale
-            values = _build(entry, {**member.parameters, name: moved})
+            values = build_table(entry, {**member.parameters, name: moved})
             if values is not None:
                 column = _gaps(member.signs.of(values), base, unit) / step
                 break
@@ -364,7 +411,7 @@ def _descend(
         after = dict(candidate.parameters)
         for name, turn in zip(names, step, strict=True):
             after[name] += float(np.clip(turn, -LONGEST_TURN, LONGEST_TURN))
-        built = _build(entry, after)
+        built = build_table(entry, after)
         if built is None or np.abs(step).max() < 1e-10:
             break
         candidate = Candidate(start.view, after, built)

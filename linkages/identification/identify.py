@@ -21,15 +21,15 @@ from bifurc.errors import BifurcError
 from linkages.catalogue import catalogue, distinct_entries
 from linkages.construction.constructions import lock
 from linkages.construction.spatial_triangle import Kink
-from linkages.entry import Entry, ParameterKind
-from linkages.identification.equivalence import Reading, table
+from linkages.entry import Entry
+from linkages.identification.equivalence import table
 from linkages.identification.fitting import (
     NEAR,
-    Member,
     best_member,
     joints_of,
     views_of,
 )
+from linkages.identification.match import Match, make_match
 from linkages.loop import MIN_JOINTS, Loop
 from linkages.values import GeometryError
 
@@ -48,29 +48,6 @@ class ToleranceError(BifurcError, ValueError):
             f"tolerance: {value} is not allowed; it must be a finite number, 0 or "
             "greater"
         )
-
-
-@dataclass(frozen=True)
-class Match:
-    """A member of an entry that a table is, or nearly is.
-
-    ``parameters`` has lengths in the unit of the table, angles in rad; ``member`` is
-    the table (3, n) of that member, read and signed as the given one; ``residuals`` (3,
-    n) are given less member, lengths and offsets relative to the characteristic length,
-    twists in rad; ``distance`` is their norm. ``freedom`` says how many parameters
-    matter at this member, scale included. ``conditions`` pairs the text of each
-    condition of the entry with how far the given table is from it, see
-    `linkages.entry.Condition`.
-    """
-
-    entry: Entry
-    parameters: dict[str, float]
-    reading: Reading
-    member: np.ndarray
-    residuals: np.ndarray
-    distance: float
-    freedom: int
-    conditions: tuple[tuple[str, float | None], ...]
 
 
 @dataclass(frozen=True)
@@ -133,42 +110,13 @@ def identify(
         if joints_of(entry) == loop.n:
             member = best_member(entry, views, unit)
             if member is not None:
-                candidates.append(_match(member, entry, given, unit))
+                candidates.append(make_match(member, entry, given, unit))
     matches = [match for match in candidates if match.distance <= tolerance]
     matches.sort(key=lambda match: (match.freedom, len(match.parameters)))
     others = [match for match in candidates if tolerance < match.distance < NEAR]
     locked = _locked_joints(loop, tolerance) if locking else ()
     nearest = _nearest_first(others)
     return Identification(loop, tolerance, tuple(matches), nearest, locked)
-
-
-def _match(member: Member, entry: Entry, given: np.ndarray, unit: float) -> Match:
-    units = np.array([[unit], [1.0], [unit]])
-    residuals = (given - member.as_given) / units
-    residuals[1] = _wrapped(residuals[1])
-    # reversing twice is not reversing
-    labelled = member.signs.of(member.view.values) / units
-    conditions = [(one.text, one.residual(labelled)) for one in entry.conditions]
-    parameters = {}
-    for parameter in entry.parameters:
-        value = member.parameters[parameter.name]
-        if parameter.kind is ParameterKind.ANGLE:
-            value = float(_wrapped(np.array(value)))
-        parameters[parameter.name] = value
-    return Match(
-        entry,
-        parameters,
-        member.view.reading,
-        given - residuals * units,
-        residuals,
-        member.distance,
-        member.freedom,
-        tuple(conditions),
-    )
-
-
-def _wrapped(angles: np.ndarray) -> np.ndarray:
-    return np.asarray(np.mod(angles + np.pi, 2 * np.pi) - np.pi)
 
 
 def _nearest_first(matches: Sequence[Match]) -> tuple[Match, ...]:

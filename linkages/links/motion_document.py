@@ -203,5 +203,4 @@ def _rows(transform: np.ndarray, unit: float) -> list[float]:
     """The upper three rows of a transform (4, 4), one after the other."""
     rows = transform[:3].copy()
     rows[:, 3] /= unit
-    numbers: list[float] = rows.ravel().tolist()
-    return numbers
+    return rows.ravel().tolist()

@@ -30,12 +30,14 @@ from linkages.links.rods import link_corners, seat_heights
 from linkages.loop import Loop
 from linkages.mechanisms.joint import JointKind, Shape
 from linkages.readout.poses import Poses
-from linkages.scene import View, best_view, breadth, make_scene
+from linkages.scene import View, best_view, breadth, make_scene, view_of_plane
 from linkages.structure.plane import normal_of_plane
 from linkages.structure.structure import Structure
 
 STEP = 1e-5  # rad, along a branch: of the differences that are taken for speeds
 UPWARD = np.array([0.0, 0.0, 1.0])
+UPRIGHT = np.eye(3)
+FLAT = 1e-9  # sine of a twist of a planar loop
 
 Pair: TypeAlias = tuple[int, int]  # of bodies, by their numbers
 
@@ -140,8 +142,13 @@ class Links(Parts):
     whole = "linkage"
 
     def __init__(
-        self, loop: Loop, to_angles: Isometry, unknowns: Sequence[str] = ()
+        self,
+        loop: Loop,
+        to_angles: Isometry,
+        unknowns: Sequence[str] = (),
+        orientation: np.ndarray = UPRIGHT,
     ) -> None:
+        self.orientation = orientation
         self.loop = loop
         self.to_angles = to_angles
         self.unknowns = unknowns
@@ -203,7 +210,10 @@ class Links(Parts):
         return speeds
 
     def best_view(self, point: np.ndarray) -> View:
-        """The view of the scene of axes and common normals."""
+        """The view of the scene of axes and common normals; of a planar loop that from
+        straight above."""
+        if np.all(np.abs(np.sin(self.loop.arrays[1])) < FLAT):
+            return view_of_plane(UPWARD, self.orientation)
         return best_view(make_scene(self.loop, self.to_angles.points(point)))
 
     def page(self, points: np.ndarray) -> dict[str, Any]:
@@ -330,7 +340,11 @@ class Bodies(Parts):
         return [MARGIN * min(largest(a, b), largest(b, a)) for a, b in pairs]
 
     def best_view(self, point: np.ndarray) -> View:
-        """The same, the body at rest that is drawn so."""
+        """The same, the body at rest that is drawn so; of a planar mechanism that from
+        straight above."""
+        normal = normal_of_plane(self.structure.mechanism)
+        if normal is not None:
+            return view_of_plane(normal, UPRIGHT)
         return best_view_of_mechanism(self.structure, point)
 
     def page(self, points: np.ndarray) -> dict[str, Any]:

@@ -72,12 +72,3 @@ def link_corners(loop: Loop) -> np.ndarray:
             corners[i, 1] = corners[i, 0]
             corners[i, 2] = corners[i, 0]
     return corners
-
-
-def place_links(loop: Loop, theta: np.ndarray) -> np.ndarray:
-    """The corners (..., n, 4, 3) of all links at joint angles (..., n), rad, in the
-    frame of the link that joins the last joint to the first."""
-    frames = loop.frames(theta)[..., 1:, :, :]
-    turned = np.einsum("...irk,ick->...icr", frames[..., :3, :3], link_corners(loop))
-    placed: np.ndarray = turned + frames[..., None, :3, 3]
-    return placed

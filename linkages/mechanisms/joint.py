@@ -8,9 +8,11 @@ in radians.
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum, StrEnum
+from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -253,85 +255,24 @@ class KindFacets(NamedTuple):
     sdf: tuple[str, ...] = ()
 
 
-_AXIS = ("point", "direction")
-FACETS = {
-    JointKind.REVOLUTE: KindFacets(
-        (Move.TURN,),
-        ("",),
-        (Fit.POINT, Fit.AXIS),
-        _AXIS,
-        place=Place.ALONG,
-        is_shared=True,
-        mjcf="hinge",
-        sdf=("revolute", "continuous"),
-    ),
-    JointKind.PRISMATIC: KindFacets(
-        (Move.Z,),
-        ("",),
-        (Fit.LINE, Fit.AXIS, Fit.TURN),
-        ("direction",),
-        ("point",),
-        Place.ANYWHERE,
-        is_point_drawn_only=True,
-        shape=Shape.BOX,
-        has_rail=True,
-        mjcf="slide",
-        sdf=("prismatic",),
-    ),
-    JointKind.CYLINDRICAL: KindFacets(
-        (Move.TURN, Move.Z),
-        ("turn", "slide"),
-        (Fit.LINE, Fit.AXIS),
-        _AXIS,
-        place=Place.ALONG,
-        has_rail=True,
-    ),
-    JointKind.SPHERICAL: KindFacets(
-        (),
-        (),
-        (Fit.POINT,),
-        ("point",),
-        shape=Shape.BALL,
-        is_shared=True,
-        mjcf="ball",
-        sdf=("ball",),
-    ),
-    JointKind.UNIVERSAL: KindFacets(
-        (Move.TURN, Move.SECOND_TURN),
-        ("first", "second"),
-        (Fit.POINT, Fit.ANGLE),
-        (*_AXIS, "second_direction"),
-        sdf=("universal",),
-    ),
-    JointKind.HELICAL: KindFacets(
-        (Move.TURN,),
-        ("",),
-        (Fit.POINT, Fit.AXIS, Fit.TURN),
-        (*_AXIS, "pitch"),
-        place=Place.ALONG,
-        has_rail=True,
-        sdf=("screw",),
-    ),
-    JointKind.PLANAR: KindFacets(
-        (Move.X, Move.Y, Move.TURN),
-        ("x", "y", "turn"),
-        (Fit.PLANE, Fit.AXIS),
-        ("direction",),
-        ("point", "second_direction"),
-        Place.ANYWHERE,
-        shape=Shape.PLATE,
-    ),
-    JointKind.RIGID: KindFacets(
-        (),
-        (),
-        (Fit.POINT, Fit.AXIS, Fit.TURN),
-        (),
-        ("point",),
-        Place.ANYWHERE,
-        is_point_drawn_only=True,
-        sdf=("fixed",),
-    ),
-}
+def _read_facets() -> dict[JointKind, KindFacets]:
+    """What every kind of joint is, from the table beside this module."""
+    names = {"moves": Move, "fit": Fit, "place": Place, "shape": Shape}
+    table = Path(__file__).with_name("joint_kinds.toml").read_text(encoding="utf-8")
+    facets = {}
+    for kind, fields in tomllib.loads(table).items():
+        for key, value in fields.items():
+            if isinstance(value, list):
+                fields[key] = tuple(
+                    names[key][one] if key in names else one for one in value
+                )
+            elif key in names:
+                fields[key] = names[key][value]
+        facets[JointKind(kind)] = KindFacets(**fields)
+    return facets
+
+
+FACETS = _read_facets()
 # kinds whose point is for drawing alone
 DRAWN_ONLY = [kind for kind, facets in FACETS.items() if facets.is_point_drawn_only]
 

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from linkages.construction.numbers import Number
-from linkages.entry import Condition, Parameter, UnknownParameterError
+from linkages.entry import Condition, Parameter, UnknownParameterError, WithParameters
 from linkages.entry_table import read_records
 from linkages.networks.network import Network, build_network
 from linkages.networks.plan import PLANS, Plan
@@ -17,7 +15,7 @@ LENGTHS = ("b", "c", "d")  # that follow from the other parameters
 
 
 @dataclass(frozen=True)
-class NetworkEntry:
+class NetworkEntry(WithParameters):
     """One network: its ``plan``, its free ``parameters``, conditions in words, further
     ``remarks``, misprints of the source, and the ``mobility`` that is published.
 
@@ -42,15 +40,6 @@ class NetworkEntry:
     def title(self) -> str:
         """What the network is, in a few words."""
         return self.plan.title
-
-    @property
-    def defaults(self) -> dict[str, float]:
-        """Default value of every parameter."""
-        return {p.name: p.default for p in self.parameters}
-
-    def draw(self, rng: np.random.Generator) -> dict[str, float]:
-        """Random parameters within their ranges."""
-        return {p.name: float(rng.uniform(p.low, p.high)) for p in self.parameters}
 
     def build(self, **values: Number) -> Network:
         """The member with the given parameters (angles in rad), the others at their

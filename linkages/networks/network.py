@@ -152,8 +152,7 @@ def wrap_angles(angles: np.ndarray | float) -> np.ndarray:
 def other_angle(factor: np.ndarray | float, angle: np.ndarray) -> np.ndarray:
     """The angle v with tan(v/2) tan(angle/2) = ``factor``, modulo full turns."""
     half = np.asarray(angle) / 2
-    other: np.ndarray = 2 * np.arctan2(factor * np.cos(half), np.sin(half))
-    return other
+    return 2 * np.arctan2(factor * np.cos(half), np.sin(half))
 
 
 def build_network(

@@ -202,8 +202,7 @@ class Assembly:
         """Poses (k, 4 n, 4, 4) of what the segments move with at joint angles (k, n),
         rad."""
         links = self.loop.frames(theta)[:, 1:]
-        poses: np.ndarray = links[:, self.frames]
-        return poses
+        return links[:, self.frames]
 
     def clearances(self, placed: np.ndarray, pairs: np.ndarray) -> np.ndarray:
         """What is left (..., p) between the surfaces of pairs (p, 2) of segments; below

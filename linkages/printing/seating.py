@@ -215,11 +215,7 @@ def choose_seats(
         seatings.append(seating)
         if seating.is_apart:
             return seating
-    return max(seatings, key=_clearance)
-
-
-def _clearance(seating: Seating) -> float:
-    return seating.nearest.clearance
+    return max(seatings, key=lambda one: one.nearest.clearance)
 
 
 def _seating_within(
@@ -232,7 +228,7 @@ def _seating_within(
 ) -> Seating:
     """The best seats with heights within a range of some ``centre`` (n,)."""
     shape = (CANDIDATES, len(centre))
-    heights = _rounded(centre + generator.uniform(-reach, reach, shape))
+    heights = np.round(centre + generator.uniform(-reach, reach, shape), DECIMALS)
     seats = Seats(heights, generator.choice([-1.0, 1.0], shape))
     seatings = []
     for _ in range(CHECKS):
@@ -246,7 +242,7 @@ def _seating_within(
             break
         configurations = np.vstack([nearest.theta, trial.configurations])
         trial = replace(trial, configurations=configurations)
-    return max(seatings, key=_clearance)
+    return max(seatings, key=lambda one: one.nearest.clearance)
 
 
 def _improved(
@@ -291,11 +287,6 @@ def _children(
     heights = np.repeat(seats.heights, CHILDREN, axis=0)
     sides = np.repeat(seats.sides, CHILDREN, axis=0)
     heights += step * reach * generator.normal(size=heights.shape)
-    heights = _rounded(np.clip(heights, centre - reach, centre + reach))
+    heights = np.round(np.clip(heights, centre - reach, centre + reach), DECIMALS)
     is_turned = generator.random(sides.shape) < TURNOVER
     return Seats(heights, np.where(is_turned, -sides, sides))
-
-
-def _rounded(heights: np.ndarray) -> np.ndarray:
-    """Heights as they are shown, so that they can be given again."""
-    return np.round(heights, DECIMALS)

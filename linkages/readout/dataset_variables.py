@@ -7,7 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from bifurc.atlas import Atlas, Form
+from bifurc.atlas import Atlas
+from bifurc.files.layout import samples_of
 from bifurc.files.table import Variable, make_variable
 from linkages.readout.poses import rotation_vectors
 from linkages.readout.readout import Readout
@@ -44,7 +45,7 @@ def dataset_variables(atlas: Atlas, readout: Readout) -> dict[str, Variable]:
                 ("assembly_joint_variable", ASSEMBLY, _wrapped(readout, atlas.rigid)),
             )
         }
-    rotations = list(readout.rotations(readout.reference[None]))
+    rotations = list(readout.rotations(readout.structure.reference[None]))
     if rotations:
         long_name = "rotation vectors of spherical joints"
 
@@ -99,17 +100,10 @@ def _along_forms(
 ) -> np.ndarray:
     """The values (forms, samples, ...) at the samples of all forms, behind the last one
     of a form NaN."""
-    cells = [values_at(_samples(form)) for form in atlas.forms]
+    cells = [values_at(samples_of(form)) for form in atlas.forms]
     longest = max((len(cell) for cell in cells), default=0)
     shape = values_at(np.empty((0, len(atlas.names)))).shape[1:]
     result = np.full((len(cells), longest, *shape), np.nan)
     for row, cell in zip(result, cells, strict=True):
         row[: len(cell)] = cell
     return result
-
-
-def _samples(form: Form) -> np.ndarray:
-    """The points (k, n) at which the dataset has the unknowns of a form."""
-    if not len(form.branch.pieces):
-        return np.empty((0, form.branch.n))
-    return form.branch(form.profile.arclength.ravel())

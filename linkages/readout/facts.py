@@ -9,7 +9,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.decisions import unit_over_rounding
-from bifurc.numerics.blur import change_by_rounding
+from bifurc.numerics.blur import blur_along, change_by_blur
 from linkages.decisions import is_dependent_constraint, keeps_angle
 from linkages.readout.ranges import VariableRange, variable_ranges
 from linkages.readout.readout import Readout
@@ -108,7 +108,7 @@ def form_facts(atlas: Atlas, index: int, readout: Readout) -> FormFacts:
     places = np.array([0.0, branch.length, *turning])
     samples = branch.sample(SAMPLES)
     points = np.concatenate([branch(places), samples])
-    rounding = change_by_rounding(readout.closure, branch)
+    rounding = change_by_blur(blur_along(readout.closure, branch))
     groups = _groups(readout, samples, unit_over_rounding(keeps_angle, rounding))
     ranges = variable_ranges(readout, branch, points)
     return FormFacts(ranges, _still(readout, groups), groups)

@@ -86,8 +86,7 @@ def _regular_place(atlas: Atlas) -> np.ndarray | None:
     if atlas.forms:
         profile = atlas.forms[0].profile
         best = int(np.argmax(profile.smallest))
-        place: np.ndarray = atlas.forms[0].branch(float(profile.arclength.flat[best]))
-        return place
+        return atlas.forms[0].branch(float(profile.arclength.flat[best]))
     if atlas.surfaces:
         return np.array(atlas.surfaces[0].samples[0])
     return np.array(atlas.rigid[0]) if len(atlas.rigid) else None

@@ -48,8 +48,7 @@ class Poses:
             self._place_rod(poses, points, rod)
         frame = bodies.index(self.mechanism.frame)
         of_bodies = poses[:, : len(bodies)]
-        from_frame: np.ndarray = _inverse(poses[:, frame])[:, None] @ of_bodies
-        return from_frame
+        return _inverse(poses[:, frame])[:, None] @ of_bodies
 
     def rotations(self, points: np.ndarray, numbers: Sequence[int]) -> np.ndarray:
         """The rotations (p, k, 3, 3) of the moved bodies of some pairs, by ``numbers``

@@ -71,7 +71,9 @@ def _values_at_reference(readout: Readout, branch: Branch) -> np.ndarray | None:
     step = branch.length / SAMPLES
     arclengths = branch.arclengths(SAMPLES)
     for _ in range(ROUNDS):
-        gaps = difference(branch(arclengths), readout.reference, branch.periods)
+        gaps = difference(
+            branch(arclengths), readout.structure.reference, branch.periods
+        )
         distances = np.abs(gaps).max(axis=1)
         nearest = arclengths[np.argmin(distances)]
         low, high = max(nearest - step, 0.0), min(nearest + step, branch.length)

@@ -43,11 +43,6 @@ class Readout:
         """The mechanism as a loop; None where it is no single one of revolute joints."""
         return as_single_loop(self.structure)
 
-    @property
-    def reference(self) -> np.ndarray:
-        """The reference configuration (n,) in the unknowns of the atlas."""
-        return self.structure.reference
-
     def labels(self) -> list[str]:
         """What every variable is called, in the order of the joints; those of a
         spherical joint are not among them."""

@@ -467,8 +467,7 @@ def _following_angles(angles: np.ndarray) -> np.ndarray:
 def _largest_imaginary_parts(configurations: np.ndarray) -> np.ndarray:
     """Of every configuration (q, n) the imaginary part (q,) that is largest in size."""
     which = np.abs(configurations.imag).argmax(axis=1)[:, None]
-    largest: np.ndarray = np.take_along_axis(configurations.imag, which, axis=1)[:, 0]
-    return largest
+    return np.take_along_axis(configurations.imag, which, axis=1)[:, 0]
 
 
 def _real_numbers(cut: Slice) -> np.ndarray:

@@ -168,8 +168,7 @@ def _draw_turning_points(axes: Axes, form: Form, groups: Sequence[Curve]) -> Non
 def singular_values(loop: Loop, theta: np.ndarray) -> np.ndarray:
     """Singular values (k, 6), the largest first, of the 6 x n joint screws in the frame
     of joint 1, lengths in the unit of the loop, at joint angles (k, n), rad."""
-    values: np.ndarray = np.linalg.svd(loop.joint_screws(theta), compute_uv=False)
-    return values
+    return np.linalg.svd(loop.joint_screws(theta), compute_uv=False)
 
 
 def draw_singular_values(source: SourceFigure) -> Figure:

@@ -12,7 +12,7 @@ from functools import cache
 from importlib import resources
 from typing import Any, TypeAlias
 
-from bifurc.errors import BifurcError
+from bifurc.errors import UnknownNameError
 
 FILES = (
     "thesis_chapter_2",
@@ -88,13 +88,8 @@ class SourceFigure:
         return " ".join(parts)
 
 
-class UnknownFigureError(BifurcError, KeyError):
+class UnknownFigureError(UnknownNameError):
     """No figure of that ``name``; ``nearest`` are those most like it."""
-
-    def __init__(self, name: str, nearest: tuple[str, ...]):
-        self.name = name
-        self.nearest = nearest
-        super().__init__(name)
 
     def __str__(self) -> str:
         hint = "no name is like it; bifurc figure --list has them all"

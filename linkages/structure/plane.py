@@ -49,6 +49,5 @@ def _normal(motions: list[Motion]) -> np.ndarray | None:
         across = np.cross(motions[0].direction, motion.direction)
         length = float(np.linalg.norm(across))
         if not is_parallel_axis(length):
-            unit: np.ndarray = across / length
-            return unit
+            return across / length
     return None

@@ -36,6 +36,30 @@ class SingleLoop:
         joints = np.argsort(columns)
         return Isometry(joints, self.signs[joints], self.reference[joints])
 
+    def orientation(self, structure: Structure) -> np.ndarray:
+        """The rotation (3, 3) from the frame of the loop to that of the mechanism, both
+        in the reference configuration: it takes axes and the joints on them along."""
+        frames = self.loop.frames(self.reference)[:-1]
+        motions = [structure.mechanism.variables[k].motion for k in self.variables]
+        axes = np.array([one.direction for one in motions]) * self.signs[:, None]
+        points = np.array([one.point for one in motions])
+        here = [_across(frames[:, :3, 3], frames[0, :3, 2]), frames[:, :3, 2]]
+        there = [_across(points, axes[0]), axes]
+        size = np.abs(here[0]).max() or 1.0
+        rows_here = np.concatenate([here[0] / size, here[1]])
+        rows_there = np.concatenate([there[0] / size, there[1]])
+        left, _, right = np.linalg.svd(rows_there.T @ rows_here)
+        left[:, 2] *= np.sign(np.linalg.det(left @ right))
+        rotation: np.ndarray = left @ right
+        return rotation
+
+
+def _across(points: np.ndarray, axis: np.ndarray) -> np.ndarray:
+    """Where points (k, 3) lie across an axis, from the middle of them."""
+    middle = points - points.mean(axis=0)
+    across: np.ndarray = middle - np.outer(middle @ axis, axis)
+    return across
+
 
 def as_single_loop(structure: Structure) -> SingleLoop | None:
     """The mechanism as one loop of 4 to 12 revolute joints; None where it is none, or

@@ -464,8 +464,7 @@ class Structure:
         if share is None:
             return np.full(len(points), self.mechanism.variables[variable].locked)
         shares = share.rate * points[:, share.column] + share.offset
-        values: np.ndarray = shares * self._unit_of(variable)
-        return values
+        return shares * self._unit_of(variable)
 
     def largest_value(self, variable: int) -> float:
         """The largest absolute value that a variable, by number, takes within the

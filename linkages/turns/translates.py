@@ -84,7 +84,7 @@ def with_translates(atlas: Atlas, structure: Structure, lattice: TurnLattice) ->
     turning = [k for k in lattice.columns if structure.unknowns[k].is_angle]
     joints = tuple(structure.unknowns[k].label for k in turning)
     translates = _counted(atlas, lattice, joints)
-    listed = (len(atlas.forms), len(_assemblies(atlas)))
+    listed = (len(atlas.forms), len(isolated_assemblies_of(atlas)))
     counts = (translates.forms, translates.assemblies)
     if translates.are_all and counts == listed and not atlas.surfaces:
         return atlas
@@ -111,7 +111,9 @@ def _counted(atlas: Atlas, lattice: TurnLattice, joints: tuple[str, ...]) -> Tra
         _count_of_class([_count_of_form(lattice, branch) for branch in branches])
         for branches in alike
     ]
-    points = classes_of_assemblies(_assemblies(atlas), atlas.periods, lattice)
+    points = classes_of_assemblies(
+        isolated_assemblies_of(atlas), atlas.periods, lattice
+    )
     assemblies = [
         _count_of_class([lattice.count_of_translates(one[None]) for one in own])
         for own in points
@@ -126,8 +128,9 @@ def _counted(atlas: Atlas, lattice: TurnLattice, joints: tuple[str, ...]) -> Tra
     )
 
 
-def _assemblies(atlas: Atlas) -> list[np.ndarray]:
-    """The isolated assemblies (n,) of an atlas, shaky ones after the others."""
+def isolated_assemblies_of(atlas: Atlas) -> list[np.ndarray]:
+    """All configurations (n,) of an atlas that have no others beside them, those of full
+    rank first."""
     shaky = [point.point.u for point in atlas.points if point.kind is Kind.ISOLATED]
     return [*atlas.rigid, *shaky]
 

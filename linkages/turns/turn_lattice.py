@@ -60,8 +60,7 @@ class TurnLattice:
     @property
     def columns(self) -> np.ndarray:
         """The numbers of the unknowns that shifts change."""
-        numbers: np.ndarray = np.flatnonzero(np.any(self.basis != 0.0, axis=0))
-        return numbers
+        return np.flatnonzero(np.any(self.basis != 0.0, axis=0))
 
     def region(self, box: np.ndarray, reference: np.ndarray) -> np.ndarray:
         """The part of a ``box`` (n, 2) near the middle of the limits that holds a
@@ -121,8 +120,7 @@ class TurnLattice:
         columns = self.columns
         gaps = (point - places)[:, columns]
         times = np.linalg.lstsq(self.basis[:, columns].T, gaps.T, rcond=None)[0]
-        shifts: np.ndarray = np.round(times).T @ self.basis
-        return shifts
+        return np.round(times).T @ self.basis
 
     def translates(self, points: np.ndarray) -> Shifts:
         """The shifts after which all ``points`` (k, n) are within the limits."""
@@ -310,8 +308,7 @@ def _nearest_first(distances: list[np.ndarray], places: np.ndarray) -> np.ndarra
     next, and of those as far away by their coordinates, so that it is that of the
     places themselves."""
     digits = [*-places.T[::-1], *distances[::-1]]
-    order: np.ndarray = np.lexsort([np.round(key / ALIKE) for key in digits])
-    return order
+    return np.lexsort([np.round(key / ALIKE) for key in digits])
 
 
 @lru_cache(maxsize=16)

@@ -144,5 +144,4 @@ class TurnedEnds:
         ends = branch(np.array([0.0, branch.length]))
         inmost = np.array([self.lattice.inmost(end) for end in ends])
         is_inside = self.problem.domain.excess(inmost) < -self.problem.domain.slack
-        turned: np.ndarray = inmost[is_inside]
-        return turned
+        return inmost[is_inside]

@@ -19,16 +19,21 @@ forms            name, length, closed, rank, inactive_joints, travel; pieces (pa
 points           name, kind, rank, angles; passes, as [index of the form, arclength];
                  surfaces, by their numbers
 near_misses      form, s, value
+dead_points      form, s, and the name of the joint that drives, or has limits
 assemblies       configurations
 surfaces         name, dimension; samples (packed), each near the one before
-near_motions     sample, and by how much it misses closure, misclosure
+near_motions     name, sample, and by how much it misses closure, misclosure; curve, the
+                 same as of a form, null of a surface
 graph            of the forms, laid out in inches: names, places; edges, each a name, the
                  place of its label and a line
 plane            the unknowns over which the map is drawn
 principal        the plane in which (cos theta, sin theta), 2 n numbers, spread most: their
                  mean, and two unit axes; an unknown without a period stands for its own
                  cosine, and 0 for its sine
-view             where to look from at first, elevation and azimuth in degrees
+view             where to look from at first, elevation and azimuth in degrees, and what
+                 is up then
+drawn            the configuration in which a file gives the linkage: angles, its name on
+                 the map, and its place [index of the form, s], null where no form passes
 """
 
 from __future__ import annotations
@@ -41,14 +46,22 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from bifurc.atlas import Atlas, Form, MeetingPoint, Surface
+from bifurc.branch import Branch
 from bifurc.checks import check_type
-from bifurc.decisions import closes_to_rounding
+from bifurc.figures.drawing import emptiness
 from bifurc.figures.form_graph import lay_out_graph
-from bifurc.figures.planes import choose_plane
-from bifurc.figures.style import color_on_dark, form_style
+from bifurc.figures.planes import choose_plane, shown_branches
+from bifurc.figures.style import (
+    Style,
+    color_on_dark,
+    form_style,
+    near_motion_style,
+)
 from bifurc.torus import difference
 from linkages.labels import FormLabels
 from linkages.mechanisms.mechanism import Lock
+from linkages.readout.dead_points import driven_dead_points
+from linkages.readout.drawn import drawn_place
 from linkages.subject import subject_at
 from linkages.viewing.start import configurations, start_of
 
@@ -81,40 +94,51 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> Document:
         **parts.page(np.concatenate(configurations(atlas))),
         "forms": forms,
         "points": [_point(point) for point in atlas.points],
+        **_places_on_forms(atlas),
+        "assemblies": atlas.rigid.tolist(),
+        "surfaces": [_surface(surface, atlas.periods) for surface in atlas.surfaces],
+        "near_motions": _near_motions(atlas),
+        "graph": _graph(atlas),
+        "plane": choose_plane(atlas),
+        "principal": _principal(atlas),
+        "view": view._asdict(),
+        "drawn": _drawn(atlas),
+    }
+
+
+def _places_on_forms(atlas: Atlas) -> Document:
+    """The near misses and the dead points of what drives."""
+    return {
         "near_misses": [
             {"form": miss.form, "s": miss.s, "value": miss.value}
             for miss in atlas.near_misses
         ],
-        "assemblies": atlas.rigid.tolist(),
-        "surfaces": [_surface(surface, atlas.periods) for surface in atlas.surfaces],
-        "near_motions": [
-            {"sample": motion.sample.tolist(), "misclosure": motion.misclosure}
-            for motion in atlas.near_motions
+        "dead_points": [
+            {"form": event.form, "s": event.s, "name": atlas.names[event.index]}
+            for event in driven_dead_points(atlas)
         ],
-        "graph": _graph(atlas),
-        "plane": choose_plane(atlas),
-        "principal": _principal(atlas),
-        "view": {"elevation": view.elevation, "azimuth": view.azimuth},
     }
 
 
 def _note(atlas: Atlas) -> str:
     """What the map says where there is no curve on it."""
-    if atlas.forms or atlas.surfaces:
+    if shown_branches(atlas) or atlas.surfaces:
         return ""
-    if closes_to_rounding(atlas.closure_gap) and atlas.closure_gap > 0:
-        return "no form within the limits"
-    if 0 < atlas.closure_gap < np.inf:
-        return f"no form; closure gap {atlas.closure_gap:.1e}"
-    return "no form"
+    return "; ".join(emptiness(atlas))
 
 
 def _form(form: Form, index: int) -> Document:
-    branch = form.branch
-    style = form_style(index)
-    dashes = [] if style.dashes == "-" else list(style.dashes[1])
     return {
         "name": form.name,
+        **_curve(form.branch, form_style(index)),
+        "rank": form.rank,
+        "inactive_joints": list(FormLabels.of(form).inactive_joints),
+    }
+
+
+def _curve(branch: Branch, style: Style) -> Document:
+    dashes = [] if style.dashes == "-" else list(style.dashes[1])
+    return {
         "length": branch.length,
         "closed": branch.closed,
         "pieces": _packed(branch.pieces),
@@ -122,12 +146,37 @@ def _form(form: Form, index: int) -> Document:
         "radii": branch.radii.tolist(),
         "breaks": branch.breaks.tolist(),
         "travel": branch.travel.tolist(),
-        "rank": form.rank,
-        "inactive_joints": list(FormLabels.of(form).inactive_joints),
         "color": style.color,
         "dark_color": color_on_dark(style.color),
         "dashes": dashes,
     }
+
+
+def _near_motions(atlas: Atlas) -> list[Document]:
+    motions = []
+    index = len(atlas.forms)
+    for motion in atlas.near_motions:
+        curve: Document | None = None
+        if motion.branch is not None:
+            style = near_motion_style(index)
+            index += 1
+            curve = {
+                "name": motion.name,
+                **_curve(motion.branch, style),
+                "rank": len(atlas.names) - 1,
+                "inactive_joints": [],
+                "start": 0.5 * motion.branch.length,
+                "smallest": [],
+            }
+        motions.append(
+            {
+                "name": motion.name,
+                "sample": motion.sample.tolist(),
+                "misclosure": motion.misclosure,
+                "curve": curve,
+            }
+        )
+    return motions
 
 
 def _point(point: MeetingPoint) -> Document:
@@ -139,6 +188,14 @@ def _point(point: MeetingPoint) -> Document:
         "passes": [(form, float(s)) for form, s in point.passes],
         "surfaces": list(point.surfaces),
     }
+
+
+def _drawn(atlas: Atlas) -> Document | None:
+    drawn = drawn_place(atlas)
+    if drawn is None:
+        return None
+    place = None if drawn.form is None else [drawn.form, drawn.s]
+    return {"angles": drawn.point.tolist(), "name": drawn.name, "place": place}
 
 
 def _packed(array: np.ndarray) -> Document:
@@ -206,7 +263,10 @@ def _principal(atlas: Atlas) -> Document:
 
 
 def _first(atlas: Atlas, forms: Sequence[Document]) -> np.ndarray:
-    """The configuration (n,) that is shown first, of what stands first on the map."""
+    """The configuration (n,) that is shown first: as drawn, or of what stands first on
+    the map."""
+    if atlas.drawn is not None:
+        return atlas.drawn
     if forms and "start" in forms[0]:
         return atlas.forms[0].branch(forms[0]["start"])
     first = configurations(atlas)[0]

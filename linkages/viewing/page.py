@@ -8,6 +8,7 @@ import os
 from html import escape
 from importlib import resources
 from pathlib import Path
+from string import Template
 
 from bifurc.files.atomic import replace_file
 from linkages.viewing.document import Document
@@ -15,25 +16,6 @@ from linkages.viewing.document import Document
 log = logging.getLogger(__name__)
 
 LARGEST = 1_500_000  # bytes; a page beyond it is slow to open
-
-# The policy lets the page run what it holds, and fetch nothing.
-PAGE = """<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; \
-script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:">
-<title>{title}</title>
-<style>body {{ margin: 0 }}</style>
-</head>
-<body>
-<main id="bifurc-viewer"></main>
-<script id="bifurc-document" type="application/json">{document}</script>
-<script type="module">{script}</script>
-</body>
-</html>
-"""
 
 
 def make_page(document: Document) -> str:
@@ -43,15 +25,20 @@ def make_page(document: Document) -> str:
     """
     # a text in it must not end the script element that holds it
     content = json.dumps(document, allow_nan=False).replace("<", "\\u003c")
-    return PAGE.format(
+    # the policy of the page lets it run what it holds, and fetch nothing
+    return Template(_text("page.html")).substitute(
         title=escape(document["title"]), document=content, script=viewer_script()
     )
 
 
 def viewer_script() -> str:
     """The viewer: an ES module, built from the folder viewer/ of the sources."""
-    script = resources.files("linkages.viewing") / "static" / "viewer.js"
-    return script.read_text(encoding="utf-8")
+    return _text("static/viewer.js")
+
+
+def _text(name: str) -> str:
+    file = resources.files("linkages.viewing") / name
+    return file.read_text(encoding="utf-8")
 
 
 def write_page(document: Document, path: str | os.PathLike[str]) -> Path:

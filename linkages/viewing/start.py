@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.figures.planes import shown_branches
 from linkages.subject import subject_at
 
 SAMPLES = 72  # places on each form that are looked at
@@ -51,7 +52,7 @@ def free_places(atlas: Atlas, number: int) -> np.ndarray:
 def configurations(atlas: Atlas) -> Sequence[np.ndarray]:
     """Configurations (k, n) of everything that is on the map, zeros where that is
     nothing."""
-    parts = [form.branch.sample(SAMPLES) for form in atlas.forms]
+    parts = [branch.sample(SAMPLES) for branch in shown_branches(atlas)]
     parts += [surface.samples for surface in atlas.surfaces]
     parts += [motion.sample[None] for motion in atlas.near_motions]
     if len(atlas.rigid):

@@ -61,14 +61,14 @@ def test_a_doubt_leaves_nothing_proved(level):
     )
 
 
-@pytest.mark.parametrize("kind", SearchClaim)
+@pytest.mark.parametrize("kind", [*SearchClaim])
 def test_every_claim_is_told_by_its_kind_and_put_in_words(kind):
     made = kind.claim(Scope.MOTIONS, Level.PROVED, **DATA)
     assert [one for one in SearchClaim if one.is_kind_of(made)] == [kind]
     assert "{" not in made.text and made.text
 
 
-@pytest.mark.parametrize("kind", SearchDoubt)
+@pytest.mark.parametrize("kind", [*SearchDoubt])
 def test_every_doubt_is_put_in_words(kind):
     made = kind.doubt("form 1", 1e-7, **DATA)
     assert "{" not in made.text and made.text

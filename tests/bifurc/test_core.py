@@ -127,11 +127,11 @@ def test_arrays_of_arcs_that_do_not_fit_are_refused(arcs, name):
 
 
 def test_the_ends_of_pieces_are_where_they_hand_over(branch):
-    begins, ends = branch.ends_of_pieces()
+    begins, ends = branch.compiled.ends_of_pieces(0)
     assert begins == pytest.approx(branch(branch.breaks[:-1]), abs=1e-14)
     assert ends[:-1] == pytest.approx(begins[1:], abs=1e-11)
     assert ends[-1] - begins[0] == pytest.approx(branch.travel, abs=1e-14)
-    slopes, _ = branch.ends_of_pieces(derivative=1)
+    slopes, _ = branch.compiled.ends_of_pieces(derivative=1)
     assert slopes == pytest.approx(branch(branch.breaks[:-1], 1), abs=1e-12)
 
 
@@ -146,20 +146,20 @@ def test_a_height_is_level_where_its_rate_changes_sign(branch):
 
     s = branch.arclengths(200)[1:-1]
     step = 1e-5
-    rates = branch.rates_of_height(coefficients, s)
+    rates = branch.compiled.rates_of_height(coefficients, s)
     assert rates == pytest.approx((height(s + step) - height(s - step)) / (2 * step))
     turns = np.flatnonzero(rates[:-1] * rates[1:] < 0)
-    level = branch.level_places(coefficients, s[turns], s[turns + 1])
+    level = branch.compiled.level_places(coefficients, s[turns], s[turns + 1], 1e-15)
     assert len(level)
     assert np.all((s[turns] < level) & (level < s[turns + 1]))
-    assert np.abs(branch.rates_of_height(coefficients, level)).max() < 1e-12
+    assert np.abs(branch.compiled.rates_of_height(coefficients, level)).max() < 1e-12
 
 
 def test_coefficients_of_a_height_that_do_not_fit_are_refused(branch):
     with pytest.raises(ValueError, match="four rows"):
-        branch.rates_of_height(np.ones((3, branch.n)), np.zeros(1))
+        branch.compiled.rates_of_height(np.ones((3, branch.n)), np.zeros(1))
     with pytest.raises(ValueError, match="another number of unknowns"):
-        branch.level_places(np.ones((4, 2)), np.zeros(1), np.ones(1))
+        branch.compiled.level_places(np.ones((4, 2)), np.zeros(1), np.ones(1), 1e-15)
 
 
 def test_roots_of_waves_are_those_of_the_sum():

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from linkages.catalogue import entry
 from linkages.closure.closure import Closure
-from linkages.construction.constructions import isomerize, lock
+from linkages.construction.constructions import lock
 from linkages.identification.equivalence import as_loop, table
 from linkages.loop import Loop
 from linkages.tolerance import make_with_errors
@@ -185,7 +185,6 @@ def test_the_rounding_of_lengths_is_kept_wherever_a_loop_is_made_again():
         loop.reversed(),
         loop.mirrored(),
         lock(loop, 3),
-        isomerize(loop, 1),
         make_with_errors(loop, 1e-3, np.random.default_rng(0)),
         as_loop(table(loop), rounding=loop.rounding),
     ]

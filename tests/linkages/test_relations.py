@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 
 from linkages.catalogue import catalogue, entry
-from linkages.construction.constructions import isomerize
 from linkages.entry import RelationKind
 from linkages.identification.identify import identify
 from linkages.loop import Loop
 from linkages.relations import relation_graph, relations_of
 from linkages.values import GeometryError
+from tests.linkages.isomers import isomerize
 
 
 def members(name, rng, count=2):

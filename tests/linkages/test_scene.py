@@ -47,7 +47,7 @@ def test_offsets_are_drawn_at_their_length():
 def test_a_square_seen_from_the_best_direction_keeps_its_corners_apart():
     loop = entry("rhombus").build()
     scene = make_scene(loop, np.full(4, np.pi / 2))
-    elevation, azimuth = np.radians(best_view(scene))
+    elevation, azimuth = np.radians(best_view(scene)[:2])
     look = np.array(
         [
             np.cos(elevation) * np.cos(azimuth),

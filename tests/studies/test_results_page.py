@@ -120,7 +120,7 @@ def heads_of(monkeypatch, folder):
 
 def test_every_column_of_a_summary_has_a_row(monkeypatch, folder):
     heads = heads_of(monkeypatch, folder)
-    assert {"smallest s.v.", "bound K", "charts", "unstable"} <= heads
+    assert {"smallest s.v.", "curvature at most", "charts", "unstable"} <= heads
     assert heads <= {head for row in numbers() for head in row.printed.split(", ")}
 
 

@@ -208,25 +208,20 @@ def _near_motions(
     order = order_branches(problem, [trace.branch for trace in traces])
     decades = np.array([np.log10(traces[k].misclosure) for k in order])
     surfaces = sorted(findings.near_surfaces, key=lambda one: -one.dimension)
-    near_motions = [
-        NearMotion(
-            misclosure=surface.misclosure,
-            length=0.0,
-            is_closed=False,
-            sample=wrap(surface.sample, periods),
-            mobility=surface.dimension,
-        )
-        for surface in surfaces
-    ]
-    for k in order[order_values(decades, SAME_MISCLOSURE)]:
-        trace = traces[k]
-        sample = wrap(trace.branch(0.0), periods)
+    near_motions = []
+    for surface in surfaces:
+        sample = wrap(surface.sample, periods)
         near_motions.append(
-            NearMotion(
-                trace.misclosure, trace.branch.length, trace.branch.closed, sample
-            )
+            NearMotion("", surface.misclosure, None, sample, surface.dimension)
         )
-    return tuple(near_motions)
+    for k in order[order_values(decades, SAME_MISCLOSURE)]:
+        branch = traces[k].branch
+        sample = wrap(branch(0.0), periods)
+        near_motions.append(NearMotion("", traces[k].misclosure, branch, sample))
+    return tuple(
+        replace(near, name=f"near motion {number}")
+        for number, near in enumerate(near_motions, start=1)
+    )
 
 
 def _with_misclosure(

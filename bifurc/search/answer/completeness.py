@@ -1,5 +1,5 @@
-"""What a search claims of its answer and what it doubts, in English: a kind each, with
-its words."""
+"""What a search claims of its answer and what it doubts: kinds, whose words stand in the
+table beside."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from bifurc.completeness import (
     Completeness,
     Doubt,
     DoubtKind,
+    Kinds,
     Level,
     Scope,
 )
@@ -22,135 +23,8 @@ from bifurc.search.findings import Findings
 from bifurc.search.seed_book import Fate, SeedFate
 from bifurc.seeding import missed_probability
 
-
-class SearchClaim(ClaimKind):
-    """What a search can claim of its answer."""
-
-    OUT_OF_TIME = (
-        "the budget of {budget:.4g} s was used up with {left} starts not looked at"
-    )
-    INTERRUPTED = "the search was interrupted"
-    CLOSING_TOLERANCE = "{forms} of the forms close within the closing tolerance only"
-    BOXES = (
-        "the bounds were divided into {boxes} boxes, and each one holds no solution, or a "
-        "single arc of a form listed here"
-    )
-    BOXES_BESIDE_POINTS = (
-        "the bounds were divided into {boxes} boxes, and each one holds no solution, or a "
-        "single arc of a form listed here; next to singular points, within {beside:.1g} of "
-        "a quarter of the region in which solutions were found, nothing is claimed"
-    )
-    REACHED = (
-        "{reached} of {starts} random starts reached a solution, each listed here: one "
-        "more start would reach something new with a probability of at most {missed:.2g} "
-        "(95 % confidence)"
-    )
-    NOTHING_REACHED = (
-        "none of {starts} random starts reached a solution: one more start would reach "
-        "something new with a probability of at most {missed:.2g} (95 % confidence)"
-    )
-
-
-class SearchDoubt(DoubtKind):
-    """What doubles can leave undecided in the answer of a search."""
-
-    # --- of surfaces
-    SURFACE_OR_CURVES = (
-        "{subject} may be a surface, or curves on one that misses the equations by "
-        "{amount:.1e}, more than rounding"
-    )
-    UNCHARTED = (
-        "no charted surface is known to hold {starts:start}, at which no chart fits: there "
-        "may be more surfaces, or small parts of them"
-    )
-    # --- of forms
-    CURVE_OR_SURFACE = (
-        "{subject} may be a curve or a part of a surface: its place is known to "
-        "{amount:.1e} of the scale"
-    )
-    MULTIPLICITY = (
-        "{subject} has a multiplicity, F' having rank {rank} all along it: how large it "
-        "is, and what meets it, is not known"
-    )
-    STILL_UNKNOWNS = (
-        "on {subject} rounding hides whether these unknowns stand still: {unknowns}"
-    )
-    UNLOCATED_POINT = (
-        "{subject} is singular to within rounding about s = {amount:.6g}, where no "
-        "singular point was located"
-    )
-    NO_BOUNDS = "{subject} is known as far as it was followed: there are no bounds on {unknowns}"
-    TOO_LONG = "{subject} is longer than it was traced"
-    STALLED = "{subject} stalls at {ends} of its 2 ends, where it may end or go on"
-    STALLED_AT_RIM = (
-        "{subject} stalls at {ends} of its 2 ends, where it may end or go on; F' is not "
-        "finite beside {rough} of them"
-    )
-    UNCERTIFIED = "{subject} is not certified {places}"
-    BLURRED = (
-        "{subject} is singular to within rounding {places}, where no singular point is "
-        "known"
-    )
-    ONE_CURVE = "{subject} stall at {point} in opposite directions and may be one curve through it"
-    # --- of points
-    NEAR_MISSES = (
-        "{count:near miss} may be at bifurcations: the numbers of the geometry are known "
-        "to {rounding:.1e} only, which explains a singular value of {amount:.1e}"
-    )
-    HIDDEN_POINTS = (
-        "the exact equations have {count:more singular point} beside those listed, where "
-        "the same branches meet again: doubles do not tell them apart"
-    )
-    DOUBLE_SOLUTIONS = (
-        "rounding does not tell a double solution from two, or none: {points}"
-    )
-    POINT_OR_NEAR_MISS = (
-        "{subject} ({point_kind}) may be a near miss: it misses the equations by "
-        "{amount:.1e}"
-    )
-    UNDECIDED = "{subject} is undecided: {reason}"
-    NOT_WHOLE = "{subject} ({point_kind}) is not whole: {reason}"
-    UNCONFIRMED = "{subject} is seen in doubles, and more digits do not show it"
-    # --- of the values of a function
-    NOISE = (
-        "the values of the function are noisy to {amount:.1e} of their typical change: it is "
-        "solved to within that, and what is smaller is not told from it"
-    )
-    # --- of isolated solutions
-    HIDDEN_ASSEMBLIES = (
-        "rounding does not tell how many isolated solutions lie together, up to "
-        "{amount:.1e} of the scale apart, at {count} of the places listed"
-    )
-    ON_RIM = (
-        "starts end at {count:place} on the rim of where the equations are defined, and F' "
-        "is not finite there: these may be isolated solutions, or lie on curves"
-    )
-    SHORT_STOPS = (
-        "starts end where the equations are solved to {amount:.1e}, about nothing that is "
-        "listed, and there may be more solutions"
-    )
-    # --- of near motions
-    FAINT_NEAR_MOTIONS = (
-        "{count} of the near motions miss by less than {amount:.0e}: where forms crossed, "
-        "doubles may not tell which of them are one"
-    )
-    LOOSE_NEAR_MOTIONS = (
-        "{count} of the near motions end where they cannot be followed, and may go on"
-    )
-    REPEATED_NEAR_MOTIONS = (
-        "{count} of the near motions pass the same places twice: they went over to another "
-        "one on the way, and their lengths are wrong"
-    )
-    BLURRED_NEAR_MOTIONS = (
-        "{count} of the near motions pass where the rank drops but for the misclosure; "
-        "there they may be interrupted"
-    )
-    NEAR_ASSEMBLIES = (
-        "on near motions there may be more isolated solutions than are listed, where the "
-        "misclosure passes zero"
-    )
-
-
+SearchClaim = Kinds(ClaimKind, __file__, "claims")
+SearchDoubt = Kinds(DoubtKind, __file__, "doubts")
 NO_SOLUTION = SeedFate(Fate.NO_SOLUTION)
 
 

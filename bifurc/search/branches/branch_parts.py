@@ -227,8 +227,7 @@ def _curve(
         def points(
             x: np.ndarray, middle: float = middle, half: float = half
         ) -> np.ndarray:
-            places: np.ndarray = branch(middle + half * x)
-            return places
+            return branch(middle + half * x)
 
         # so short that places beside the point would be rounded off elsewhere
         piece = piece_through(points, order)

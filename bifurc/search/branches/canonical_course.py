@@ -19,6 +19,7 @@ from bifurc.problem import Problem
 from bifurc.torus import whole_turns, wrap, wrapped_periods
 
 FUNCTIONS = 8  # that are tried
+ROUNDING = 1e-15  # of an arclength: how closely a top is located
 # By how much a maximum stands above all others, over the range of the function.
 CLEAR_MARGIN = 1e-3
 PLACES = (np.arange(10) + 0.5) / 10  # of every piece, where the function is sampled
@@ -86,7 +87,7 @@ def _clearest_top(problem: Problem, branch: Branch) -> float:
 @dataclass(frozen=True)
 class _Height:
     """A function along a closed curve, with the ``coefficients`` (4, n) of
-    `Branch.rates_of_height`: a weight times the cosine of an angle beyond its phase, or
+    `bifurc._core.Curve.rates_of_height`: a weight times the cosine of an angle beyond its phase, or
     times an unknown without a period over the scale."""
 
     branch: Branch
@@ -126,7 +127,9 @@ class _Height:
         low[0] -= self.branch.length
         high[-1] += self.branch.length
         near = is_high & is_top
-        tops = self.branch.level_places(self.coefficients, low[near], high[near])
+        tops = self.branch.compiled.level_places(
+            self.coefficients, low[near], high[near], ROUNDING
+        )
         order = np.argsort(self.at(self.branch(tops)))
         if not len(tops):
             return _Top(0.0, 0.0)
@@ -135,7 +138,7 @@ class _Height:
         margin = highest[-1] - highest[0] if len(tops) > 1 else np.inf
         step = BEND_STEP * self.branch.length
         beside = np.array([best - step, best + step])
-        rise, fall = self.branch.rates_of_height(self.coefficients, beside)
+        rise, fall = self.branch.compiled.rates_of_height(self.coefficients, beside)
         bend = (rise - fall) / (2 * step) * self.branch.length**2
         clarity = min(float(margin) / CLEAR_MARGIN, float(bend) / CLEAR_BEND)
         return _Top(best, clarity / extent)

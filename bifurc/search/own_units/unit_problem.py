@@ -346,8 +346,7 @@ class UnitProblem(EquationProblem):
         values = values_of(self.jacobians(points))
         if values.shape[1] < self.n - 1:
             return np.zeros(len(points), dtype=bool)
-        sharp: np.ndarray = values[:, self.n - 2] > REGULAR * self.magnitude
-        return sharp
+        return values[:, self.n - 2] > REGULAR * self.magnitude
 
 
 def in_own_units(

@@ -18,7 +18,9 @@ from bifurc.singular.point import Kind
 from linkages.app.answer.verdict import is_without_gaps
 from linkages.app.texts.configurations import numbers_at
 from linkages.labels import FormLabels
+from linkages.readout.dead_points import moving_dead_points
 from linkages.subject import subject_at
+from linkages.turns.translates import isolated_assemblies_of
 
 # values that JSON can hold; docs/results.md says what each key does
 Document: TypeAlias = dict[str, Any]
@@ -41,8 +43,12 @@ def make_document(atlas: Atlas) -> Document:
             if point.kind not in (Kind.BIFURCATION, Kind.RANK_DROP)
         ],
         "near_misses": [_near_miss(atlas, event) for event in atlas.near_misses],
-        "dead_points": [_dead_point(atlas, event) for event in atlas.dead_points],
-        "rigid_assemblies": [_assembly(atlas, theta) for theta in _isolated(atlas)],
+        "dead_points": [
+            _dead_point(atlas, event) for event in moving_dead_points(atlas)
+        ],
+        "rigid_assemblies": [
+            _assembly(atlas, theta) for theta in isolated_assemblies_of(atlas)
+        ],
         "near_motions": [_near_motion(atlas, near) for near in atlas.near_motions],
         "completeness": _completeness(atlas),
         "seconds": atlas.provenance.seconds,
@@ -150,13 +156,6 @@ def _singular_point(atlas: Atlas, point: MeetingPoint) -> Document:
     }
 
 
-def _isolated(atlas: Atlas) -> list[NDArray[np.float64]]:
-    """All configurations (n,) that have no others beside them, those of full rank
-    first."""
-    shaky = [p.point.u for p in atlas.points if p.kind is Kind.ISOLATED]
-    return [*atlas.rigid, *shaky]
-
-
 def _near_miss(atlas: Atlas, event: Event) -> Document:
     return {
         **_place(atlas, event.u),
@@ -168,6 +167,7 @@ def _near_miss(atlas: Atlas, event: Event) -> Document:
 
 def _near_motion(atlas: Atlas, near: NearMotion) -> Document:
     return {
+        "name": near.name,
         "misclosure": near.misclosure,
         "length": near.length,
         "closed": near.is_closed,

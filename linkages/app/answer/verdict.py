@@ -17,11 +17,15 @@ from bifurc.singular.point import Kind
 from bifurc.systems.verdict import has_only_open_points
 from bifurc.tables import count_of
 from linkages.app.exit_codes import ExitCode
+from linkages.app.reports.entry_parameters import member_text
 from linkages.app.texts.configurations import ArclengthUnit, arclength_unit
 from linkages.app.texts.numbers import in_degrees, in_lengths
+from linkages.identification.corrections import roundings_of
+from linkages.identification.identify import identify
 from linkages.statements import has_all_assemblies
 from linkages.subject import subject_at
 from linkages.turns.translates import translates_of
+from linkages.values import GeometryError
 
 if TYPE_CHECKING:
     from linkages.mechanisms.joint import Limits
@@ -137,6 +141,9 @@ def _immobile(atlas: Atlas) -> str:
         sentence = (
             f"The linkage nearly moves{_near_motion(atlas.near_motions[0], unit)}."
         )
+        rounded = rounding_of(atlas)
+        if rounded:
+            sentence += f" It is a rounding of {rounded}."
     elif assemblies:
         sentence = "The linkage is rigid."
     else:
@@ -144,6 +151,18 @@ def _immobile(atlas: Atlas) -> str:
     if not assemblies:
         return sentence
     return f"{sentence} {_assemblies(atlas, assemblies, shaky)}"
+
+
+@lru_cache(maxsize=2)
+def rounding_of(atlas: Atlas) -> str:
+    """The linkage of the catalogue, with its parameters, that the table of an atlas is
+    to rounding; empty where it is none, or no single loop."""
+    try:
+        loop = subject_at(atlas).as_loop()
+    except GeometryError:
+        return ""
+    rounded = roundings_of(identify(loop, locking=False))
+    return member_text(rounded[0].match) if rounded else ""
 
 
 def _nowhere_closed(atlas: Atlas) -> str:

@@ -36,7 +36,7 @@ def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
     require_ending(TARGET, out, *WRITTEN)
     from bifurc.tables import count_of
 
-    mechanism = _mechanism(source, hold)
+    mechanism = _mechanism(source, out, hold)
     text = mechanism_text(mechanism, out)
     require_writable(out, TARGET)
     write_content(out, text, TARGET)
@@ -53,13 +53,14 @@ def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
         )
 
 
-def _mechanism(source: str, hold: HoldOptions) -> Mechanism:
+def _mechanism(source: str, out: Path, hold: HoldOptions) -> Mechanism:
     """The mechanism of a file; raises `CommandError` for a single loop that is given as
     a table or as axes."""
     from linkages.app.choice import choose_held, require_kind
     from linkages.mechanisms.mechanism import Mechanism
 
     refusal = (
-        f"{source}: it is a single loop, a table or axes; convert takes mechanisms"
+        f"{source}: it is a single loop, a table or axes; convert takes mechanisms; "
+        f"`bifurc export {source} --to {out}` writes one"
     )
     return require_kind(choose_held(source, (), hold), Mechanism, refusal)

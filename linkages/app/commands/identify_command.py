@@ -2,21 +2,34 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import TYPE_CHECKING
+
 import click
 
 from linkages.app import options
 from linkages.app.exit_codes import ExitCode, exit_code_table
 
+if TYPE_CHECKING:
+    from linkages.identification.corrections import Correction
+
 LARGEST_TOLERANCE = 1  # as large as the linkage itself
 
 
 @click.command("identify", epilog=exit_code_table())
-@click.argument("linkage", metavar="FILE.toml|NAME")
+@click.argument("linkage", metavar="FILE.toml|FILE.csv|NAME")
 @options.number_option(
     "--tolerance",
     options.NumberRange(min=0, max=LARGEST_TOLERANCE, min_open=True),
     1e-8,
     "How far a table may be from the linkage it is.",
+)
+@click.option(
+    "--write",
+    "out",
+    type=options.FILE,
+    metavar="FILE",
+    help="Write the exact table to a .toml file, a comment at each number that changes.",
 )
 @options.json_option("; angles in radians")
 @options.hold_options
@@ -24,6 +37,7 @@ LARGEST_TOLERANCE = 1  # as large as the linkage itself
 def identify_command(
     linkage: str,
     tolerance: float,
+    out: Path | None,
     as_json: bool,
     parameters: tuple[str, ...],
     hold: options.HoldOptions,
@@ -32,27 +46,51 @@ def identify_command(
     loop of revolute joints, is a case of, whichever way it is read.
 
     Other first joint, direction, sense of axes and links, mirror image and scale make
-    no difference. Where none fits, the nearest are shown with the numbers that are off.
+    no difference. Where none fits, the table is rounded or has a misprint: what it is
+    meant to be is looked for, and said with the numbers that are wrong.
 
     \b
     Examples:
       bifurc identify my_linkage.toml
+      bifurc identify table.csv --write exact.toml
       bifurc identify four-bennett-network --lock 2=40 --lock 6=-75 --without-centre
     """
     from linkages.app.choice import choose_held
-    from linkages.app.output import say, say_json
+    from linkages.app.nearest import exact_linkage
+    from linkages.app.output import (
+        StatusLine,
+        require_ending,
+        require_writable,
+        say,
+        say_json,
+        say_written,
+        write_content,
+    )
+    from linkages.app.reports.corrections import exact_toml
     from linkages.app.reports.identify import (
         describe_identification,
         make_identification_document,
     )
+    from linkages.identification.corrections import corrections_of
     from linkages.identification.identify import identify
     from linkages.subject import as_subject
 
+    if out is not None:
+        require_ending("--write", out, ".toml")
+        require_writable(out, "--write")
     loop = as_subject(choose_held(linkage, parameters, hold)).as_loop()
     identification = identify(loop, tolerance)
+    corrections: tuple[Correction, ...] = ()
+    if not identification.matches:
+        with StatusLine() as status:
+            corrections = corrections_of(identification, status)
     if as_json:
-        say_json(make_identification_document(identification))
+        say_json(make_identification_document(identification, corrections))
     else:
-        say(describe_identification(identification))
-    if not (identification.matches or identification.locked):
+        say(describe_identification(identification, corrections))
+    if out is not None:
+        correction = exact_linkage("--write", identification, corrections)
+        write_content(out, exact_toml(loop, correction), "--write")
+        say_written([out], out.parent)
+    elif not (identification.matches or identification.locked):
         click.get_current_context().exit(ExitCode.NOT_IN_CATALOGUE)

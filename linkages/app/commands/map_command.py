@@ -15,6 +15,10 @@ from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
     from linkages.app.files import FigureAxes
+    from linkages.entry import Linkage
+    from linkages.mechanisms.mechanism import Mechanism
+
+EXACT = "exact.toml"  # the table that --nearest maps
 
 
 @click.command("map", epilog=exit_code_table())
@@ -22,6 +26,14 @@ if TYPE_CHECKING:
 @options.out_option("dataset, graph, summary, figures and the page map.html")
 @options.json_option("; angles in radians")
 @options.no_certify_option
+@click.option(
+    "--nearest",
+    is_flag=True,
+    help=(
+        "Map the exact linkage of the catalogue that a rounded or misprinted table is "
+        "meant to be."
+    ),
+)
 @click.option(
     "--digits",
     type=click.IntRange(20, 1000),
@@ -68,6 +80,7 @@ def map_command(
     out: Path | None,
     as_json: bool,
     no_certify: bool,
+    nearest: bool,
     digits: int | None,
     axes: tuple[str, ...] | None,
     against: tuple[str, ...] | None,
@@ -86,26 +99,21 @@ def map_command(
       bifurc map bricard-line-symmetric --out out --axes 1,5 --against 1
       bifurc map bennett --out out --format pdf --size 3.4x2.6 --range 0:360
       bifurc map my_linkage.toml --json > map.json
+      bifurc map printed_table.csv --nearest --out out
       bifurc map five_bar.toml --lock J1=40
       bifurc map slider_crank.toml --out out --axes J1,J4
       bifurc map four-bennett-network --lock 2=40 --lock 6=-75
       bifurc map special-double-subtractive-goldberg --digits 50
     """
-    from linkages.app.answer.verdict import judge
     from linkages.app.atlas_source import explore_linkage
-    from linkages.app.choice import choose_held
     from linkages.app.files import figure_axes
     from linkages.app.output import require_folder, require_out, say, say_written
 
-    if as_json and digits:
-        raise CommandError(
-            "--digits: it has no place in the JSON document; leave out --json"
-        )
     require_out(out)
-    if choice.hold.is_without_centre and digits:
-        raise CommandError("--digits: it does not go with --without-centre")
+    if digits:
+        allow_digits(as_json, nearest, choice.hold)
     require_folder(out)
-    mechanism = choose_held(linkage, choice.parameters, choice.hold)
+    mechanism, exact = choose_mapped(linkage, choice, nearest)
     over = figure_axes(mechanism, axes, against, window, overlay)
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
@@ -113,36 +121,86 @@ def map_command(
             mechanism, replace(choice.search, certify=not no_certify)
         )
         try:
-            report(atlas, as_json)
+            report(atlas, as_json, choice.verbose)
         finally:  # where nothing can be shown, there are still the files
-            paths = write_numbers(atlas, out)
+            paths = write_numbers(atlas, out, exact)
     if digits:
         from linkages.app.reports.confirmation import describe_confirmation
 
         say("\n" + describe_confirmation(atlas, linkage, choice.parameters, digits))
     if out is not None:
         say_written([*paths, *write_pictures(atlas, out, over, figures)], out)
+    steps = "" if as_json else next_steps_of(atlas, linkage, choice, out is not None)
+    end(atlas, as_json, steps)
+
+
+def allow_digits(as_json: bool, nearest: bool, hold: options.HoldOptions) -> None:
+    """Raise `CommandError` for what does not go with more digits."""
+    if as_json:
+        raise CommandError(
+            "--digits: it has no place in the JSON document; leave out --json"
+        )
+    if hold.is_without_centre:
+        raise CommandError("--digits: it does not go with --without-centre")
+    if nearest:
+        raise CommandError("--digits: it does not go with --nearest")
+
+
+def choose_mapped(
+    linkage: str, choice: options.AtlasOptions, nearest: bool
+) -> tuple[Linkage | Mechanism, str]:
+    """What is mapped, and the text of a file with its exact table where it is the
+    ``nearest`` linkage to the one that was named."""
+    from linkages.app.choice import choose_held
+
+    mechanism = choose_held(linkage, choice.parameters, choice.hold)
+    if not nearest:
+        return mechanism, ""
+    from linkages.app.nearest import nearest_linkage
+    from linkages.subject import as_subject
+
+    meant = nearest_linkage(as_subject(mechanism).as_loop())
+    click.echo(meant.words, err=True)
+    return meant.linkage, meant.toml
+
+
+def next_steps_of(
+    atlas: Atlas, linkage: str, choice: options.AtlasOptions, has_files: bool
+) -> str:
+    """What can be done next with a linkage."""
+    from linkages.app.texts.next_steps import next_steps
+
+    return next_steps(atlas, linkage, choice, has_files)
+
+
+def end(atlas: Atlas, as_json: bool, steps: str) -> None:
+    """End the command with the exit code of the verdict, after what can be done next,
+    ``steps``, or the verdict where a document does not say it."""
+    from linkages.app.answer.verdict import judge
+    from linkages.app.output import say_aside
+
     verdict = judge(atlas)
+    say_aside(steps)
     if as_json and verdict.code is not ExitCode.DONE:
         click.echo(verdict.sentence, err=True)
     click.get_current_context().exit(verdict.code)
 
 
-def report(atlas: Atlas, as_json: bool) -> None:
+def report(atlas: Atlas, as_json: bool, is_whole: bool) -> None:
     """Print the map, as tables or as one JSON document."""
     from linkages.app.answer.document import make_document
     from linkages.app.output import say, say_json
-    from linkages.app.texts.summary import make_summary
+    from linkages.app.texts.summary import make_screen, make_summary
 
     if as_json:
         say_json(make_document(atlas))
     else:
-        say(make_summary(atlas))
+        say(make_summary(atlas) if is_whole else make_screen(atlas))
 
 
-def write_numbers(atlas: Atlas, out: Path | None) -> list[Path]:
-    """The paths of dataset, graph and summary, just written to ``out`` if there is
-    one."""
+def write_numbers(atlas: Atlas, out: Path | None, exact: str = "") -> list[Path]:
+    """The paths of dataset, graph and summary, and of the ``exact`` table if it is no
+    empty text, just written to ``out`` if there is one."""
     if out is None:
         return []
     from linkages.app.files import write_data
@@ -152,7 +210,9 @@ def write_numbers(atlas: Atlas, out: Path | None) -> list[Path]:
 
     with writing_to(out):
         subject = subject_at(atlas)
-        more, others = subject.dataset_variables(atlas), subject.files()
+        more, others = subject.dataset_variables(atlas), dict(subject.files())
+        if exact:
+            others[EXACT] = lambda path: path.write_text(exact, encoding="utf-8")
         return write_data(atlas, out, make_summary(atlas), more, others)
 
 

@@ -4,16 +4,24 @@ of, and with which parameters."""
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from bifurc.tables import count_of
+from linkages.app.reports.corrections import (
+    NO_CORRECTION,
+    correction_documents,
+    describe_corrections,
+)
+from linkages.app.reports.entry_parameters import parameters_text
 from linkages.app.texts.numbers import known_to
-from linkages.entry import ParameterKind
 from linkages.geometry_table import link_name
+from linkages.identification.corrections import Correction
 from linkages.identification.fitting import NEAR
-from linkages.identification.identify import Identification, LockedJoint, Match
+from linkages.identification.identify import Identification, LockedJoint
+from linkages.identification.match import Match
 
 NEAREST = 3  # linkages that are shown where none fits
 WORST = 4  # numbers of the table that are shown of each of them
@@ -23,9 +31,11 @@ LENGTH_ROW, TWIST_ROW, OFFSET_ROW = range(3)  # of a table (3, n)
 # --- text -----------------------------------------------------------------------------
 
 
-def describe_identification(identification: Identification) -> str:
-    """The answer as text: lengths in the unit of the table, degrees, joints numbered
-    from 1."""
+def describe_identification(
+    identification: Identification, corrections: Sequence[Correction] = ()
+) -> str:
+    """The answer as text, with what a table may be meant to be that is none: lengths in
+    the unit of the table, degrees, joints numbered from 1."""
     loop = identification.loop
     matches = identification.matches
     if matches:
@@ -36,8 +46,10 @@ def describe_identification(identification: Identification) -> str:
         tolerance = f"{identification.tolerance:.1g}"
         sentence = f"No linkage of the catalogue has this geometry, to {tolerance}."
         parts = [_near(match) for match in identification.nearest[:NEAREST]]
-        if not parts:
-            parts = [f"None misses by less than {NEAR:g}, so that none is near."]
+        if corrections:
+            parts = [describe_corrections(corrections, loop.n)]
+        elif not parts:
+            parts = [f"None misses by less than {NEAR:g}. {NO_CORRECTION}"]
     parts += [_locked(joint) for joint in identification.locked]
     if loop.rounding:
         parts.append(known_to(loop.rounding, loop.characteristic_length))
@@ -49,7 +61,7 @@ def _match(match: Match) -> str:
     lengths, twists, offsets = np.abs(match.residuals).max(axis=1)
     return (
         f"{_head(match)}\n"
-        f"  {_parameters(match)}\n"
+        f"  {parameters_text(match)}\n"
         f"  read {match.reading}\n"
         f"  off by at most {lengths:.1e} in lengths, {twists:.1e} rad in twists, "
         f"{offsets:.1e} in offsets, of:\n"
@@ -63,7 +75,7 @@ def _near(match: Match) -> str:
     rows, columns = np.unravel_index(worst, match.residuals.shape)
     lines = [
         f"Near: {_head(match)}",
-        f"  {_parameters(match)}",
+        f"  {parameters_text(match)}",
         f"  off by {match.distance:.2g}:",
     ]
     for row, column in zip(rows.tolist(), columns.tolist(), strict=True):
@@ -101,24 +113,13 @@ def _head(match: Match) -> str:
     return f"{head}, {count_of(match.freedom, 'free parameter')}"
 
 
-def _parameters(match: Match) -> str:
-    kinds = {parameter.name: parameter.kind for parameter in match.entry.parameters}
-    parts = []
-    for name, value in match.parameters.items():
-        if kinds[name] is ParameterKind.ANGLE:
-            parts.append(f"{name} = {math.degrees(value):.8g} deg")
-        else:
-            parts.append(f"{name} = {value:.8g}")
-    return ", ".join(parts)
-
-
 def _locked(locked: LockedJoint) -> str:
     best = locked.matches[0]
     names = ", ".join(match.entry.name for match in locked.matches)
     angle = math.degrees(locked.angle)
     return (
         f"With joint {locked.joint} locked at {angle:.0f} deg: {names}\n"
-        f"  {best.entry.name}: {_parameters(best)}"
+        f"  {best.entry.name}: {parameters_text(best)}"
     )
 
 
@@ -126,7 +127,7 @@ def _locked(locked: LockedJoint) -> str:
 
 
 def make_identification_document(
-    identification: Identification,
+    identification: Identification, corrections: Sequence[Correction] = ()
 ) -> dict[str, Any]:
     """The same as a JSON document, angles in radians. ``member`` and ``residuals``, which
     are given less member, have rows a, alpha, R."""
@@ -136,6 +137,7 @@ def make_identification_document(
         "matches": [_match_document(m) for m in identification.matches],
         "nearest": [_match_document(m) for m in identification.nearest[:NEAREST]],
         "locked": [_locked_document(joint) for joint in identification.locked],
+        "corrections": correction_documents(corrections, identification.loop.n),
     }
 
 

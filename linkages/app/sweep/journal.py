@@ -8,12 +8,11 @@ import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import Any, TypeAlias, cast
 
 import numpy as np
 
-from bifurc.errors import BifurcError
+from bifurc.errors import PathError
 from linkages.app.sweep.member import FIELDS, Field, Record, Status
 from linkages.app.sweep.plan import Plan
 
@@ -29,12 +28,8 @@ WITHOUT_LINE = "delete this line, and what it held is mapped again"
 CHUNK = 4096  # bytes read at a time on the way back to the last newline
 
 
-class JournalError(BifurcError, ValueError):
+class JournalError(PathError):
     """A journal that cannot be continued: ``path`` and why."""
-
-    def __init__(self, path: Path, why: str):
-        self.path = path
-        super().__init__(f"{path}: {why}")
 
     @classmethod
     def of_line(cls, path: Path, number: int) -> JournalError:
@@ -67,12 +62,7 @@ class Journal:
     def __enter__(self) -> Journal:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         os.close(self._file)
 
     def append(self, line: Mapping[str, object]) -> None:

@@ -21,7 +21,7 @@ from bifurc.atlas import Atlas
 from bifurc.graphs import arc_graph, transition_graph
 from bifurc.settings import SearchSettings
 from linkages.app.answer.verdict import is_without_gaps
-from linkages.app.sweep.subjects import JointName, Member, Subject
+from linkages.app.sweep.subjects import JointName, Member, MemberSource
 from linkages.labels import FormLabels
 from linkages.mapping import map_linkage
 from linkages.subject import subject_at
@@ -72,7 +72,7 @@ log = logging.getLogger(__name__)
 
 
 def map_member(
-    subject: Subject,
+    subject: MemberSource,
     values: Mapping[str, float],
     starts: int,
     seed: int,

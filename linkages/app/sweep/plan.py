@@ -17,8 +17,8 @@ from linkages.app.exit_codes import CommandError
 from linkages.app.sweep.subjects import (
     LOCK,
     PARAM,
+    MemberSource,
     Quantity,
-    Subject,
     choose_subject,
 )
 from linkages.values import GeometryError, check_angle
@@ -46,7 +46,7 @@ class Plan:
     those of `bifurc.search.explore.explore`.
     """
 
-    subject: Subject
+    subject: MemberSource
     axes: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     fixed: Mapping[str, float] = field(default_factory=dict)
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
@@ -208,19 +208,21 @@ def read_plan(
     return Plan(subject, axes, fixed, starts=starts, seed=seed)
 
 
-def _of_option(subject: Subject, option: str) -> dict[str, Quantity]:
+def _of_option(subject: MemberSource, option: str) -> dict[str, Quantity]:
     """The quantities behind an option, by their keys."""
     return {one.key: one for one in subject.quantities if one.option == option}
 
 
-def _options(subject: Subject) -> str:
+def _options(subject: MemberSource) -> str:
     """The options behind which the quantities of a subject stand."""
     options = dict.fromkeys(one.option for one in subject.quantities)
     return " or ".join(options)
 
 
 def _ranges(
-    subject: Subject, fixed: Mapping[str, float], spans: Mapping[str, tuple[float, ...]]
+    subject: MemberSource,
+    fixed: Mapping[str, float],
+    spans: Mapping[str, tuple[float, ...]],
 ) -> dict[str, tuple[float, float]]:
     """Bounds of the quantities that are drawn: those given, or else the
     catalogue's."""
@@ -244,7 +246,7 @@ def _axis(quantity: Quantity, span: Sequence[float]) -> tuple[float, ...]:
 
 
 def _read(
-    subject: Subject, option: str, text: str
+    subject: MemberSource, option: str, text: str
 ) -> tuple[Quantity, tuple[float, ...]]:
     """The quantity and the numbers of "key=number:number:..." behind an option; angles
     turned to rad, the third number left as it is. Raises `GeometryError`."""

@@ -27,7 +27,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from multiprocessing.connection import wait as wait_for_end
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from bifurc.errors import BifurcError
 from linkages.app.sweep.journal import Journal, WrittenBlock, read_entries
@@ -139,11 +139,8 @@ def journal_path(out: Path) -> Path:
 def run_sweep(
     plan: Plan,
     out: Path,
-    *,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    atlases: Path | None = None,
-    progress: Progress | None = None,
+    progress: Progress = lambda count: None,
+    **options: Any,
 ) -> None:
     """Map every member of ``plan`` that the journal beside ``out`` does not hold yet,
     and write the dataset ``out``.
@@ -151,14 +148,8 @@ def run_sweep(
     Options and errors are those of `prepare_sweep`; ``progress`` is called with the
     number of members finished since its last call.
     """
-    with prepare_sweep(
-        plan, out, workers=workers, scheduler=scheduler, atlases=atlases
-    ) as sweep:
-        sweep.run(progress or _ignore)
-
-
-def _ignore(count: int) -> None:
-    """Nobody wants to know of progress."""
+    with prepare_sweep(plan, out, **options) as sweep:
+        sweep.run(progress)
 
 
 @contextmanager

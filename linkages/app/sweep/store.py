@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bifurc.errors import BifurcError
+from bifurc.errors import PathError
 from linkages.app.sweep.member import FIELDS, Field, Record, Status
 from linkages.app.sweep.plan import Block, Plan
 from linkages.app.sweep.subjects import JointName, Quantity
@@ -26,12 +26,8 @@ MADE_AGAIN = (
 )
 
 
-class StoreError(BifurcError):
+class StoreError(PathError):
     """A place where the dataset of a sweep cannot be written: ``path`` and why."""
-
-    def __init__(self, path: Path, why: str):
-        self.path = path
-        super().__init__(f"{path}: {why}")
 
 
 UNSETTLED = "is_being_made"  # an attribute while blocks of the journal may be missing
@@ -117,7 +113,7 @@ class SweepStore:
         indices = block.indices.tolist()
         shape = tuple(along.stop - along.start for along in block.region)
         for name, kind in FIELDS.items():
-            missing = self._missing(kind)
+            missing = [kind.missing] * self.joints if kind.per_joint else kind.missing
             column = [records[index].get(name, missing) for index in indices]
             values = np.array(column, dtype=kind.dtype)
             self._array(name)[block.region] = values.reshape(*shape, *values.shape[1:])
@@ -131,10 +127,6 @@ class SweepStore:
         array = self._group[name]
         assert isinstance(array, zarr.Array)
         return array
-
-    def _missing(self, kind: Field) -> float | list[float]:
-        """What stands where a member has no value."""
-        return [kind.missing] * self.joints if kind.per_joint else kind.missing
 
     def _create(self) -> None:
         """Make all arrays; what an earlier attempt left half-made is replaced."""

@@ -79,7 +79,7 @@ class Member:
     replaced: tuple[JointName, ...] = ()
 
 
-class Subject(ABC):
+class MemberSource(ABC):
     """What is swept."""
 
     @property
@@ -114,7 +114,7 @@ class Subject(ABC):
 
 
 @dataclass(frozen=True)
-class Family(Subject):
+class Family(MemberSource):
     """The family called ``name``; raises `UnknownLinkageError` where it is used and
     there is none."""
 
@@ -138,7 +138,7 @@ class Family(Subject):
 
 
 @dataclass(frozen=True)
-class NetworkFamily(Subject):
+class NetworkFamily(MemberSource):
     """The network of Bennett loops called ``name``, with joints locked, or the loop
     that its outer bars leave."""
 
@@ -179,7 +179,7 @@ class NetworkFamily(Subject):
 
 
 @dataclass(frozen=True)
-class FileMechanism(Subject):
+class FileMechanism(MemberSource):
     """The ``mechanism`` that was read from a file, with joints locked."""
 
     mechanism: Mechanism
@@ -218,7 +218,7 @@ class FileMechanism(Subject):
 
 def choose_subject(
     text: str, parameters: Sequence[str] = (), is_without_centre: bool = False
-) -> Subject:
+) -> MemberSource:
     """What is called ``text`` in the catalogue, or is in the file ``text``, which takes
     no ``parameters``.
 

@@ -16,6 +16,7 @@ from linkages.app.texts.configurations import SHOWN_SHARE
 from linkages.app.texts.numbers import in_degrees, in_lengths, known_to
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.readout.dead_points import driven_dead_points
 from linkages.readout.facts import form_facts
 from linkages.readout.mechanism_document import describe_mechanism
 from linkages.readout.ranges import VariableRange
@@ -133,7 +134,7 @@ def describe_loops(atlas: Atlas, readout: Readout) -> str:
                 "joints": ", ".join(loop["joints"]),
                 "constraints": str(loop["constraints"]),
                 "redundant": str(loop["redundant"]),
-                "motion that others can make": dependent,
+                "joints that follow from the others": dependent,
             }
         )
     count = (
@@ -204,14 +205,14 @@ def _lines(items: Sequence[str]) -> list[str]:
 
 
 def describe_dead_points(atlas: Atlas, readout: Readout) -> str:
-    """The values at which joint variables stand still for a moment, by form; of more
-    than `SHOWN` dead points how many there are."""
+    """The values at which the joint that drives, and those with limits, stand still for
+    a moment, by form; of more than `SHOWN` dead points how many there are."""
     labels = readout.labels()
     places: dict[tuple[str, str], list[str]] = {}
     count = 0
     by_form = {number: k for k, number in enumerate(listed_numbers(atlas))}
     for event in sorted(
-        atlas.dead_points, key=lambda one: (one.index, by_form[one.form])
+        driven_dead_points(atlas), key=lambda one: (one.index, by_form[one.form])
     ):
         label = atlas.names[event.index]
         if label not in labels:  # an entry of a rotation matrix, or a coordinate
@@ -226,7 +227,7 @@ def describe_dead_points(atlas: Atlas, readout: Readout) -> str:
         places.setdefault((label, atlas.forms[event.form].name), []).append(shown)
         count += 1
     if count > SHOWN:
-        return f"Dead points: {count}, listed with --json."
+        return f"Dead points: {count}, listed with --json, with those of other joints."
     rows: list[tuple[str, ...]] = []
     for (label, form), shown_values in places.items():
         columns = [[label], _lines(shown_values), [form]]

@@ -115,15 +115,11 @@ def _rows(atlas: Atlas, route: Route) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
     for number, leg in enumerate(route.legs, start=1):
         end = places[leg.at] if leg.at else route.path[-1]
-        turns = _turns(atlas, leg.travel)
+        turns = show_travel(atlas, leg.travel, digits=2)
         reached = show_configuration(atlas, end)
         rows.append((str(number), leg.form, leg.at or "goal", *turns, reached))
-    rows.append(("", "total", "", *_turns(atlas, route.travel), ""))
+    rows.append(("", "total", "", *show_travel(atlas, route.travel, digits=2), ""))
     return rows
-
-
-def _turns(atlas: Atlas, travel: np.ndarray) -> list[str]:
-    return show_travel(atlas, travel, digits=2)
 
 
 def read_place(text: str, option: str, network: NetworkMechanism) -> NetworkPlace:

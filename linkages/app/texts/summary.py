@@ -1,14 +1,18 @@
-"""The summary of a transition map: degrees, joints numbered from 1."""
+"""The summary of a transition map: degrees, joints numbered from 1. The whole of it, and
+what of it stands on the first screen."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bifurc.atlas import Atlas, MeetingPoint, Surface
 from bifurc.branch import Branch, Outcome
+from bifurc.completeness import Completeness, Level, Scope
 from bifurc.singular.point import Kind
-from bifurc.tables import section, section_of
+from bifurc.tables import count_of, section, section_of
 from linkages.app.answer.verdict import judge
 from linkages.app.texts.configurations import (
     arclength_unit,
@@ -19,26 +23,136 @@ from linkages.app.texts.entry_text import describe_geometry
 from linkages.app.texts.form_names import listed_forms
 from linkages.app.texts.numbers import in_degrees
 from linkages.labels import FormLabels, loop_of
+from linkages.readout.drawn import drawn_place
 from linkages.subject import subject_at
 
 SHOWN = 12  # near misses and rigid assemblies beyond this number are only counted
+SCREEN = 25  # lines that the first screen has
+SCREEN_ROWS = 4  # rigid assemblies and near motions on it
+# Columns of the tables that the first screen leaves out.
+DETAILS = ("smallest s.v.", "residual", "rank", "error", "mobility")
+NEAR_MOTIONS = "Near motions (the loop nearly closes)"
+REASONS = "the reasons: --verbose"
+
+
+def make_screen(atlas: Atlas) -> str:
+    """What `bifurc map` shows first: verdict, forms, points, what joints do where that
+    has room, and one line on how sure it is."""
+    points = [_point_records(atlas, title) for title in _titles()]
+    motions = _tables(atlas)[1]
+    parts = [
+        _head_of(atlas),
+        section_of("Forms", _shortened(_form_records(atlas))),
+        _surfaces(atlas),
+        *(
+            section_of(title, _shortened(records))
+            for title, records in zip(_titles(), points, strict=True)
+        ),
+        _near_misses_in_short(atlas),
+        section_of(NEAR_MOTIONS, _shortened(_near_motion_records(atlas)), SCREEN_ROWS),
+        section("Rigid assemblies", *_rigid_table(atlas), SCREEN_ROWS),
+    ]
+    shown = [part for part in parts if part]
+    certainty = certainty_in_short(atlas.completeness)
+    for motion in filter(None, motions):
+        text = "\n\n".join([*shown, motion, certainty])
+        if len(text.splitlines()) <= SCREEN:
+            shown.append(motion)
+    return "\n\n".join([*shown, certainty])
+
+
+def _head_of(atlas: Atlas) -> str:
+    """The name, the verdict, and where on the map the configuration of the file is."""
+    lines = [str(atlas.subject.get("name")), judge(atlas).sentence]
+    drawn = drawn_place(atlas)
+    if drawn is not None and drawn.name:
+        place = ""
+        if drawn.form is not None:
+            unit = arclength_unit(atlas)
+            place = f" at s = {drawn.s:.4g}"
+            if unit.name == "deg":
+                place = f" at {unit.factor * drawn.s:.4g} deg"
+        lines.append(f"As drawn: {drawn.name}{place}.")
+    return "\n".join(lines)
+
+
+def _titles() -> list[str]:
+    """The titles of the tables of singular points."""
+    return list(dict.fromkeys(one.title for one in Kind))
+
+
+def _shortened(records: Sequence[Mapping[str, str]]) -> list[dict[str, str]]:
+    """Records without details, and without columns in which nothing unusual stands: all
+    forms are closed, as a rule."""
+    left_out = set(DETAILS)
+    for head in records[0] if records else ():
+        cells = {record[head] for record in records}
+        is_usual = cells in ({"-"}, {"yes"})
+        if is_usual or (head == "kind" and all(":" not in one for one in cells)):
+            left_out.add(head)
+    return [
+        {head: cell for head, cell in record.items() if head not in left_out}
+        for record in records
+    ]
+
+
+def _near_misses_in_short(atlas: Atlas) -> str:
+    """How many near misses there are, and the nearest."""
+    if not atlas.near_misses:
+        return ""
+    nearest = min(atlas.near_misses, key=lambda miss: miss.value)
+    count = count_of(len(atlas.near_misses), "near miss")
+    form = atlas.forms[nearest.form].name
+    return (
+        f"{count} (no bifurcation): the smallest singular value is {nearest.value:.3g}, "
+        f"on {form}."
+    )
+
+
+def certainty_in_short(completeness: Completeness) -> str:
+    """One line on how sure an answer is: what is claimed or in doubt, without the
+    reasons."""
+    level = completeness.level
+    start = f"Certainty ({level}): "
+    if completeness.doubts:
+        first = _head(completeness.doubts[0].text)
+        more = len(completeness.doubts) - 1
+        others = f", and {count_of(more, 'more doubt')}" if more else ""
+        return f"{start}in doubt: {first}{others} ({REASONS})."
+    claims = [
+        _head(claim.text)
+        for claim in completeness.claims
+        if claim.scope is not Scope.STARTS and claim.level is not None
+    ]
+    if level is Level.ESTIMATED:
+        claims.append(
+            "one more random start would reach something new with a probability of at "
+            f"most {completeness.missed_probability:.2g}"
+        )
+    words = "; ".join(dict.fromkeys(claims)) or "see the whole statement"
+    return f"{start}{words} ({REASONS})."
+
+
+def _head(text: str) -> str:
+    """A statement without what follows its colon."""
+    return text.partition(":")[0]
 
 
 def make_summary(atlas: Atlas) -> str:
-    """What `bifurc map` shows: verdict, geometry, forms, singular points, completeness
-    and time."""
+    """What `bifurc map --verbose` shows, and summary.txt holds: verdict, geometry, forms,
+    singular points, completeness and time."""
     completeness = atlas.completeness
     provenance = atlas.provenance
     geometry, motions = _tables(atlas)
     parts = [
-        f"{atlas.subject.get('name')}\n{judge(atlas).sentence}",
+        _head_of(atlas),
         *geometry,
-        _forms(atlas),
+        section_of("Forms", _form_records(atlas)),
         _surfaces(atlas),
-        *(_points(atlas, title) for title in dict.fromkeys(one.title for one in Kind)),
+        *(section_of(title, _point_records(atlas, title)) for title in _titles()),
         _near_misses(atlas),
-        _rigid_assemblies(atlas),
-        _near_motions(atlas),
+        section("Rigid assemblies", *_rigid_table(atlas), SHOWN),
+        section_of(NEAR_MOTIONS, _near_motion_records(atlas), SHOWN),
         _certificates(atlas),
         *motions,
         f"Completeness ({completeness.level}): {completeness.statement}.",
@@ -68,7 +182,7 @@ def _tables(atlas: Atlas) -> tuple[list[str], list[str]]:
     ]
 
 
-def _forms(atlas: Atlas) -> str:
+def _form_records(atlas: Atlas) -> list[dict[str, str]]:
     rows = []
     unit = arclength_unit(atlas)
     for form in listed_forms(atlas):
@@ -85,7 +199,7 @@ def _forms(atlas: Atlas) -> str:
                 "residual": f"{labels.max_residual:.1e}",
             }
         )
-    return section_of("Forms", rows)
+    return rows
 
 
 def _closure(branch: Branch) -> str:
@@ -134,7 +248,7 @@ def _surface_row(surface: Surface) -> tuple[str, ...]:
     return (name, dimension, count, area, charts.outcome.value, surface.note)
 
 
-def _points(atlas: Atlas, title: str) -> str:
+def _point_records(atlas: Atlas, title: str) -> list[dict[str, str]]:
     """The singular points of the kinds whose table has a ``title``."""
     rows = []
     for point in atlas.points:
@@ -153,7 +267,7 @@ def _points(atlas: Atlas, title: str) -> str:
                 "kind": point.kind.value + remark,
             }
         )
-    return section_of(title, rows)
+    return rows
 
 
 def _names_at(atlas: Atlas, point: MeetingPoint) -> list[str]:
@@ -181,12 +295,13 @@ def _near_misses(atlas: Atlas) -> str:
     return section_of("Near misses (no bifurcation)", rows, SHOWN)
 
 
-def _rigid_assemblies(atlas: Atlas) -> str:
+def _rigid_table(atlas: Atlas) -> tuple[tuple[str], list[tuple[str]]]:
+    """The head and the rows of the table of rigid assemblies."""
     rows = [(show_configuration(atlas, theta),) for theta in atlas.rigid]
-    return section("Rigid assemblies", (subject_at(atlas).heading(atlas),), rows, SHOWN)
+    return (subject_at(atlas).heading(atlas),), rows
 
 
-def _near_motions(atlas: Atlas) -> str:
+def _near_motion_records(atlas: Atlas) -> list[dict[str, str]]:
     rows = []
     unit = arclength_unit(atlas)
     for near in atlas.near_motions:
@@ -196,6 +311,7 @@ def _near_motions(atlas: Atlas) -> str:
             closed, length = "-", "-"
         rows.append(
             {
+                "name": near.name,
                 subject_at(atlas).heading(atlas): show_configuration(
                     atlas, near.sample
                 ),
@@ -205,7 +321,7 @@ def _near_motions(atlas: Atlas) -> str:
                 "misclosure": f"{near.misclosure:.3g}",
             }
         )
-    return section_of("Near motions (the loop nearly closes)", rows, SHOWN)
+    return rows
 
 
 def _certificates(atlas: Atlas) -> str:
@@ -220,9 +336,11 @@ def _certificates(atlas: Atlas) -> str:
                 "name": form.name,
                 "status": certificate.status,
                 "points": str(certificate.points),
-                "bound K": f"{certificate.bound:.3g}",
-                f"refused ({unit})": _show_intervals(certificate.gaps),
-                f"blurred ({unit})": _show_intervals(certificate.blurred),
+                "curvature at most": f"{certificate.bound:.3g}",
+                f"not proved between ({unit})": _show_intervals(certificate.gaps),
+                f"known to rounding between ({unit})": _show_intervals(
+                    certificate.blurred
+                ),
             }
         )
     return section_of("Certificates (each form is one arc of solutions)", rows)

@@ -76,6 +76,9 @@ def atlas() -> Atlas:
         [f"Form {chr(945 + i)}, no. {i}" for i in range(3)],
         [label, {}, {"symmetry": "none"}],
     )
+    branches = [form.branch for form in named.forms]
+    closed = next(branch for branch in branches if branch.closed)
+    opened = next(branch for branch in branches if not branch.closed)
     linkage = {
         "name": "a pair",
         "lengths": [1.0, 0.1 + 0.2],
@@ -87,9 +90,9 @@ def atlas() -> Atlas:
         rigid=np.array([[0.1, 1 / 3]]),
         closure_gap=1e-300,
         near_motions=(
-            NearMotion(1e-9, 1 / 3, True, np.array([0.1, 0.2])),
-            NearMotion(2e-3, 7.0, False, np.array([-0.0, 0.2])),
-            NearMotion(1e-5, 0.0, False, np.array([0.3, 0.2]), mobility=2),
+            NearMotion("one", 1e-9, closed, np.array([0.1, 0.2])),
+            NearMotion("two", 2e-3, opened, np.array([-0.0, 0.2])),
+            NearMotion("three", 1e-5, None, np.array([0.3, 0.2]), mobility=2),
         ),
         subject=linkage,
         near_misses=(Event(2, 1 / 3, np.array([0.1, 0.7]), value=1e-5, error=1e-20),),

@@ -3,7 +3,7 @@
 import mpmath
 import pytest
 
-from bifurc.singular.puiseux import half_branches, pairs_of, without_zeros
+from bifurc.singular.puiseux import half_branches, pairs_of, terms_above
 
 # name: polynomial by exponents of x and y, half-branches, and of each branch whether it
 # leaves the origin on the side from which it came
@@ -66,4 +66,4 @@ def test_a_term_in_doubt_that_decides_nothing_does_no_harm():
 
 def test_terms_that_rounding_left_are_zero():
     terms = {(0, 2): mpmath.mpf(1), (3, 0): mpmath.mpf(10) ** -70}
-    assert list(without_zeros(terms)) == [(0, 2)]
+    assert list(terms_above(terms)) == [(0, 2)]

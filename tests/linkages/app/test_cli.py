@@ -2,6 +2,7 @@
 own files."""
 
 import json
+import shlex
 import subprocess
 import sys
 
@@ -50,7 +51,7 @@ KEYS = {
     "near_misses": {"theta", "singular_value", "error", "form"},
     "dead_points": {"theta", "joint", "form"},
     "rigid_assemblies": None,
-    "near_motions": {"misclosure", "length", "closed", "mobility", "sample"},
+    "near_motions": {"name", "misclosure", "length", "closed", "mobility", "sample"},
     "completeness": {
         "level",
         "certainty",
@@ -117,8 +118,22 @@ def test_map_shows_forms_and_bifurcations_in_degrees():
     assert result.exit_code == 0
     assert "4 forms in 1 component, 4 bifurcations" in result.stdout
     assert "3 at 180.0000, 6 at 180.0000" in result.stdout
-    assert "Completeness" in result.stdout
+    assert "Certainty (proved): no motion is missing" in result.stdout
     assert "rigid" not in result.stdout.lower()
+    assert len(result.stdout.splitlines()) <= 25
+    assert len(result.output.splitlines()) <= 25 + 3
+    whole = bifurc("map", "special-double-subtractive-goldberg", "--verbose").stdout
+    assert "Completeness (proved): " in whole
+    assert "Certificates" in whole
+
+
+def test_what_can_be_done_next_can_be_typed():
+    result = bifurc("map", "special-double-subtractive-goldberg")
+    steps = [line for line in result.stderr.splitlines() if line.startswith("next: ")]
+    assert len(steps) == 3
+    route = shlex.split(steps[0].removeprefix("next: bifurc "))
+    assert route[0] == "route"
+    assert bifurc(*route).exit_code == 0
 
 
 def test_json_is_one_document_with_the_documented_keys_and_nothing_else():

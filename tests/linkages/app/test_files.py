@@ -38,7 +38,7 @@ def interrupted_search(monkeypatch):
 
 def test_out_holds_dataset_graph_summary_and_figures_and_nothing_else(tmp_path):
     folder = tmp_path / "new" / "folder"
-    result = run("map", "parallelogram", "--out", folder)
+    result = run("map", "parallelogram", "--out", folder, "--verbose")
     assert result.exit_code == 0
     found = names(folder)
     assert {"atlas.nc", "graph.graphml", "summary.txt", "map.html"} <= set(found)

@@ -29,7 +29,8 @@ def test_list_and_show_know_networks():
 
 
 def test_map_locks_outer_joints_at_d_h_angles():
-    result = run("map", NETWORK, "--lock", "2=40", "--lock", "6=-75", *FEW)
+    locks = ("--lock", "2=40", "--lock", "6=-75")
+    result = run("map", NETWORK, *locks, *FEW, "--verbose")
     assert result.exit_code == ExitCode.DONE
     assert "mobility 1: 2 forms in 2 components, 0 bifurcations" in result.output
     assert "Outer loop along the forms (D-H angles, deg)" in result.output
@@ -58,9 +59,8 @@ def test_without_the_centre_the_single_loop_is_mapped_and_said_to_have_more():
 
 
 def test_without_the_centre_joints_that_stand_still_are_replaced_as_well():
-    result = run(
-        "map", NETWORK, "--lock", "1=40", "--lock", "2=-75", "--without-centre", *FEW
-    )
+    locks = ("--lock", "1=40", "--lock", "2=-75", "--without-centre")
+    result = run("map", NETWORK, *locks, *FEW, "--verbose")
     assert "for it does not move: 3" in result.stderr
     assert "five" not in result.stdout and "  5      51" in result.stdout
 

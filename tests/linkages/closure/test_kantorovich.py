@@ -48,7 +48,7 @@ def dense_frames(branch, arcs, nodes):
     s = arcs[:, :1] + np.diff(arcs, axis=1) * shares
     points = branch(s.ravel())
     jacobians = problem.jacobians(points).reshape(*s.shape, -1, problem.n)
-    across = np.swapaxes(nodes.left, 1, 2)[:, None] @ jacobians
+    across = np.swapaxes(nodes.arrays["left"], 1, 2)[:, None] @ jacobians
     along = branch(s.ravel(), 1).reshape(*s.shape, 1, problem.n)
     frames = np.concatenate([across, along], axis=2)
     return s, frames, problem.residuals(points).reshape(*s.shape, -1)
@@ -56,7 +56,7 @@ def dense_frames(branch, arcs, nodes):
 
 def test_the_inverse_is_bounded_between_the_nodes(nodes):
     branch, arcs, nodes = nodes
-    sizes, _ = _core.sizes_on_arcs(CHEBYSHEV, nodes.arcs, nodes.degree)
+    sizes, _ = _core.sizes_on_arcs(CHEBYSHEV, _core.Arcs(**nodes.arrays), nodes.degree)
     s, frames, _ = dense_frames(branch, arcs, nodes)
     seen = np.linalg.norm(np.linalg.inv(frames), axis=(2, 3))
     for k in range(len(arcs)):
@@ -71,8 +71,8 @@ def test_the_inverse_is_bounded_between_the_nodes(nodes):
 def test_the_residual_is_bounded_between_the_nodes(nodes):
     branch, arcs, nodes = nodes
     _, _, residuals = dense_frames(branch, arcs, nodes)
-    seen = np.linalg.norm(residuals @ nodes.left, axis=2).max(axis=1)
-    _, bounds = _core.sizes_on_arcs(CHEBYSHEV, nodes.arcs, nodes.degree)
+    seen = np.linalg.norm(residuals @ nodes.arrays["left"], axis=2).max(axis=1)
+    _, bounds = _core.sizes_on_arcs(CHEBYSHEV, _core.Arcs(**nodes.arrays), nodes.degree)
     assert np.all(seen <= bounds)
     assert np.all(bounds < 20 * seen + 1e-14)
 
@@ -92,8 +92,10 @@ class Frames:
 
     @staticmethod
     def of(nodes) -> "Frames":
-        rows = np.einsum("ami,akmn->akin", nodes.left, nodes.jacobians)
-        frames = np.concatenate([rows, nodes.slopes[:, :, None]], axis=2)
+        rows = np.einsum(
+            "ami,akmn->akin", nodes.arrays["left"], nodes.arrays["jacobians"]
+        )
+        frames = np.concatenate([rows, nodes.arrays["slopes"][:, :, None]], axis=2)
         inverses = np.linalg.inv(frames)
         return Frames(
             across=inverses[..., :-1],
@@ -107,7 +109,7 @@ class Frames:
 
 def largest_component(nodes, which):
     """The largest |G| (a, 1) at a node, of some components, and rounding."""
-    components = (nodes.residuals @ nodes.left)[..., which]
+    components = (nodes.arrays["residuals"] @ nodes.arrays["left"])[..., which]
     return np.linalg.norm(components, axis=2).max(axis=1)[:, None] + ROUNDING
 
 
@@ -128,7 +130,7 @@ def test_the_doubt_of_a_narrow_box_is_half_the_lipschitz_constant_of_newtons_met
     hessians = problem.hessians(flat)
     forms = np.einsum(
         "ami,akmpq,akpj,akql->akijl",
-        nodes.left,
+        nodes.arrays["left"],
         hessians.reshape(*nodes.points.shape[:2], *hessians.shape[1:]),
         frames.across,
         frames.across,
@@ -180,7 +182,9 @@ def test_the_doubt_of_a_narrow_box_is_half_the_lipschitz_constant_of_newtons_met
 def doubts_of(nodes, hessians):
     """Doubts in the cells (a, c), the least at a node (a,), what is uneven (a,)."""
     second = nodes._second_derivative
-    return _core.doubts_of_arcs(CHEBYSHEV, second, nodes.arcs, nodes.degree, hessians)
+    return _core.doubts_of_arcs(
+        CHEBYSHEV, second, _core.Arcs(**nodes.arrays), nodes.degree, hessians
+    )
 
 
 def closure(loop, theta):

@@ -9,7 +9,6 @@ import pytest
 from linkages.construction.conditions import bennett_length
 from linkages.construction.constructions import (
     ending_with,
-    isomerize,
     lock,
     locked_angles,
     share_joint,
@@ -40,6 +39,7 @@ from linkages.families.mixed_double_goldberg import (
 )
 from linkages.loop import Loop
 from linkages.values import GeometryError
+from tests.linkages.isomers import isomerize
 
 A = 1.3
 ALPHA, BETA, GAMMA, DELTA = np.radians([66.0, 50.0, 28.0, 83.0])
@@ -236,10 +236,6 @@ def test_constructions_refuse_what_does_not_fit():
     a, b, c, d = LINKS
     with pytest.raises(GeometryError, match="length of shared link"):
         superpose(bennett_loop(a, b), bennett_loop(c, d))
-    with pytest.raises(GeometryError, match="one Bennett ratio"):
-        isomerize(closed_chain(a, Link(1.0, 0.3), a, Link(1.0, 0.3)), 2)
-    with pytest.raises(GeometryError, match="offset of joint 2"):
-        isomerize(closed_chain(a, b, a, b, offsets=(0, 0.2, 0, 0.2)), 2)
     with pytest.raises(GeometryError, match="from 1 to 4"):
         lock(bennett_loop(a, b), 5)
 

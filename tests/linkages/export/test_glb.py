@@ -8,10 +8,10 @@ import pytest
 from linkages.export.glb import make_glb
 from linkages.export.model import Motion, model_of, motion_of_form
 from linkages.linkage import load
-from linkages.links.rods import place_links
 from linkages.loop import Loop
 from linkages.subject import as_subject
 from linkages.values import GeometryError
+from tests.linkages.placed_links import place_links
 from tests.maps import map_of
 
 DSG = "special-double-subtractive-goldberg"

@@ -8,9 +8,9 @@ from scipy.optimize import minimize
 
 from linkages.linkage import load
 from linkages.links.clearance import TOLERANCE, approaches_along, distances_of
-from linkages.links.rods import place_links
 from linkages.loop import Loop
 from linkages.subject import as_subject
+from tests.linkages.placed_links import place_links
 from tests.maps import map_of
 
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from linkages.linkage import load
-from linkages.links.rods import link_corners, place_links, seat_heights
+from linkages.links.rods import link_corners, seat_heights
 from linkages.loop import Loop
+from tests.linkages.placed_links import place_links
 
 NAMES = ("special-double-subtractive-goldberg", "bricard-trihedral", "bennett")
 

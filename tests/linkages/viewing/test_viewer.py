@@ -10,12 +10,12 @@ from bifurc.torus import wrap
 from linkages.app.texts.form_names import listed_forms
 from linkages.closure.closure import Closure
 from linkages.labels import loop_of
-from linkages.links.rods import place_links
 from linkages.mechanisms.subject import mechanism_of
 from linkages.readout.readout import Readout
 from linkages.subject import subject_at
 from linkages.viewing.document import make_view_document
 from linkages.viewing.page import write_page
+from tests.linkages.placed_links import place_links
 
 DSG = "special-double-subtractive-goldberg"
 NOT_EMPTY = """() => {

@@ -39,14 +39,39 @@ def test_a_file_is_named_with_its_parameters_in_degrees(tmp_path):
     assert "40 deg" in result.stdout
 
 
-def test_a_file_that_is_nothing_known_ends_with_its_own_code_and_shows_the_nearest(
-    tmp_path,
-):
+def test_a_misprint_ends_with_its_own_code_and_is_named(tmp_path):
     result = identify(tmp_path, 0.66)
     assert result.exit_code == ExitCode.NOT_IN_CATALOGUE
     assert "No linkage of the catalogue" in result.stdout
-    assert "Near: bennett" in result.stdout
-    assert "a34 would be" in result.stdout
+    assert "suspicious: a34." in result.stdout
+    assert "a34 would be 0.652704, not 0.66" in result.stdout
+
+
+def test_the_exact_table_is_written_with_a_comment_at_each_number_that_changes(
+    tmp_path,
+):
+    exact = tmp_path / "exact.toml"
+    result = identify(tmp_path, 0.66, "--write", str(exact))
+    assert result.exit_code == ExitCode.DONE
+    text = exact.read_text()
+    assert "# a34: 0.66 is printed (misprint)" in text
+    assert "misprint" not in text.replace("a34: 0.66 is printed (misprint)", "")
+    again = CliRunner().invoke(main, ["identify", str(exact)])
+    assert again.exit_code == ExitCode.DONE
+    assert "bennett: " in again.stdout
+
+
+def test_what_is_far_from_everything_is_not_written(tmp_path):
+    path, exact = tmp_path / "odd.toml", tmp_path / "exact.toml"
+    path.write_text(
+        'angles = "deg"\nlengths = [1, 1.7, 0.6, 2.1]\ntwists = [33, 71, 48, 97]\n'
+        "offsets = [0.2, 0.5, -0.4, 0.9]\n"
+    )
+    arguments = ["identify", str(path), "--write", str(exact)]
+    result = CliRunner().invoke(main, arguments)
+    assert result.exit_code == ExitCode.NOT_IN_CATALOGUE
+    assert "--write: no linkage of the catalogue is near" in result.stderr
+    assert not exact.exists()
 
 
 def test_the_document_holds_parameters_that_build_the_table(tmp_path):
