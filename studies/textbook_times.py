@@ -21,6 +21,7 @@ from bifurc.equations.expression_problem import ExpressionProblem
 from studies.methods import auto07p
 from studies.methods.cases import Case
 from studies.methods.roster import Method, orders_of_this_project
+from studies.study import Study, require_known
 from studies.textbook.fortran import fortran_of
 from studies.textbook.problems import TextbookProblem, load_problems
 from studies.work_precision import least_in_turn, measure
@@ -93,10 +94,11 @@ def _cells(
     return ["-" if run is None else f"{1e3 * next(times):.2g}" for run in fastest]
 
 
-@click.command(help=__doc__)
+@click.command(cls=Study, help=__doc__)
 @click.option("--names", multiple=True, help="Only these problems.")
 def main(names: tuple[str, ...]) -> None:
     """Measure both, and print times in milliseconds."""
+    require_known("--names", names, [problem.name for problem in load_problems()])
     methods = [one for one in orders_of_this_project() if one.order == ORDER]
     if auto07p.has_auto():
         methods.append(Method("AUTO-07p", auto07p.auto_07p))

@@ -86,9 +86,7 @@ LONGER = {
     ],
     "the parts of a figure, one after the other": [
         "bifurc.figures.diagram_plot._marked",
-        "bifurc.figures.form_graph.plot_form_graph",
         "bifurc.figures.planes.choose_plane",
-        "bifurc.figures.plotting.plot_joint_angles",
         "bifurc.figures.quantities.quantity_of",
         "bifurc.figures.singular_values._draw_form_against",
         "linkages.source_figures.assembly_figure.draw",

@@ -20,6 +20,7 @@ from linkages.subject import as_subject, subject_at
 
 if TYPE_CHECKING:
     from bifurc.routes.route import Route
+    from bifurc.routes.wishes import Wishes
     from linkages.mechanisms.mechanism import Mechanism
 
 
@@ -109,11 +110,22 @@ def atlas_of(source: str, options: AtlasOptions) -> Atlas:
 def route_between(atlas: Atlas, start: str, goal: str) -> Route:
     """The shortest route between two forms or surfaces by their full names; raises
     `CommandError` where there is none."""
-    from bifurc.errors import RouteError
-    from bifurc.routes.route import find_route
+    from bifurc.routes.wishes import NONE
 
+    return routes_between(atlas, start, goal, 1, NONE)[0]
+
+
+def routes_between(
+    atlas: Atlas, start: str, goal: str, best: int, wishes: Wishes
+) -> list[Route]:
+    """Up to ``best`` routes, the best first by what is wished, between two forms or
+    surfaces by their full names; raises `CommandError` where there is none."""
+    from bifurc.errors import RouteError
+    from bifurc.routes.route import find_routes
+
+    problem = subject_at(atlas).closure
     try:
-        return find_route(atlas, start, goal, problem=subject_at(atlas).closure)
+        return find_routes(atlas, start, goal, best, problem=problem, wishes=wishes)
     except RouteError as error:
         raise CommandError(str(error), ExitCode.NO_ROUTE) from None
 

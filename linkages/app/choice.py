@@ -257,12 +257,12 @@ def _require_network(text: str, linkage: Linkage | Mechanism) -> NetworkMechanis
 
 def _without_centre(network: NetworkMechanism) -> Inputs:
     """The single loop that is left of a network without the bars inside."""
-    loop = network.without_centre()
+    loop, still = network.without_centre()
     note = (
         "--without-centre: every motion of the network is one of this loop, and the "
         "loop may have more: taking the middle away adds forms and bifurcations"
     )
-    followers = [joint for joint in network.still if joint not in network.kinks]
+    followers = [joint for joint in still if joint not in network.kinks]
     notes: tuple[str, ...] = (note,)
     if followers:
         names = ", ".join(followers)

@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import click
+from click.core import ParameterSource
 
 from linkages.app.exit_codes import CommandError
 
@@ -209,3 +210,21 @@ def say_more() -> None:
     """Let the library say all it has to say, inside a block of `library_messages`."""
     for name in LIBRARIES:
         logging.getLogger(name).setLevel(logging.INFO)
+
+
+FIGURE_OPTIONS = ("axes", "against", "window", "overlay", "formats", "size", "forms")
+
+
+def require_out(out: Path | None) -> None:
+    """Raise `CommandError` for options of figures on the command line where no figure
+    is written."""
+    if out is not None:
+        return
+    context = click.get_current_context()
+    for option in context.command.params:
+        name = option.name or ""
+        source = context.get_parameter_source(name)
+        if name in FIGURE_OPTIONS and source is ParameterSource.COMMANDLINE:
+            raise CommandError(
+                f"{option.opts[0]}: figures are only drawn with --out DIR"
+            )

@@ -58,6 +58,23 @@ EXACT = "exact.toml"  # the table that --nearest maps
     metavar="I",
     help="Draw the singular values against this joint; needs --out.",
 )
+@click.option(
+    "--range",
+    "window",
+    type=options.Pair(":", "0:360"),
+    metavar="LOW:HIGH",
+    help="The first and the last angle in the figures, degrees.  [default: -180:180]",
+)
+@click.option(
+    "--overlay",
+    type=options.FILE,
+    metavar="FILE.csv",
+    help=(
+        "Lay points over the figures: a column of degrees (lengths in the file's unit) "
+        "for each of some joints, with their names in the first line; needs --out."
+    ),
+)
+@options.figure_options
 @options.atlas_options
 def map_command(
     linkage: str,
@@ -68,6 +85,9 @@ def map_command(
     digits: int | None,
     axes: tuple[str, ...] | None,
     against: tuple[str, ...] | None,
+    window: tuple[float, float] | None,
+    overlay: Path | None,
+    figures: options.FigureOptions,
     choice: options.AtlasOptions,
 ) -> None:
     """Map every motion form of a linkage, every bifurcation, and the graph between
@@ -78,6 +98,7 @@ def map_command(
       bifurc map bennett --param alpha=70 --param beta=30
       bifurc map special-double-subtractive-goldberg --out out
       bifurc map bricard-line-symmetric --out out --axes 1,5 --against 1
+      bifurc map bennett --out out --format pdf --size 3.4x2.6 --range 0:360
       bifurc map my_linkage.toml --json > map.json
       bifurc map printed_table.csv --nearest --out out
       bifurc map five_bar.toml --lock J1=40
@@ -88,15 +109,15 @@ def map_command(
     from linkages.app.atlas_source import explore_parts
     from linkages.app.choice import parts_of
     from linkages.app.files import figure_axes
-    from linkages.app.output import require_folder
+    from linkages.app.output import require_folder, require_out
 
-    require_out(out, axes=axes, against=against)
+    require_out(out)
     if digits:
         allow_digits(as_json, nearest, choice.hold)
     mechanism, exact = choose_mapped(linkage, choice, nearest)
     parts = parts_of(mechanism)
     folders = folders_of(out, len(parts))
-    over = [figure_axes(part, axes, against) for part in parts]
+    over = [figure_axes(part, axes, against, window, overlay) for part in parts]
     for folder in folders:
         require_folder(folder)
     # Ctrl-C ends the search, but not before what was found is shown and written
@@ -111,7 +132,7 @@ def map_command(
             ]
     if digits:
         confirm(atlases, linkage, choice.parameters, digits)
-    write_all_pictures(atlases, folders, paths, over)
+    write_all_pictures(atlases, folders, paths, over, figures)
     has_steps = not as_json and len(atlases) == 1
     steps = next_steps_of(atlases[0], linkage, choice, out is not None)
     end(atlases, as_json, steps if has_steps else "")
@@ -122,6 +143,7 @@ def write_all_pictures(
     folders: Sequence[Path | None],
     written: Sequence[Sequence[Path]],
     over: Sequence[FigureAxes],
+    look: options.FigureOptions,
 ) -> None:
     """Write the figures and the page of every map into its folder, if there is one, and
     say what is in it besides the files ``written`` before."""
@@ -129,7 +151,7 @@ def write_all_pictures(
 
     for k, folder in enumerate(folders):
         if folder is not None:
-            pictures = write_pictures(atlases[k], folder, over[k])
+            pictures = write_pictures(atlases[k], folder, over[k], look)
             say_written([*written[k], *pictures], folder)
 
 
@@ -238,7 +260,9 @@ def write_numbers(atlas: Atlas, out: Path | None, exact: str = "") -> list[Path]
         return write_data(atlas, out, make_summary(atlas), more, others)
 
 
-def write_pictures(atlas: Atlas, out: Path, over: FigureAxes) -> list[Path]:
+def write_pictures(
+    atlas: Atlas, out: Path, over: FigureAxes, look: options.FigureOptions
+) -> list[Path]:
     """The paths of the figures, and of the page that `bifurc view` makes, just written
     to ``out``."""
     from linkages.app.answer.verdict import judge
@@ -248,23 +272,6 @@ def write_pictures(atlas: Atlas, out: Path, over: FigureAxes) -> list[Path]:
     from linkages.viewing.page import write_page
 
     with writing_to(out):
-        figures = write_figures(atlas, out, over)
+        figures = write_figures(atlas, out, over, look)
         document = make_view_document(atlas, judge(atlas).sentence)
         return [*figures, write_page(document, out / "map.html")]
-
-
-def require_digits(as_json: bool, hold: options.HoldOptions) -> None:
-    """Raise `CommandError` for options that do not go with ``--digits``."""
-    if as_json:
-        raise CommandError(
-            "--digits: it has no place in the JSON document; leave out --json"
-        )
-    if hold.is_without_centre:
-        raise CommandError("--digits: it does not go with --without-centre")
-
-
-def require_out(out: Path | None, **figures: tuple[str, ...] | None) -> None:
-    """Raise `CommandError` for options of figures where no figure is written."""
-    for name, value in figures.items():
-        if value is not None and out is None:
-            raise CommandError(f"--{name}: figures are only drawn with --out DIR")

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.form_order import listed_numbers
 from bifurc.tables import section, section_of
 from bifurc.torus import wrap
 from linkages.app.texts.configurations import SHOWN_SHARE
 from linkages.app.texts.crease_text import assigned_creases, describe_creases
-from linkages.app.texts.form_names import listed_numbers
 from linkages.app.texts.hanging_text import describe_hanging, mobility_with_flaps
 from linkages.app.texts.numbers import in_degrees, in_lengths, known_to
 from linkages.mechanisms.joint import Joint

@@ -80,7 +80,7 @@ def test_an_interrupt_while_a_file_is_written_leaves_no_half_of_it(
 ):
     import bifurc.figures.plotting
 
-    def half(atlas, folder, others):
+    def half(atlas, folder, *_):
         (folder / "transition_map.png").write_bytes(b"half")
         raise KeyboardInterrupt
 
