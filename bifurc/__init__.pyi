@@ -26,7 +26,11 @@ from .errors import BifurcError as BifurcError
 from .errors import ProblemError as ProblemError
 from .errors import RouteError as RouteError
 from .figures.diagram_plot import plot_diagram as plot_diagram
+from .figures.form_graph import plot_form_graph as plot_form_graph
+from .figures.plotting import plot_joint_angles as plot_joint_angles
 from .figures.plotting import plot_transition_map as plot_transition_map
+from .figures.selection import Selection as Selection
+from .figures.singular_values import plot_singular_values as plot_singular_values
 from .files.dataset import AtlasFileError as AtlasFileError
 from .files.dataset import from_dataset as from_dataset
 from .files.dataset import load_atlas as load_atlas
@@ -51,6 +55,9 @@ from .problem import Problem as Problem
 from .routes.route import Leg as Leg
 from .routes.route import Route as Route
 from .routes.route import find_route as find_route
+from .routes.route import find_routes as find_routes
+from .routes.wishes import Cost as Cost
+from .routes.wishes import Wishes as Wishes
 from .search.branches.certification import certify_atlas as certify_atlas
 from .search.explore import explore as explore
 from .seeds import Audit as Audit

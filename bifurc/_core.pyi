@@ -221,6 +221,17 @@ class Tape:
         length: float,
         is_sparse: bool,
     ) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
+    def follow_paths(
+        self,
+        starts: np.ndarray,
+        first: np.ndarray,
+        last: np.ndarray,
+        combinations: np.ndarray,
+        order: int,
+        tolerance: float,
+        most_steps: int,
+        seconds: float,
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
     def project(
         self,
         units: np.ndarray,

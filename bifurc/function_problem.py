@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -23,6 +22,7 @@ from bifurc.domain import Domain
 from bifurc.equations.evaluation import Equations, noise_of
 from bifurc.equations.recording import Recording, record
 from bifurc.equations.system import CompiledSystem, ScaledTape
+from bifurc.equations.tape import Tape
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.bordered import as_dense
@@ -156,6 +156,10 @@ class EquationProblem(NumericalProblem):
         tape = self.equations.tape
         if tape is not None:
             self.compiled = ScaledTape(tape, magnitude, self.domain, region)
+
+    def tapes_on_rims(self) -> Iterable[Tape]:
+        """The equations together with each of the rims that end the region."""
+        return ()
 
     @property
     def recording(self) -> Recording:
@@ -308,11 +312,11 @@ class FunctionProblem(EquationProblem):
             for probe in probes:
                 self._check_jacobian(probe)
             sizes = [_spectral_norm(jacobian_at(self, probe)) for probe in probes]
-        known = [size for size in sizes if math.isfinite(size)]
-        if not known:
+        if not np.any(np.isfinite(sizes)):
             allowed = "finite somewhere inside the bounds"
             raise ProblemError("derivative of the function", np.nan, allowed)
-        self._take_magnitude(float(np.median(known)) or 1.0)
+        magnitude = self.equations.typical_size(probes, sizes, self.domain.scale)
+        self._take_magnitude(magnitude)
 
     def _measure_noise(self, probes: np.ndarray) -> None:
         """See how noisy the values are about the probes (k, n), where they are not
@@ -543,13 +547,16 @@ def _checked_texts(name: str, texts: Sequence[str]) -> tuple[str, ...]:
 
 
 def _spectral_norm(matrix: np.ndarray | sparray) -> float:
-    """Largest singular value of a dense matrix; for a sparse one the bound sqrt(|A|_1
-    |A|_inf)."""
+    """Largest singular value of a dense matrix; for a sparse or a large one the bound
+    sqrt(|A|_1 |A|_inf)."""
     if isinstance(matrix, np.ndarray):
-        return float(np.linalg.norm(matrix, ord=2))
-    from scipy.sparse import csc_array
+        if max(matrix.shape) <= LARGEST_COMPARED:
+            return float(np.linalg.norm(matrix, ord=2))
+        sizes: np.ndarray | sparray = abs(matrix)
+    else:
+        from scipy.sparse import csc_array
 
-    sizes: np.ndarray | sparray = abs(csc_array(matrix))
+        sizes = abs(csc_array(matrix))
     largest_column = sizes.sum(axis=0).max()
     largest_row = sizes.sum(axis=1).max()
     return float(np.sqrt(largest_column * largest_row))

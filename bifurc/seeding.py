@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from bifurc.decisions import is_start_solved
-from bifurc.limits import Deadline, current_deadline
+from bifurc.limits import Deadline, current_deadline, is_time_over
 from bifurc.problem import Problem
 from bifurc.seeds import Seeds
 from bifurc.torus import wrap
 
-AT_ONCE = 10  # starts between two looks at the clock
+AT_ONCE = 10  # starts between two looks at the clock, fewer where these
+QUICK = 0.1  # s or more take
 CONFIDENCE = 0.95  # of the limit of the probability that something was missed
 
 
@@ -42,7 +44,11 @@ def random_seeds(
         points = wrap(points, problem.domain.periods)
     is_solved = is_start_solved(gaps)
     if homes is not None:
-        points[is_solved] = homes(points[is_solved])
+        for k in np.flatnonzero(is_solved):
+            if is_time_over():  # as if this start and the next had not been drawn
+                points, gaps, is_solved = points[:k], gaps[:k], is_solved[:k]
+                break
+            points[k] = homes(points[[k]])[0]
     is_taken = is_solved & problem.domain.are_inside(points)
     solutions = points[is_taken]
     return Seeds(
@@ -62,12 +68,15 @@ def _projected(
     is_whole = deadline.seconds == np.inf and not problem.domain.is_large
     if is_whole or not len(starts):
         return problem.project(starts)
-    at_once = 1 if problem.domain.is_large else AT_ONCE
-    parts = []
-    for begin in range(0, len(starts), at_once):
+    parts: list[tuple[np.ndarray, np.ndarray]] = []
+    begin, at_once = 0, 1
+    while begin < len(starts) and not (parts and deadline.passed):
+        began = time.perf_counter()
         parts.append(problem.project(starts[begin : begin + at_once]))
-        if deadline.passed:
-            break
+        begin += at_once
+        is_quick = time.perf_counter() - began < QUICK
+        if is_quick and not problem.domain.is_large:
+            at_once = min(2 * at_once, AT_ONCE)
     points, gaps = zip(*parts, strict=True)
     return np.concatenate(points), np.concatenate(gaps)
 

@@ -15,10 +15,15 @@ from bifurc.limits import Deadline
 @dataclass(frozen=True, eq=False)
 class Audit:
     """What a problem can say of a list of branches: its ``claims``, and ``starts``
-    (k, n) from which a missing branch may be reached."""
+    (k, n) from which a missing branch may be reached.
+
+    ``has_all_isolated``: whether every solution of the problem is isolated, and among
+    the starts of the search.
+    """
 
     claims: tuple[Claim, ...]
     starts: np.ndarray
+    has_all_isolated: bool = False
 
     @property
     def level(self) -> Level:

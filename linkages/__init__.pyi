@@ -19,6 +19,7 @@ from .mechanisms.subject import mechanism_of as mechanism_of
 from .parameters.followed import follow_points as follow_points
 from .parameters.members import Members as Members
 from .parameters.special import special_values as special_values
+from .pictures.plot_linkage import plot_linkage as plot_linkage
 from .readout.readout import Readout as Readout
 from .slices.assemblies import Assemblies as Assemblies
 from .slices.assemblies import isolated_assemblies as isolated_assemblies

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 def load(source: str | Path, **parameters: float) -> Linkage | Mechanism:
     """The linkage or the network called ``source`` in the catalogue, or the linkage or
-    the mechanism read from a file: TOML, FOLD, MJCF, SDF or a CUIK world.
+    the mechanism read from a file: TOML, FOLD, MJCF, SDF, URDF or a CUIK
+    world.
 
     ``parameters`` are those of a family, angles in rad, the others at their defaults; a
     file takes none. Raises `UnknownLinkageError` with the nearest names,

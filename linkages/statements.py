@@ -14,7 +14,11 @@ from bifurc.completeness import (
 )
 
 LinkageClaim = Kinds(ClaimKind, __file__, "claims")
-ALL_ASSEMBLIES = (LinkageClaim.ALL_FOLLOWED, LinkageClaim.ALL_BUILT)
+ALL_ASSEMBLIES = (
+    LinkageClaim.ALL_FOLLOWED,
+    LinkageClaim.ALL_BUILT,
+    LinkageClaim.ALL_OF_GROUPS,
+)
 
 
 def random_assemblies() -> Claim:

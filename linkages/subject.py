@@ -263,15 +263,21 @@ class MechanismSubject(Subject):
     @property
     def drivers(self) -> list[int]:
         """The unknowns, by index, of the first joint that is free, and of those with
-        limits."""
+        limits, which every slide has."""
         free = [one for one in self.mechanism.variables if one.label in self.labels]
-        limited = [one for one in free if one.limits is not None]
+        limited = [one for one in free if one.limits or not one.motion.is_turn]
         labels = {one.label for one in [*free[:1], *limited]}
         return [k for k, label in enumerate(self.labels) if label in labels]
 
     def labelled(self, atlas: Atlas) -> Atlas:
         """With labels on the forms."""
-        return label_atlas(atlas, self.closure, self.values)
+        return self._as_assigned(label_atlas(atlas, self.closure, self.values))
+
+    def _as_assigned(self, atlas: Atlas) -> Atlas:
+        """The atlas with the names of forms that fold creases as they are assigned."""
+        from linkages.readout.assignment import named_as_assigned
+
+        return named_as_assigned(atlas, self.readout)
 
     def closure_with_errors(self, error: float, rng: np.random.Generator) -> Problem:
         """Every joint is off on each body that it joins (`draw_errors`): out of the
@@ -388,7 +394,8 @@ class SingleLoopSubject(MechanismSubject):
         """With names of forms, in the variables of the joints."""
         named = name_atlas(atlas, Linkage(self.table))
         back = self.to_angles.inverse
-        return recount_labelled(named, back, self.unknowns, self.values)
+        recounted = recount_labelled(named, back, self.unknowns, self.values)
+        return self._as_assigned(recounted)
 
     def in_loop_angles(self, atlas: Atlas) -> Atlas:
         names, subject = self.traced.domain.names, subject_of(self.table)
@@ -396,9 +403,11 @@ class SingleLoopSubject(MechanismSubject):
 
     @cached_property
     def parts(self) -> Parts:
-        """The links."""
-        from linkages.links.parts import Links
+        """The links; the bodies, where they are panels, or others hang on them."""
+        from linkages.links.parts import Bodies, Links
 
+        if self.mechanism.panels or self.readout.structure.hanging.pairs:
+            return Bodies(self.readout.structure)
         return Links(self.table, self.to_angles, self.unknowns, self.orientation)
 
     @property

@@ -37,6 +37,7 @@ from linkages.app.options import FILE
 from linkages.catalogue import entry
 from linkages.slices.elimination import slice_configurations
 from studies.methods.cases import bratu
+from studies.study import Study
 
 LINKAGE = "special-double-subtractive-goldberg"
 UNPROVED = SearchSettings(prove=False, certify=False)
@@ -171,7 +172,7 @@ def _processor() -> str:
     return platform.processor()
 
 
-@click.command()
+@click.command(cls=Study)
 @click.option(
     "--out",
     default="bench.json",

@@ -30,6 +30,7 @@ from linkages import Closure, GeometryError, Loop
 from linkages.app.options import FOLDER
 from linkages.catalogue import entry
 from studies.bench import median_time
+from studies.study import Study
 
 MOST_JOINTS = 7  # of a loop that moves along curves
 
@@ -199,7 +200,7 @@ def _draw_gaps(axes: Axes, costs: list[Cost]) -> None:
     )
 
 
-@click.command()
+@click.command(cls=Study)
 @click.option(
     "--out",
     default="branch_cost",

@@ -28,6 +28,7 @@ import click
 import numpy as np
 
 from bifurc import Atlas, FunctionProblem, Kind, Level, SearchSettings, explore
+from studies.study import Study, require_known
 
 BANK = Path(__file__).parent.parent / "data" / "curves.json"
 SCALES = (1e-6, 1e-3, 10.0, 1e3, 1e6)
@@ -264,7 +265,7 @@ def _print_table(runs: Sequence[Run]) -> None:
         print("| " + " | ".join(map(str, cells)) + " |")
 
 
-@click.command(help=__doc__)
+@click.command(cls=Study, help=__doc__)
 @click.option(
     "--changes", "kinds", multiple=True, help="Kind of change.  [default: all]"
 )
@@ -280,6 +281,10 @@ def main(
     every: int,
 ) -> None:
     """Run the bank and print what is not right, and the table."""
+    curves = load_curves()
+    require_known("--names", names, [curve.name for curve in curves])
+    changes = [change.kind for curve in curves for change in changes_of(curve)]
+    require_known("--changes", kinds, changes)
     runs: list[Run] = []
     count = 0
     for curve, change, seed in _questions(kinds, names, seeds):

@@ -30,6 +30,7 @@ from linkages.app.sweep.run import run_sweep
 from linkages.app.sweep.store import open_sweep
 from linkages.catalogue import entry
 from linkages.entry import ParameterKind
+from studies.study import Study
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -146,7 +147,7 @@ def draw(datasets: dict[Plane, xr.Dataset], path: Path) -> None:
     figure.savefig(path, dpi=160)
 
 
-@click.command()
+@click.command(cls=Study)
 @click.option(
     "--out",
     default="design_space",

@@ -29,6 +29,7 @@ from bifurc.tables import table
 from linkages import Loop, map_linkage
 from linkages.app.options import FOLDER
 from linkages.catalogue import entry
+from studies.study import Study, require_known
 
 # Powers of ten of the errors, in half decades.
 ERRORS = 10.0 ** -np.arange(3.0, 16.25, 0.5)
@@ -268,7 +269,7 @@ def _draw_verdicts(axes: Axes, groups: Sequence[Sequence[Answer]]) -> None:
     axes.set(xlabel="error (of the characteristic length, or rad)")
 
 
-@click.command(help=__doc__)
+@click.command(cls=Study, help=__doc__)
 @click.option(
     "--out",
     type=FOLDER,
@@ -281,6 +282,7 @@ def _draw_verdicts(axes: Axes, groups: Sequence[Sequence[Answer]]) -> None:
 @click.option("--only", multiple=True, help="Linkages to look at; all without it.")
 def main(out: Path, seeds: int, only: Sequence[str]) -> None:
     """Run the study."""
+    require_known("--only", only, [change.linkage for change in CHANGES])
     groups = []
     for change in CHANGES:
         if only and change.linkage not in only:

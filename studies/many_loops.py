@@ -31,6 +31,7 @@ from linkages import Closure, Mechanism
 from linkages.files.fold import read_fold
 from studies.bennett_lattice import locked_lattice
 from studies.miura import miura
+from studies.study import Study
 
 FOLD = 0.8  # rad, along the zigzags
 PLACES = 2000  # along a form, at which it is checked
@@ -134,7 +135,7 @@ def draw(costs: dict[str, list[FormCost]]) -> Figure:
     return figure
 
 
-@click.command()
+@click.command(cls=Study)
 @click.option("--out", type=Path, default=Path("out/many_loops"), show_default=True)
 @click.option("--largest", type=click.IntRange(2, 20), default=10, show_default=True)
 def main(out: Path, largest: int) -> None:

@@ -43,6 +43,7 @@ from studies.methods.fields import (
     bratu_field,
     fast_poisson,
 )
+from studies.study import Study
 
 # Inner points a side of the square: halves of the step, and 10,000 unknowns, whose sine
 # transforms are of a length that is no product of small primes, and slow.
@@ -210,7 +211,7 @@ def _write(costs: Sequence[FoldCost], out: Path) -> None:
     draw(costs).savefig(out / "many_unknowns.png", dpi=150)
 
 
-@click.command()
+@click.command(cls=Study)
 @click.option("--out", type=Path, default=Path("out/many_unknowns"), show_default=True)
 @click.option("--largest", type=click.IntRange(31), default=511, show_default=True)
 def main(out: Path, largest: int) -> None:

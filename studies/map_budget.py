@@ -28,6 +28,7 @@ from bifurc import MarchSettings, trace_branch
 from bifurc.curves.continuation import DEFAULT_SETTINGS
 from linkages import Closure, Linkage, load_linkage, map_linkage
 from linkages.app.options import FOLDER
+from studies.study import Study
 
 LINKAGE = "special-double-subtractive-goldberg"
 MAPS = 20
@@ -191,7 +192,7 @@ def _least_seconds(work: Callable[[], object]) -> float:
 # --- the study ------------------------------------------------------------------------
 
 
-@click.command(help=__doc__)
+@click.command(cls=Study, help=__doc__)
 @click.argument("name", default=LINKAGE)
 @click.option("--out", type=FOLDER)
 def main(name: str, out: Path | None) -> None:

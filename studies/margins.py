@@ -49,6 +49,7 @@ from linkages.networks.network import Network
 from studies.hard_cases import crossings
 from studies.near_misses import near_misses
 from studies.near_something_larger import FAMILIES
+from studies.study import Study
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -393,7 +394,7 @@ def _margin_text(margin: Margin) -> str:
     return "Not met in these cases."
 
 
-@click.command()
+@click.command(cls=Study)
 @click.option("--members", default=2, help="random members of each linkage")
 @click.option("--near", default=60, help="linkages that nearly bifurcate")
 @click.option("--page", "target", is_flag=True, help=f"write {PAGE}")

@@ -24,6 +24,7 @@ from bifurc import Atlas, Level, SearchSettings, explore
 from bifurc.tables import table
 from linkages import Closure, GeometryError, Loop
 from linkages.catalogue import catalogue, entry
+from studies.study import Study
 
 FIRST = SearchSettings(starts=1, prove=True)
 SECOND = SearchSettings(starts=1500)
@@ -73,7 +74,7 @@ def _lengths(atlas: Atlas) -> list[float]:
     return sorted(form.branch.length for form in atlas.forms)
 
 
-@click.command()
+@click.command(cls=Study)
 @click.option(
     "--count",
     default=500,

@@ -27,6 +27,7 @@ from bifurc.curves.monitor import profile_branch
 from bifurc.singular.locate import locate_singular_point
 from bifurc.tables import table
 from studies.near_misses import NearMiss, near_misses
+from studies.study import Study
 
 STEPS = (0.1, 0.5)
 
@@ -168,7 +169,7 @@ def describe_certificates(traces: Sequence[Trace]) -> str:
     return table(("family", "step", *kinds, "points", "most", "ms", "most"), rows)
 
 
-@click.command(help=__doc__)
+@click.command(cls=Study, help=__doc__)
 @click.option(
     "--count",
     type=click.IntRange(1),

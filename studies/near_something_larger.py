@@ -30,6 +30,7 @@ from linkages.app.options import NamedPath
 from linkages.catalogue import entry
 from linkages.families.bennett import bennett
 from linkages.families.four_bar import four_bar, kite, parallelogram
+from studies.study import Study
 
 HALF_DECADES = tuple(0.5 * k for k in range(2, 29))  # -log10 e, from 1 to 14
 BUDGET = 60.0  # s for one map
@@ -230,7 +231,7 @@ def _cells(
     return cells
 
 
-@click.command(help=__doc__)
+@click.command(cls=Study, help=__doc__)
 @click.option("--out", type=NamedPath(), required=True)
 @click.option("--seeds", type=click.IntRange(1), default=5, show_default=True)
 def main(out: Path, seeds: int) -> None:

@@ -24,6 +24,7 @@ from linkages.app.options import FOLDER
 from linkages.catalogue import catalogue
 from linkages.viewing.document import make_view_document
 from linkages.viewing.page import LARGEST, make_page, viewer_script
+from studies.study import Study
 
 PAGE = Path("docs/page_sizes.md")
 
@@ -77,7 +78,7 @@ HEAD = """# Sizes of the pages of `bifurc view`
 """
 
 
-@click.command()
+@click.command(cls=Study)
 @click.option("--out", type=FOLDER)
 @click.option("--page", is_flag=True, help="Write docs/page_sizes.md.")
 def main(out: Path | None, page: bool) -> None:

@@ -16,6 +16,7 @@ from studies.errata_page import errata_page
 from studies.figures_page import figures_page
 from studies.negative_controls import controls_page
 from studies.results_page import results_page
+from studies.study import Study
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGES: dict[str, Callable[[], str]] = {
@@ -26,7 +27,9 @@ PAGES: dict[str, Callable[[], str]] = {
 }
 
 
-@click.command(help="Write pages of the docs that come out of the code anew.")
+@click.command(
+    cls=Study, help="Write pages of the docs that come out of the code anew."
+)
 @click.argument("names", nargs=-1, type=click.Choice(list(PAGES)))
 def main(names: tuple[str, ...]) -> None:
     """Write the pages named; all without names."""

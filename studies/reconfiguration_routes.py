@@ -31,6 +31,7 @@ from bifurc import (
 )
 from linkages import load, map_linkage
 from linkages.app.options import FOLDER
+from studies.study import Study
 
 LINKAGES = (
     "special-double-subtractive-goldberg",
@@ -123,7 +124,7 @@ def draw(axes: Axes, name: str, atlas: Atlas, ways: list[Way]) -> None:
     axes.set_title(name, fontsize=9)
 
 
-@click.command(help=__doc__)
+@click.command(cls=Study, help=__doc__)
 @click.argument("names", nargs=-1)
 @click.option("--out", type=FOLDER, default=Path("out") / "reconfiguration_routes")
 def main(names: tuple[str, ...], out: Path) -> None:

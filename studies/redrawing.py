@@ -15,6 +15,7 @@ from bifurc.files.atomic import replace_files
 from linkages.app.files import write_data, write_figures
 from linkages.app.options import FOLDER
 from linkages.app.texts.summary import make_summary
+from studies.study import Study
 
 HOLDS = 1e-9  # rad
 
@@ -43,7 +44,8 @@ class Redrawing:
         """The study as a command with the option ``--out``."""
 
         @click.command(
-            help=f"Draw {self.figure} anew, with all tables and files of `bifurc map`."
+            cls=Study,
+            help=f"Draw {self.figure} anew, with all tables and files of `bifurc map`.",
         )
         @click.option(
             "--out",

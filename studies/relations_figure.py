@@ -22,6 +22,7 @@ from matplotlib.patches import FancyArrowPatch
 from linkages.app.options import FOLDER
 from linkages.entry import RelationKind
 from linkages.relations import relation_graph
+from studies.study import Study
 
 
 class Line(NamedTuple):
@@ -210,7 +211,7 @@ def _mean_height(graph: nx.MultiDiGraph, name: str, heights: dict[str, float]) -
     return float(np.mean([heights[name], *neighbours]))
 
 
-@click.command()
+@click.command(cls=Study)
 @click.option(
     "--out",
     type=FOLDER,

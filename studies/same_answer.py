@@ -28,7 +28,9 @@ import click
 
 from bifurc.tables import section
 from linkages.app.options import FOLDER
+from linkages.catalogue import catalogue
 from studies.same_answer_maps import Comparison
+from studies.study import Study, require_known
 
 KERNELS = ("Prescott", "Nehalem", "Haswell", "Zen", "SkylakeX")
 HEADS = ("kernel", "linkage", "seed", "draw", "seconds", "differences")
@@ -119,7 +121,7 @@ def _run(
     return comparisons
 
 
-@click.command(help=__doc__)
+@click.command(cls=Study, help=__doc__)
 @click.argument("names", nargs=-1)
 @click.option("--seeds", type=click.IntRange(0), default=10, show_default=True)
 @click.option("--draws", type=click.IntRange(0), default=20, show_default=True)
@@ -134,6 +136,7 @@ def main(
 ) -> None:
     """Run the study; write maps.csv and summary.txt. The exit code is 1 where a map
     differs."""
+    require_known("NAME", names, catalogue())
     out.mkdir(parents=True, exist_ok=True)
     reference = out / "reference.json"
     write_reference(reference, names)

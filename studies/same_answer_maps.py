@@ -24,6 +24,7 @@ from linkages.catalogue import catalogue
 from linkages.labelling import name_atlas
 from studies.document_differences import differences
 from studies.noisy_loop import noisy_closure
+from studies.study import Study
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ def compare_maps(
         yield Comparison(name, draw, draw, time.perf_counter() - began, lines)
 
 
-@click.command(help=__doc__)
+@click.command(cls=Study, help=__doc__)
 @click.argument("reference", type=NamedPath())
 @click.argument("names", nargs=-1)
 @click.option("--seeds", type=int, default=10)

@@ -32,6 +32,7 @@ from bifurc.tables import count_of, section
 from linkages import Closure, Mechanism, map_linkage
 from linkages.app.options import FOLDER
 from studies.known_mechanisms import WAYS, KnownMechanism, known_mechanisms
+from studies.study import Study
 
 CLOSE = 1e-6  # of lengths of forms, over 1 or their size
 CLOSED = 1e-14  # relative residual of the reference configuration
@@ -228,7 +229,7 @@ def _named(names: Sequence[str]) -> dict[str, KnownMechanism]:
     return chosen
 
 
-@click.command(help=__doc__)
+@click.command(cls=Study, help=__doc__)
 @click.argument("names", nargs=-1)
 @click.option("--seeds", type=click.IntRange(1), default=10, show_default=True)
 @click.option(

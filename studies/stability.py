@@ -37,6 +37,7 @@ from studies.stability_arcs import STEPS, follow_ladder, followers
 from studies.stability_figure import draw_stability
 from studies.stability_points import report_points, reporters
 from studies.stability_runs import Run, Verdict
+from studies.study import Study
 
 IMPERFECTIONS = 10.0 ** -np.arange(1.0, 13.0)
 NOTE_LENGTH = 60  # characters of a note that are shown
@@ -179,7 +180,7 @@ def _write_runs(path: Path, runs: Sequence[Run]) -> None:
         writer.writerows(asdict(run) for run in runs)
 
 
-@click.command(help=__doc__)
+@click.command(cls=Study, help=__doc__)
 @click.option(
     "--out",
     type=FOLDER,

@@ -29,6 +29,7 @@ import numpy as np
 from linkages.app.options import FOLDER
 from linkages.app.sweep.plan import Plan, read_plan
 from linkages.app.sweep.run import run_sweep
+from studies.study import Study
 
 MEBIBYTE = 2.0**20
 LOOKS = 100
@@ -113,7 +114,7 @@ def _scheduler(workers: int, dask: bool) -> Iterator[str | None]:
         yield cluster.scheduler_address
 
 
-@click.command()
+@click.command(cls=Study)
 @click.option("--family", default="bennett", show_default=True)
 @click.option(
     "--members",

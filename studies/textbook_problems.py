@@ -17,6 +17,7 @@ from collections.abc import Sequence
 import click
 import numpy as np
 
+from studies.study import Study, require_known
 from studies.textbook.comparison import Comparison, Verdict, compare
 from studies.textbook.problems import TextbookProblem, load_problems
 
@@ -78,7 +79,7 @@ def _print_summary(comparisons: Sequence[Comparison]) -> None:
     print(f"{words}; median {np.median(seconds):.2g} s, most {max(seconds):.2g} s")
 
 
-@click.command(help=__doc__)
+@click.command(cls=Study, help=__doc__)
 @click.option("--names", multiple=True, help="Only these problems.")
 @click.option("--collections", multiple=True, help="Only problems of these.")
 @click.option("--seeds", type=click.IntRange(1), default=1, show_default=True)
@@ -94,9 +95,13 @@ def main(
     points: bool,
 ) -> None:
     """Run the problems and print the table."""
+    problems = load_problems()
+    require_known("--names", names, [problem.name for problem in problems])
+    collected = [problem.collection for problem in problems]
+    require_known("--collections", collections, collected)
     comparisons = []
     print(HEAD)
-    for problem in load_problems():
+    for problem in problems:
         is_named = not names or problem.name in names
         is_of_one = not collections or problem.collection in collections
         if not is_named or not is_of_one or problem.problem.n > largest:

@@ -16,10 +16,12 @@ from collections.abc import Sequence
 
 import click
 
-from bifurc import SymbolicProblem, TraceSettings, trace_branch
+from bifurc import TraceSettings, trace_branch
+from bifurc.equations.expression_problem import ExpressionProblem
 from studies.methods import auto07p
 from studies.methods.cases import Case
 from studies.methods.roster import Method, orders_of_this_project
+from studies.study import Study, require_known
 from studies.textbook.fortran import fortran_of
 from studies.textbook.problems import TextbookProblem, load_problems
 from studies.work_precision import least_in_turn, measure
@@ -43,7 +45,7 @@ def case_of(problem: TextbookProblem) -> Case | None:
     """The longest form of a problem, from its begin to its end; None for a problem that
     is not in a file, and where no exact curve is traced in the units of the file."""
     equations = problem.problem
-    if not isinstance(equations, SymbolicProblem):
+    if not isinstance(equations, ExpressionProblem):
         return None
     atlas = problem.explore(0, 60.0)
     branch = max(atlas.forms, key=lambda form: form.branch.length).branch
@@ -92,10 +94,11 @@ def _cells(
     return ["-" if run is None else f"{1e3 * next(times):.2g}" for run in fastest]
 
 
-@click.command(help=__doc__)
+@click.command(cls=Study, help=__doc__)
 @click.option("--names", multiple=True, help="Only these problems.")
 def main(names: tuple[str, ...]) -> None:
     """Measure both, and print times in milliseconds."""
+    require_known("--names", names, [problem.name for problem in load_problems()])
     methods = [one for one in orders_of_this_project() if one.order == ORDER]
     if auto07p.has_auto():
         methods.append(Method("AUTO-07p", auto07p.auto_07p))

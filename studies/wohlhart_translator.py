@@ -31,6 +31,7 @@ from linkages.families.wohlhart import wohlhart_symmetric
 from linkages.source_figures.draw import draw_source_figure
 from linkages.source_figures.table import figure_named
 from studies.redrawing import Claim, judge
+from studies.study import Study
 
 TWISTS = (75, 90, 105, 120, 150)
 FIGURES = range(3, 13)
@@ -124,7 +125,9 @@ def _normal(triangle: np.ndarray) -> np.ndarray:
     return np.asarray(normal / np.linalg.norm(normal, axis=1, keepdims=True))
 
 
-@click.command(help="Draw figures 3 to 12 of Racila and Dahan 2010 anew, with a table.")
+@click.command(
+    cls=Study, help="Draw figures 3 to 12 of Racila and Dahan 2010 anew, with a table."
+)
 @click.option(
     "--out",
     type=FOLDER,

@@ -36,6 +36,7 @@ from studies.methods.cases import Case, all_cases
 from studies.methods.curve import Curve, MethodFailure
 from studies.methods.exact import COVER, distance_in_digits, largest_distance
 from studies.methods.roster import Method, comparison_methods, orders_of_this_project
+from studies.study import Study, require_known
 from studies.work_precision_figures import draw_case, draw_ratios
 from studies.work_precision_findings import TOLERANCES, ratios, summarise
 from studies.work_precision_runs import Run
@@ -183,7 +184,7 @@ def _write_csv(
         writer.writerows(rows)
 
 
-@click.command()
+@click.command(cls=Study)
 @click.option(
     "--out",
     default="work_precision",
@@ -201,6 +202,7 @@ def _write_csv(
 @click.option("--case", "names", multiple=True, help="Only these curves.")
 def main(out: Path, quick: bool, names: tuple[str, ...]) -> None:
     """Measure every method on every curve, and draw time against error."""
+    require_known("--case", names, [case.name for case in all_cases()])
     out.mkdir(parents=True, exist_ok=True)
     cases = [case for case in all_cases() if not names or case.name in names]
     methods = [*orders_of_this_project(), *comparison_methods()]

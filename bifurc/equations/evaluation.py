@@ -8,17 +8,19 @@ computational noise).
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from math import comb
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from bifurc.checks import floats_of
 from bifurc.equations.recording import Recording
 from bifurc.equations.tape import Tape, rounding_of_constants
+from bifurc.errors import ProblemError
 from bifurc.numerics.bordered import as_dense
 from bifurc.units import Units
 
@@ -28,6 +30,8 @@ if TYPE_CHECKING:
 
 COMPLEX_STEP = 1e-100  # its square vanishes beside 1, and it costs no digits
 DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences of F
+VALUE, SHOWN = "value of the function", 4  # unknowns of a place in an error
+MADE_BY_ROUNDING = 10.0  # times bounds on the rounding of F
 SOLVED_IN_NOISE = 30.0  # times the noise, below which a value is zero
 
 # From a point (n,) to F (m,), and to F' (m, n), dense or sparse.
@@ -71,7 +75,7 @@ class Equations:
             recording = Recording(in_units)
 
         def function(point: np.ndarray) -> np.ndarray:
-            value = self.function(units.outwards(point))
+            value = self._called(units.outwards(point))
             weighted: np.ndarray = units.weights * np.asarray(value)
             return weighted
 
@@ -106,8 +110,11 @@ class Equations:
         if self.given_jacobian is not None:
             return "given"
         try:
-            by_complex = self.complex_step(probe)
-        except (TypeError, ValueError, np.exceptions.ComplexWarning):
+            with warnings.catch_warnings():
+                # what drops imaginary parts with a word is found out below
+                warnings.simplefilter("ignore", np.exceptions.ComplexWarning)
+                by_complex = self.complex_step(probe)
+        except (TypeError, ValueError):
             return "central differences"
         by_difference = self.central_difference(probe)
         if by_complex.shape != by_difference.shape:
@@ -118,7 +125,21 @@ class Equations:
 
     def value(self, point: np.ndarray) -> np.ndarray:
         """What the function gives at one point (n,), as an array."""
-        return floats_of("value of the function", self.function(point.copy()))
+        return floats_of(VALUE, self._called(point))
+
+    def _called(self, point: np.ndarray) -> Any:
+        """What the function gives at one point (n,), which it may change; raises
+        `ProblemError` for an error that says that the function has no value there."""
+        try:
+            return self.function(point.copy())
+        except ProblemError:  # it says where already
+            raise
+        except (ValueError, ArithmeticError) as error:
+            place = ", ".join(f"{x:.6g}" for x in point[:SHOWN])
+            more = ", ..." if len(point) > SHOWN else ""
+            what = f"{type(error).__name__} ({error}) at ({place}{more})"
+            allowed = "a vector of numbers; nan where it is not defined"
+            raise ProblemError(VALUE, what, allowed) from error
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""
@@ -127,10 +148,8 @@ class Equations:
             return self.tape.compiled.residuals(
                 np.ascontiguousarray(points, dtype=float)
             )
-        function = self.function  # called thousands of times a curve
         with np.errstate(all="ignore"):  # beyond the rim of where it is defined
-            # a copy: it may change its argument
-            values = [function(point.copy()) for point in points]
+            values = [self._called(point) for point in points]
         exact = np.array(values, dtype=float).reshape(len(points), self.m)
         if self.noise is None:
             return exact
@@ -161,7 +180,7 @@ class Equations:
     def jacobian_as_given(self, point: np.ndarray) -> np.ndarray | sparray:
         """What the ``given_jacobian`` is at one point (n,)."""
         assert self.given_jacobian is not None
-        jacobian = self.given_jacobian(point)
+        jacobian = self.given_jacobian(point.copy())
         is_sparse = hasattr(jacobian, "tocsc")
         return jacobian if is_sparse else np.asarray(jacobian, dtype=float)
 
@@ -169,7 +188,7 @@ class Equations:
         """F' (m, n) at one point (n,) by complex step."""
         columns = []
         for shifted in point + 1j * COMPLEX_STEP * np.eye(len(point)):
-            value = np.asarray(self.function(shifted))
+            value = np.asarray(self._called(shifted))
             columns.append(np.imag(value) / COMPLEX_STEP)
         return np.column_stack(columns)
 
@@ -185,6 +204,22 @@ class Equations:
             width = 2 * step[i]
             columns.append((upper - lower) / width)
         return np.column_stack(columns)
+
+    def typical_size(
+        self, points: np.ndarray, sizes: Sequence[float], scale: float
+    ) -> float:
+        """The median of the ``sizes`` (k,) of F' at points (k, n), without those that are
+        not finite, and without those that rounding of F makes over a length ``scale``:
+        F may be constant in a part of the region. 1 where nothing is left."""
+        known = np.array(sizes)
+        counts = np.isfinite(known)
+        if self.tape is not None:
+            points = np.ascontiguousarray(points, dtype=float)
+            low, high = self.tape.compiled.value_bounds(points, points)
+            widths = np.nan_to_num(np.linalg.norm(high - low, axis=1), posinf=0.0)
+            is_rounding = known * scale <= MADE_BY_ROUNDING * widths
+            counts &= ~is_rounding | bool(np.all(is_rounding | ~counts))
+        return (float(np.median(known[counts])) if counts.any() else 0.0) or 1.0
 
     @property
     def coefficient_rounding(self) -> Callable[[np.ndarray], np.ndarray] | None:

@@ -16,12 +16,11 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from fractions import Fraction
 from typing import NamedTuple
 
-import sympy
-
+from bifurc.equations.program import CONSTANTS, NEGATIVE, SIGNS, Program, Step
 from bifurc.errors import BifurcError
 
 LONGEST_TEXT = 20_000  # characters
@@ -44,33 +43,22 @@ class ExpressionError(BifurcError, ValueError):
     """A text that is no expression in the known symbols: what is wrong with it."""
 
 
-class _Function(NamedTuple):
-    """A function by its number of arguments, in sympy and in doubles; ``is_partial``:
-    whether there are arguments for which it is not defined."""
-
-    arguments: int
-    symbolic: Callable[..., sympy.Expr]
-    in_doubles: Callable[..., float]
-    is_partial: bool
-
-
 _OF_ONE = (
     *("sin", "cos", "tan", "asin", "acos", "atan"),
     *("sinh", "cosh", "tanh", "asinh", "acosh", "atanh"),
     *("exp", "log", "sqrt"),
 )
-_PARTIAL = {"tan", "asin", "acos", "acosh", "atanh", "log", "sqrt"}
-_FUNCTIONS: dict[str, _Function] = {
-    name: _Function(1, getattr(sympy, name), getattr(math, name), name in _PARTIAL)
-    for name in _OF_ONE
+_SYNONYMS = {
+    "ln": "log",
+    **{f"arc{name[1:]}": name for name in _OF_ONE if name.startswith("a")},
 }
-_FUNCTIONS["atan2"] = _Function(2, sympy.atan2, math.atan2, True)
-_FUNCTIONS["ln"] = _FUNCTIONS["log"]
-for _name in ("sin", "cos", "tan", "sinh", "cosh", "tanh"):
-    _FUNCTIONS[f"arc{_name}"] = _FUNCTIONS[f"a{_name}"]
+_IN_DOUBLES: dict[str, Callable[..., float]] = {
+    **{name: getattr(math, name) for name in (*_OF_ONE, "atan2")},
+    **SIGNS,
+    "^": math.pow,
+}
 
-FUNCTION_NAMES = tuple(sorted(_FUNCTIONS))
-CONSTANTS = ("pi", "e")
+FUNCTION_NAMES = tuple(sorted((*_OF_ONE, *_SYNONYMS, "atan2")))
 WITHOUT_DERIVATIVE = {
     "abs": "has no derivative at 0; sqrt(x^2) is |x| where x is never 0",
     "sign": "has no derivative at 0",
@@ -83,38 +71,13 @@ WITHOUT_DERIVATIVE = {
 }
 
 
-@dataclass(frozen=True)
-class Part:
-    """An expression or a part of one, its ``value`` where it is a constant, and of how
-    many numbers, symbols and operations it is made.
+class Part(NamedTuple):
+    """An expression or a part of one: its ``place`` in a program, its ``value`` where it
+    is a constant, and of how many numbers, symbols and operations it is made."""
 
-    SymPy simplifies an ``expression``, as sqrt(x)^2 to x, without regard to where it is
-    defined. ``unsimplified`` is what the text says, None where that is defined
-    everywhere.
-    """
-
-    expression: sympy.Expr
+    place: int
     value: float | None = None
     size: int = 1
-    unsimplified: sympy.Expr | None = None
-
-    @property
-    def as_written(self) -> sympy.Expr:
-        """The expression, defined where the text is."""
-        return self.expression if self.unsimplified is None else self.unsimplified
-
-    def minus(self, other: Part) -> Part:
-        """The difference to another part, as for the two sides of an equation."""
-        parts = (self, other)
-        written = _unsimplified(_difference, parts, False)
-        expression = self.expression - other.expression
-        return Part(expression, None, self.size + other.size, written)
-
-
-_CONSTANT_PARTS = {
-    "pi": Part(sympy.pi, math.pi),
-    "e": Part(sympy.E, math.e),
-}
 
 
 class _Token(NamedTuple):
@@ -125,8 +88,9 @@ class _Token(NamedTuple):
     column: int
 
 
-def parse_expression(text: str, symbols: Mapping[str, Part]) -> Part:
-    """What a text in the known ``symbols`` says; decimals are exact.
+def parse_expression(text: str, symbols: Mapping[str, Part], program: Program) -> Part:
+    """What a text in the known ``symbols`` says, written on their ``program``; decimals
+    are exact.
 
     Raises `ExpressionError` that says what cannot be read, and at which column; of a
     name that is not known the nearest one.
@@ -134,7 +98,7 @@ def parse_expression(text: str, symbols: Mapping[str, Part]) -> Part:
     if len(text) > LONGEST_TEXT:
         reason = f"it has {len(text)} characters; the most are {LONGEST_TEXT}"
         raise ExpressionError(reason)
-    reader = _Reader(_tokens(text.translate(SYNONYMS)), symbols)
+    reader = _Reader(_tokens(text.translate(SYNONYMS)), symbols, program)
     return reader.whole()
 
 
@@ -158,9 +122,12 @@ def _tokens(text: str) -> list[_Token]:
 class _Reader:
     """The tokens of a text while they are read, one after the other."""
 
-    def __init__(self, tokens: list[_Token], symbols: Mapping[str, Part]):
+    def __init__(
+        self, tokens: list[_Token], symbols: Mapping[str, Part], program: Program
+    ):
         self._tokens = tokens
         self._symbols = symbols
+        self._program = program
         self._place = 0
         self._depth = 0
 
@@ -178,11 +145,7 @@ class _Reader:
         left = self._product()
         while self._next.text in ("+", "-"):
             sign = self._take()
-            right = self._product()
-            if sign.text == "+":
-                left = _combined(sympy.Add, lambda a, b: a + b, sign, left, right)
-            else:
-                left = _combined(_difference, lambda a, b: a - b, sign, left, right)
+            left = self._combined(sign.text, sign, left, self._product())
         self._depth -= 1
         return left
 
@@ -190,19 +153,7 @@ class _Reader:
         left = self._signed()
         while self._next.text in ("*", "/"):
             sign = self._take()
-            right = self._signed()
-            if sign.text == "*":
-                left = _combined(sympy.Mul, lambda a, b: a * b, sign, left, right)
-            else:
-                is_partial = right.value is None
-                left = _combined(
-                    _quotient,
-                    lambda a, b: a / b,
-                    sign,
-                    left,
-                    right,
-                    is_partial=is_partial,
-                )
+            left = self._combined(sign.text, sign, left, self._signed())
         return left
 
     def _signed(self) -> Part:
@@ -211,7 +162,7 @@ class _Reader:
             sign = self._take()
             part = self._signed()
             if sign.text == "-":
-                part = _combined(_negative, lambda a: -a, sign, part)
+                part = self._combined(NEGATIVE, sign, part)
         else:
             part = self._power()
         self._depth -= 1
@@ -229,18 +180,12 @@ class _Reader:
                 f"the exponent {value:g} at column {sign.column + len(sign.text)} is "
                 f"larger than {LARGEST_EXPONENT}"
             )
-        if _bits_of_power(base.expression, exponent.expression) > MOST_BITS:
-            reason = f"the power at column {sign.column} is a number of too many digits"
-            raise ExpressionError(reason)
-        is_partial = not _is_power_everywhere(base.value, value)
-        return _combined(
-            sympy.Pow, math.pow, sign, base, exponent, is_partial=is_partial
-        )
+        return self._combined("^", sign, base, exponent)
 
     def _atom(self) -> Part:
         token = self._take()
         if token.kind == "number":
-            return _number(token)
+            return self._number(token)
         if token.kind == "name":
             if self._next.text == "(":
                 return self._call(token)
@@ -253,8 +198,7 @@ class _Reader:
         return inner
 
     def _call(self, name: _Token) -> Part:
-        function = _FUNCTIONS.get(name.text)
-        if function is None:
+        if name.text not in FUNCTION_NAMES:
             raise self._no_function(name)
         bracket = self._take()
         arguments = [self._sum()]
@@ -262,24 +206,66 @@ class _Reader:
             self._take()
             arguments.append(self._sum())
         self._expect(")", bracket)
-        if len(arguments) != function.arguments:
+        function = _SYNONYMS.get(name.text, name.text)
+        right_number = 2 if function == "atan2" else 1
+        if len(arguments) != right_number:
             raise ExpressionError(
                 f"{name.text} at column {name.column} has {len(arguments)} arguments; "
-                f"it must have {function.arguments}"
+                f"it must have {right_number}"
             )
-        return _combined(
-            function.symbolic,
-            function.in_doubles,
-            name,
-            *arguments,
-            is_partial=function.is_partial,
-        )
+        return self._combined(function, name, *arguments)
 
     def _symbol(self, name: _Token) -> Part:
-        part = self._symbols.get(name.text) or _CONSTANT_PARTS.get(name.text)
-        if part is None:
-            raise self._no_symbol(name)
-        return part
+        if name.text in self._symbols:
+            return self._symbols[name.text]
+        if name.text in CONSTANTS:
+            return Part(self._program.place(Step(name.text)), CONSTANTS[name.text])
+        raise self._no_symbol(name)
+
+    def _number(self, token: _Token) -> Part:
+        value = _value_of(token)
+        number = Fraction(token.text) if value else Fraction(0)
+        return Part(self._program.place(Step(number=number)), value)
+
+    def _combined(self, function: str, token: _Token, *parts: Part) -> Part:
+        """What a sign or a function makes of some parts; its value comes first, so that
+        no constant grows beyond bounds."""
+        places = tuple(part.place for part in parts)
+        step = Step(function, places)
+        values = [part.value for part in parts if part.value is not None]
+        value = None
+        if len(values) == len(parts):
+            value = _value(_IN_DOUBLES[function], token, values)
+            number = self._exact(function, token, places)
+            if number is not None:
+                step, value = Step(number=number), float(number)
+        elif function == "/" and parts[1].value == 0.0:
+            reason = "gives no real number: below it is 0"
+            raise ExpressionError(f"/ at column {token.column} {reason}")
+        size = 1 + sum(part.size for part in parts)
+        if size > LARGEST:
+            reason = (
+                f"it is made of more than {LARGEST} operations with its definitions"
+            )
+            raise ExpressionError(reason)
+        return Part(self._program.place(step), value, size)
+
+    def _exact(
+        self, function: str, token: _Token, places: Sequence[int]
+    ) -> Fraction | None:
+        """What a sign makes of rational numbers; None where it is not rational, or they
+        are not. Raises `ExpressionError` for a power of too many digits."""
+        numbers = []
+        for place in places:
+            number = self._program.steps[place].number
+            if number is None:
+                return None
+            numbers.append(number)
+        if function == "^":
+            return _power(token, *numbers)
+        if function in SIGNS:
+            return Fraction(SIGNS[function](*numbers))
+        return None
 
     # --- tokens -----------------------------------------------------------------------
 
@@ -337,15 +323,15 @@ class _Reader:
 
     def _no_symbol(self, name: _Token) -> ExpressionError:
         place = f"{name.text!r} at column {name.column}"
-        if name.text in _FUNCTIONS:
+        if name.text in FUNCTION_NAMES:
             return ExpressionError(f"{place} is a function; write {name.text}(...)")
         hint = _nearest(name.text, [*self._symbols, *CONSTANTS])
         return ExpressionError(f"there is no symbol {place}{hint}")
 
 
-def _nearest(name: str, names: object) -> str:
+def _nearest(name: str, names: Iterable[str]) -> str:
     """A hint at the nearest of the ``names``, or at all of them where they are few."""
-    known = [str(one) for one in names]  # type: ignore[attr-defined]
+    known = list(names)
     near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
     if near:
         return f"; the nearest is {near[0]!r}"
@@ -355,8 +341,8 @@ def _nearest(name: str, names: object) -> str:
 # --- arithmetic -----------------------------------------------------------------------
 
 
-def _number(token: _Token) -> Part:
-    """A number, exact; raises `ExpressionError` where no double is near it."""
+def _value_of(token: _Token) -> float:
+    """The number that is written; raises `ExpressionError` where no double is near it."""
     value = float(token.text)
     is_zero = not any(
         digit in "123456789" for digit in token.text.lower().split("e")[0]
@@ -369,59 +355,7 @@ def _number(token: _Token) -> Part:
             f"the number {token.text} at column {token.column} is outside the range"
         )
         raise ExpressionError(f"{reason} of doubles")
-    expression = sympy.Integer(0) if is_zero else sympy.Rational(token.text)
-    return Part(expression, value)
-
-
-def _combined(
-    symbolic: Callable[..., sympy.Expr],
-    in_doubles: Callable[..., float],
-    token: _Token,
-    *parts: Part,
-    is_partial: bool = False,
-) -> Part:
-    """What a function makes of some parts; its value comes first, so that no constant
-    grows beyond bounds. ``is_partial``: whether it may not be defined."""
-    values = [part.value for part in parts if part.value is not None]
-    value = None
-    if len(values) == len(parts):
-        value = _value(in_doubles, token, values)
-    size = 1 + sum(part.size for part in parts)
-    if size > LARGEST:
-        reason = f"it is made of more than {LARGEST} operations with its definitions"
-        raise ExpressionError(reason)
-    expression = symbolic(*(part.expression for part in parts))
-    if expression.has(sympy.zoo, sympy.nan, sympy.oo, sympy.I):
-        reason = f"{token.text} at column {token.column} gives no real number"
-        raise ExpressionError(reason)
-    if value is not None:
-        return Part(expression, value, size)
-    return Part(expression, value, size, _unsimplified(symbolic, parts, is_partial))
-
-
-def _unsimplified(
-    symbolic: Callable[..., sympy.Expr], parts: Sequence[Part], is_partial: bool
-) -> sympy.Expr | None:
-    """What a function makes of some parts, nothing cancelled; None where that is defined
-    everywhere."""
-    if not is_partial and all(part.unsimplified is None for part in parts):
-        return None
-    written: sympy.Expr = symbolic(*(part.as_written for part in parts), evaluate=False)
-    first = parts[0].unsimplified
-    if first is None or not (written.is_Add or written.is_Mul):
-        return written
-    if first.func is not written.func or written.args[0] is not first:
-        return written
-    # one long sum or product, not one inside the other; real numbers commute
-    together = [*first.args, *written.args[1:]]
-    return written.func._from_args(together, is_commutative=True)
-
-
-def _is_power_everywhere(base: float | None, exponent: float | None) -> bool:
-    """Whether a power is defined for all values of what is no constant (None)."""
-    if exponent is None:
-        return base is not None and base > 0.0
-    return exponent >= 0.0 and exponent.is_integer()
+    return value
 
 
 def _value(
@@ -441,22 +375,13 @@ def _value(
     return float(value)
 
 
-def _bits_of_power(base: sympy.Expr, exponent: sympy.Expr) -> int:
-    """How long an exact power of an exact number is, 0 for any other."""
-    if not base.is_Rational or not exponent.is_Rational:
-        return 0
-    bits = int(base.p).bit_length() + int(base.q).bit_length()
-    return int(bits * abs(exponent))
-
-
-def _difference(a: sympy.Expr, b: sympy.Expr, *, evaluate: bool = True) -> sympy.Expr:
-    return sympy.Add(a, _negative(b, evaluate=evaluate), evaluate=evaluate)
-
-
-def _quotient(a: sympy.Expr, b: sympy.Expr, *, evaluate: bool = True) -> sympy.Expr:
-    reciprocal = sympy.Pow(b, -1, evaluate=evaluate)
-    return sympy.Mul(a, reciprocal, evaluate=evaluate)
-
-
-def _negative(a: sympy.Expr, *, evaluate: bool = True) -> sympy.Expr:
-    return sympy.Mul(-1, a, evaluate=evaluate)
+def _power(token: _Token, base: Fraction, exponent: Fraction) -> Fraction | None:
+    """A power of rational numbers, None where it is not rational, as a rule; raises
+    `ExpressionError` where it has too many digits."""
+    bits = base.numerator.bit_length() + base.denominator.bit_length()
+    if bits * abs(exponent) > MOST_BITS:
+        reason = f"the power at column {token.column} is a number of too many digits"
+        raise ExpressionError(reason)
+    if exponent.denominator > 1:
+        return None
+    return base**exponent.numerator

@@ -22,9 +22,7 @@ from bifurc.equations.rims import NO_RIMS, Rims, at_rim, rims_of, without_root
 from bifurc.equations.tape import PARTIAL, Node, Operation, Tape, TapeWriter
 
 if TYPE_CHECKING:
-    from sympy.polys.rings import (
-        PolyElement,
-    )  # SymPy takes longer to import than a search
+    from flint import fmpq_mpoly  # few searches need it
 
 MOST_TERMS = 400  # of a polynomial whose factors are looked for
 
@@ -222,7 +220,7 @@ def _polynomial_powers(
     degrees = zip(generators, polynomial.degrees(), strict=True)
     if any(not degree and nodes[k].operation in PARTIAL for k, degree in degrees):
         return None  # log(x) - log(x) is zero for positive x only
-    _, factors = polynomial.sqf_list()
+    _, factors = polynomial.factor_squarefree()
     shifted = [
         writer.add(slot, writer.constant(-shift)) if shift else slot
         for slot, shift in zip(generators, shifts, strict=True)
@@ -268,30 +266,28 @@ def _polynomial_part(writer: TapeWriter, output: int) -> list[int]:
 
 def _expanded(
     nodes: dict[int, Node], output: int, shifts: dict[int, float]
-) -> PolyElement | None:
+) -> fmpq_mpoly | None:
     """The polynomial in slot ``output`` over the rational numbers, in the generators,
     given by their slots, less the ``shifts`` of them; None where it has more than
     `MOST_TERMS`."""
-    from sympy import QQ, ring
+    from flint import fmpq, fmpq_mpoly_ctx
 
-    domain, *symbols = ring([f"g{slot}" for slot in shifts], QQ)
-    values: dict[int, PolyElement] = {
-        slot: symbol + domain(QQ(*shift.as_integer_ratio()))
-        for (slot, shift), symbol in zip(shifts.items(), symbols, strict=True)
+    domain = fmpq_mpoly_ctx.get([f"g{slot}" for slot in shifts])
+    values: dict[int, fmpq_mpoly] = {
+        slot: symbol + fmpq(*shift.as_integer_ratio())
+        for (slot, shift), symbol in zip(shifts.items(), domain.gens(), strict=True)
     }
     for slot, node in nodes.items():
         if slot in values:
             continue
-        number = domain(QQ(*node.constant.as_integer_ratio()))
-        values[slot] = _value(node, number, values)
+        number = fmpq(*node.constant.as_integer_ratio())
+        values[slot] = _value(node, domain.constant(number), values)
         if len(values[slot]) > MOST_TERMS:
             return None
     return values[output]
 
 
-def _value(
-    node: Node, number: PolyElement, values: dict[int, PolyElement]
-) -> PolyElement:
+def _value(node: Node, number: fmpq_mpoly, values: dict[int, fmpq_mpoly]) -> fmpq_mpoly:
     """The polynomial that an operation on polynomials gives, with its constant as a
     ``number``."""
     if node.operation is Operation.CONSTANT:
@@ -302,7 +298,7 @@ def _value(
     if node.operation is Operation.SCALE:
         return left * number
     if node.operation is Operation.OVER:
-        return left.quo_ground(number.LC)
+        return left / number
     right = values[node.right]
     if node.operation is Operation.ADD:
         return left + right
@@ -312,14 +308,14 @@ def _value(
 
 
 def _written(
-    writer: TapeWriter, polynomial: PolyElement, generators: Sequence[int]
+    writer: TapeWriter, polynomial: fmpq_mpoly, generators: Sequence[int]
 ) -> int:
     """The slot of a polynomial, its largest coefficient 1, in slots ``generators``."""
-    largest = max(abs(value) for value in polynomial.values())
+    largest = max(abs(value) for value in polynomial.coeffs())
     total = writer.constant(0.0)
     for exponents, value in polynomial.terms():
         share = value / largest
-        term = writer.constant(int(share.numerator) / int(share.denominator))
+        term = writer.constant(int(share.p) / int(share.q))
         for slot, exponent in zip(generators, exponents, strict=True):
             power = writer.power(slot, writer.constant(float(exponent)))
             term = writer.multiply(term, power)

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import sympy
 
-from bifurc.equations.recording import Recording
+from bifurc.equations.expression_problem import TapeProblem
 from bifurc.equations.tape import (
     FUNCTIONS,
     Operation,
@@ -19,7 +17,6 @@ from bifurc.equations.tape import (
     real_values,
 )
 from bifurc.errors import ProblemError
-from bifurc.function_problem import FunctionProblem
 
 if TYPE_CHECKING:
     import mpmath
@@ -37,7 +34,7 @@ _RECIPROCALS = {
 }
 
 
-class SymbolicProblem(FunctionProblem):
+class SymbolicProblem(TapeProblem):
     """The problem that sympy ``expressions`` in the ``unknowns`` are zero.
 
     An expression may be an equation `sympy.Eq`. ``bounds`` (n, 2) and ``periods`` (n,)
@@ -60,13 +57,8 @@ class SymbolicProblem(FunctionProblem):
         names = [symbol.name for symbol in self.unknowns]
         if len(bounds) != len(names):
             raise ProblemError("number of bounds", len(bounds), f"{len(names)}")
-        self._tape = _tape_of(self.expressions, self.unknowns)
-        function = _TapeFunction(self._tape)
-        super().__init__(function, bounds, names=names, units=units, periods=periods)
-
-    def _recorded(self, points: np.ndarray) -> Recording:
-        """The tape of the expressions."""
-        return Recording(self._tape)
+        tape = _tape_of(self.expressions, self.unknowns)
+        super().__init__(tape, bounds, names=names, units=units, periods=periods)
 
     def precise_residual(self) -> PreciseResidual:
         """F over mpmath numbers, to whatever precision is set; it raises `ValueError`
@@ -77,35 +69,6 @@ class SymbolicProblem(FunctionProblem):
             return real_values(function(unknowns))
 
         return residual
-
-
-@dataclass(frozen=True)
-class SymbolicFunction:
-    """A function of unknowns (n,), from a tape with one output."""
-
-    tape: Tape
-
-    @staticmethod
-    def of(
-        expression: sympy.Expr, unknowns: Sequence[sympy.Symbol]
-    ) -> SymbolicFunction:
-        """The function that a sympy expression is; raises `ProblemError`."""
-        return SymbolicFunction(_tape_of([expression], unknowns))
-
-    def __call__(self, point: np.ndarray) -> float:
-        row = np.ascontiguousarray(point, dtype=float)[None]
-        return float(self.tape.compiled.residuals(row)[0, 0])
-
-
-@dataclass(frozen=True)
-class _TapeFunction:
-    """F (m,) at one point (n,), from a tape."""
-
-    tape: Tape
-
-    def __call__(self, point: np.ndarray) -> np.ndarray:
-        values: np.ndarray = self.tape.compiled.residuals(point[None])[0]
-        return values
 
 
 # --- checks ---------------------------------------------------------------------------

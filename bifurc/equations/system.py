@@ -8,7 +8,8 @@ the way in and out.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Protocol
@@ -19,6 +20,7 @@ from bifurc import _core
 from bifurc.checks import rows_of
 from bifurc.domain import Domain
 from bifurc.equations.tape import Tape, real_values
+from bifurc.limits import check_time, has_to_end
 from bifurc.system import (
     CurveNodes,
     March,
@@ -48,6 +50,7 @@ ROUNDING = 4e-16  # below this residual a projection has nothing left to gain
 PROJECTION_STEPS = 80
 # unit of what is held, over that of the rest: its columns of F' are so small that the
 # damping of a projection, 1e-14 at least, leaves next to nothing of its steps
+QUICK = 0.05  # s between two looks at the clock
 HELD = 2.0**-40
 SPHERE_STEPS = 25
 ROUNDING_OF_MARCH = 1e-15  # what a march takes it to be, over magnitude and unit
@@ -326,30 +329,58 @@ class ScaledTape:
         units = self._units
         if is_held is not None:
             units = np.where(is_held, HELD * self._unit, self._unit)
-        points, gaps = self.tape.compiled.project(
-            units,
-            self._weights,
-            _contiguous(starts) / units,
-            ROUNDING,
-            PROJECTION_STEPS,
-            self.is_factored_sparse,
-        )
-        return units * points, self._unit * gaps
+
+        def project(some: np.ndarray) -> tuple[np.ndarray, ...]:
+            points, gaps = self.tape.compiled.project(
+                units,
+                self._weights,
+                _contiguous(some) / units,
+                ROUNDING,
+                PROJECTION_STEPS,
+                self.is_factored_sparse,
+            )
+            return units * points, self._unit * gaps
+
+        points, gaps = _in_time(project, starts)
+        return points, gaps
 
     def project_to_sphere(
         self, starts: np.ndarray, center: np.ndarray, radius: float
     ) -> SphereProjection:
         """Solutions near starts (k, n) at distance ``radius`` from ``center`` (n,)."""
         unit = self._unit
-        points, gaps, last_steps = self.tape.compiled.project_to_sphere(
-            self._units,
-            self._weights,
-            _contiguous(starts) / unit,
-            _contiguous(center) / unit,
-            radius / unit,
-            SPHERE_STEPS,
-        )
-        return SphereProjection(unit * points, unit * gaps, unit * last_steps)
+
+        def project(some: np.ndarray) -> tuple[np.ndarray, ...]:
+            points, gaps, last_steps = self.tape.compiled.project_to_sphere(
+                self._units,
+                self._weights,
+                _contiguous(some) / unit,
+                _contiguous(center) / unit,
+                radius / unit,
+                SPHERE_STEPS,
+            )
+            return unit * points, unit * gaps, unit * last_steps
+
+        return SphereProjection(*_in_time(project, starts))
+
+
+def _in_time(
+    project: Callable[[np.ndarray], tuple[np.ndarray, ...]], starts: np.ndarray
+) -> tuple[np.ndarray, ...]:
+    """What a function makes of starts (k, n), row by row; where it may have to end
+    before, of some after the other. Raises `TimeOver`."""
+    if not has_to_end() or not len(starts):
+        return project(starts)
+    parts = []
+    begin, count = 0, 1
+    while begin < len(starts):
+        check_time()
+        began = time.perf_counter()
+        parts.append(project(starts[begin : begin + count]))
+        begin += count
+        if time.perf_counter() - began < QUICK:
+            count *= 2
+    return tuple(np.concatenate(columns) for columns in zip(*parts, strict=True))
 
 
 def _contiguous(values: np.ndarray) -> np.ndarray:

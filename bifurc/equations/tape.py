@@ -309,7 +309,9 @@ class TapeWriter:
         self._nodes: list[Node] = []
         self._rules: dict[int, int] = {}
         self._slots: dict[Node, int] = {}
-        self._dropped: set[int] = set()  # multiplied by 0, or raised to the power 0
+        self._dropped: set[int] = (
+            set()
+        )  # multiplied by 0, raised to the power 0, or less itself
 
     def tape(self, outputs: Sequence[int]) -> Tape:
         """The tape whose equations stand in the slots ``outputs``."""
@@ -414,6 +416,9 @@ class TapeWriter:
             return self._shifted(self._scaled(right, -1.0), a)
         if b is not None:
             return self._shifted(left, -b)
+        if left == right:
+            self._dropped.add(left)
+            return self.constant(0.0)
         return self._slot(Node(Operation.SUBTRACT, left, right))
 
     def multiply(self, left: int, right: int) -> int:

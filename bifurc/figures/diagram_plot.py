@@ -6,7 +6,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -16,14 +15,18 @@ from bifurc.checks import check_type
 from bifurc.diagrams.diagram import Stability, Stretch
 from bifurc.figures.drawing import note_emptiness, widen_flat_axes
 from bifurc.figures.labels import label_spots
+from bifurc.figures.layout import Canvas, Margins, PanelPlan, figure_of, lay_out
 from bifurc.figures.quantities import AxisRequest, Quantity, quantity_of
-from bifurc.figures.rendering import RC
-from bifurc.figures.style import COLORS, Dashes, Properties, Style
+from bifurc.figures.rc import drawing_style, line_style
+from bifurc.figures.selection import EVERYTHING
+from bifurc.figures.style import Dashes, Properties, Style
 from bifurc.singular.point import Kind
 
 PIECE_POINTS = 16  # drawn on each piece of a form, at least
 STRETCH_POINTS = 200  # and on each stretch
 LINE_WIDTH = 1.6
+MARGINS = Margins(0.75, 0.15, 0.5, 0.15)
+LEAST_HEIGHT = 1.4  # of the frame, in inches
 DASHES: dict[Stability, Dashes] = {
     Stability.STABLE: "-",
     Stability.UNSTABLE: (0, (4, 2)),
@@ -47,7 +50,9 @@ def plot_diagram(
     atlas: Atlas,
     horizontal: AxisRequest | None = None,
     vertical: AxisRequest = "|u|",
-    figure: Figure | None = None,
+    figure: Canvas | None = None,
+    *,
+    ax: Axes | None = None,
 ) -> Figure:
     """The bifurcation diagram of an atlas in the plane of two quantities.
 
@@ -55,54 +60,60 @@ def plot_diagram(
     Euclidean norm of all unknowns but the parameter, or a function of the unknowns
     (n,); ``horizontal`` is the parameter where nothing is said. Stable stretches are
     solid, unstable ones dashed, neutral ones dotted; where no stability is known all
-    are solid. Raises `ProblemError` for a quantity that is not there.
+    are solid. It is drawn into ``ax``, or with a legend into a ``figure`` or a part of
+    one, or into a new one. Raises `ProblemError` for a quantity that is not there.
     """
     check_type("atlas", atlas, Atlas)
     if horizontal is None:
         named = atlas.diagram.parameter if atlas.diagram else ""
         horizontal = named or atlas.names[-1]
     x, y = quantity_of(atlas, horizontal), quantity_of(atlas, vertical)
-    with rc_context(RC):
-        figure = figure or Figure(figsize=(6.4, 4.4), layout="constrained")
-        axes = figure.subplots()
-        stabilities = _draw_stretches(axes, atlas, x, y)
-        marks = _draw_marks(axes, atlas, x, y)
-        axes.set_xlabel(x.label)
-        axes.set_ylabel(y.label)
-        axes.grid(True)
-        axes.margins(0.04)
-        widen_flat_axes(axes, atlas)
-        _draw_legend(figure, atlas, stabilities, marks)
-        note_emptiness(axes, atlas)
+    with drawing_style():
+        entries = _legend_entries(atlas)
+        if ax is None:
+            plan = PanelPlan(1, 1, 4.5, 3.6, MARGINS, least_height=LEAST_HEIGHT)
+            figure, (ax,), _ = lay_out(figure, plan, entries)
+        _draw_stretches(ax, atlas, x, y)
+        _draw_marks(ax, atlas, x, y)
+        ax.set_xlabel(x.label)
+        ax.set_ylabel(y.label)
+        ax.grid(True)
+        ax.margins(0.04)
+        widen_flat_axes(ax, atlas)
+        note_emptiness(ax, atlas)
         marked = _marked(atlas)
         names = [name for name, _, _ in marked]
-        label_spots(axes, names, [_spot(u, x, y) for _, _, u in marked])
-    return figure
+        label_spots(ax, names, [_spot(u, x, y) for _, _, u in marked])
+    return figure_of(ax)
 
 
 # --- curves ---------------------------------------------------------------------------
 
 
-def _draw_stretches(
-    axes: Axes, atlas: Atlas, x: Quantity, y: Quantity
-) -> list[Stability]:
-    """Which stabilities were drawn, in the order of the legend."""
+def _stretches(atlas: Atlas) -> list[Stretch]:
+    """All that is drawn of the forms, by its stability."""
     stretches = list(atlas.diagram.stretches) if atlas.diagram else []
     covered = {stretch.form for stretch in stretches}
     for number, form in enumerate(atlas.forms):
         if number not in covered:
             length = form.branch.length
             stretches.append(Stretch(number, 0.0, length, Stability.UNKNOWN, -1))
-    for stretch in stretches:
+    return stretches
+
+
+def _draw_stretches(axes: Axes, atlas: Atlas, x: Quantity, y: Quantity) -> None:
+    named: set[int] = set()
+    for stretch in _stretches(atlas):
         rows = _rows(atlas, stretch, x, y)
         style = Style(_color(stretch.form), DASHES[stretch.stability])
-        axes.plot(*rows.T, linewidth=LINE_WIDTH, **style.line)
-    drawn = {stretch.stability for stretch in stretches}
-    return [stability for stability in Stability if stability in drawn]
+        # a form is named once, for a legend
+        name = atlas.forms[stretch.form].name if stretch.form not in named else None
+        named.add(stretch.form)
+        axes.plot(*rows.T, linewidth=LINE_WIDTH, label=name, **style.line)
 
 
 def _color(form: int) -> str:
-    return COLORS[form % len(COLORS)]
+    return line_style(form).color
 
 
 def _rows(atlas: Atlas, stretch: Stretch, x: Quantity, y: Quantity) -> np.ndarray:
@@ -123,14 +134,10 @@ def _rows(atlas: Atlas, stretch: Stretch, x: Quantity, y: Quantity) -> np.ndarra
 # --- marks ----------------------------------------------------------------------------
 
 
-def _draw_marks(axes: Axes, atlas: Atlas, x: Quantity, y: Quantity) -> list[_Mark]:
-    """The marks that were drawn, in the order of the legend."""
-    drawn: dict[str, _Mark] = {}
+def _draw_marks(axes: Axes, atlas: Atlas, x: Quantity, y: Quantity) -> None:
     for _, mark, point in _marked(atlas):
-        drawn[mark.label] = mark
         spot = _spot(point, x, y)
         axes.plot(*spot, zorder=5, **_properties(mark))
-    return list(drawn.values())
 
 
 def _properties(mark: _Mark) -> Properties:
@@ -184,22 +191,20 @@ def _marked(atlas: Atlas) -> list[tuple[str, _Mark, np.ndarray]]:
 # --- legend ---------------------------------------------------------------------------
 
 
-def _draw_legend(
-    figure: Figure, atlas: Atlas, stabilities: list[Stability], marks: list[_Mark]
-) -> None:
+def _legend_entries(atlas: Atlas) -> list[Line2D]:
     """Forms by their colours, stabilities by their lines, points by their marks."""
-    handles = []
+    entries = []
     if len(atlas.forms) > 1:
-        for number, form in enumerate(atlas.forms):
-            line = Line2D([], [], color=_color(number), linewidth=2.6, label=form.name)
-            handles.append(line)
-    for stability in stabilities:
-        if stability is not Stability.UNKNOWN:
+        for i in EVERYTHING.indices(atlas):
+            name = atlas.forms[i].name
+            entries.append(Line2D([], [], color=_color(i), linewidth=2.6, label=name))
+    drawn = {stretch.stability for stretch in _stretches(atlas)}
+    for stability in Stability:
+        if stability in drawn and stability is not Stability.UNKNOWN:
             style = Style("0.3", DASHES[stability]).line
-            handles.append(
-                Line2D([], [], linewidth=1.6, label=stability.value, **style)
-            )
-    for mark in marks:
-        handles.append(Line2D([], [], label=mark.label, **_properties(mark)))
-    if handles:
-        figure.legend(handles=handles, loc="outside right upper", frameon=False)
+            line = Line2D([], [], linewidth=1.6, label=stability.value, **style)
+            entries.append(line)
+    marks = {mark.label: mark for _, mark, _ in _marked(atlas)}
+    for mark in marks.values():
+        entries.append(Line2D([], [], label=mark.label, **_properties(mark)))
+    return entries

@@ -1,29 +1,22 @@
-"""What figures are made of: panels at places that are known beforehand, forms and
-singular points in a plane, the legend, and a word where there is nothing to draw.
-
-A layout engine measures every text of a figure to find the same places, twice, which
-takes longer than to draw it.
-"""
+"""What figures are made of: forms and singular points in a plane, the entries of the
+legend, and a word where there is nothing to draw."""
 
 from __future__ import annotations
 
-import textwrap
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.figure import Figure
-from matplotlib.font_manager import FontProperties
 from matplotlib.lines import Line2D
-from matplotlib.textpath import text_to_path
-from matplotlib.ticker import MultipleLocator
-from matplotlib.transforms import ScaledTranslation
+from matplotlib.ticker import Locator
 
 from bifurc.atlas import Atlas, Event
+from bifurc.branch import Branch
 from bifurc.decisions import closes_to_rounding
+from bifurc.figures.layout import fix_names_of_axes
 from bifurc.figures.planes import (
     Plane,
     Scale,
@@ -32,98 +25,32 @@ from bifurc.figures.planes import (
     place_in_frame,
     shown_branches,
 )
-from bifurc.figures.rendering import RC
-from bifurc.figures.style import (
-    Properties,
-    Style,
-    form_style,
-    hollow,
-    near_motion_style,
-)
+from bifurc.figures.rc import line_style
+from bifurc.figures.selection import EVERYTHING, Selection
+from bifurc.figures.style import Properties, Style, hollow, near_motion_style
 from bifurc.singular.point import Kind, Mark
 
-NAME_WIDTH = 24  # letters of a line of the legend
-LETTER_SIZE = RC["legend.fontsize"]
-HANDLE_LENGTH = 3.2  # of the line beside a name, over the size of a letter
-HANDLE_GAP = 0.8  # between the two, over the same
-LEGEND_GAP = 0.2  # at both sides of the legend, in inches
-LINE_HEIGHT = 0.18  # of the legend, in inches
-# In inches, from the frame to the name of an axis; between them are the ticks.
-NAME_BELOW = 0.27
-NAME_LEFT = 0.46
+RIGID_LABEL = "rigid assembly"
+SURFACE_LABEL = "mobility 2 or more"
+OVERLAY_LABEL = "points laid over"
 AS_DRAWN_LABEL = "as drawn"
 AS_DRAWN: Properties = {"marker": "*", "markersize": 8, "color": "black"}
 DEAD: Properties = {"marker": "s", "markersize": 3.2, "color": "0.25"}
-RIGID_LABEL = "rigid assembly"
-SURFACE_LABEL = "mobility 2 or more"
+RIGID: Properties = {"marker": "x", "color": "0.3"}
+OVERLAY: Properties = {
+    "marker": "+",
+    "color": "black",
+    "markersize": 5,
+    "markeredgewidth": 0.9,
+}
+DEGREE_STEPS = (1, 2, 5, 10, 15, 30, 45, 90, 180)
+MOST_TICKS = 5  # from one end of an axis of angles to the other
 FLAT_SAMPLES = 32  # of each form, by which the largest unknown is seen
 FLAT = 1e-9  # of the largest unknown: an axis that shows less shows rounding
 FLAT_HALF = 0.1  # of the largest unknown: half of what is shown instead
 
 
-# --- panels ---------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Margins:
-    """Room around the panels and between them, in inches."""
-
-    left: float
-    right: float
-    bottom: float
-    top: float
-    between_columns: float = 0.0
-    between_rows: float = 0.0
-
-
-def make_panels(
-    figure: Figure,
-    count: int,
-    columns: int,
-    margins: Margins,
-    has_common_ordinate: bool = False,
-) -> list[Axes]:
-    """As many panels in a figure, row by row; those with a common ordinate carry its
-    ticks at the left."""
-    rows = -(-count // columns)
-    width, height = figure.get_size_inches()
-    inner_width = width - margins.left - margins.right
-    inner_height = height - margins.bottom - margins.top
-    gap_width = margins.between_columns
-    gap_height = margins.between_rows
-    panel_width = (inner_width - (columns - 1) * gap_width) / columns
-    panel_height = (inner_height - (rows - 1) * gap_height) / rows
-    figure.set_layout_engine("none")
-    grid = figure.add_gridspec(
-        rows,
-        columns,
-        left=margins.left / width,
-        right=1 - margins.right / width,
-        bottom=margins.bottom / height,
-        top=1 - margins.top / height,
-        wspace=gap_width / panel_width,
-        hspace=gap_height / panel_height,
-    )
-    panels: list[Axes] = []
-    for k in range(count):
-        row, column = divmod(k, columns)
-        first = panels[0] if panels and has_common_ordinate else None
-        axes = figure.add_subplot(grid[row, column], sharey=first)
-        if has_common_ordinate and column > 0:
-            axes.tick_params(labelleft=False)
-        panels.append(axes)
-    return panels
-
-
-def fix_names_of_axes(axes: Axes) -> None:
-    """Put the names of both axes where three digits and a sign have room beside them,
-    whatever the ticks are: their labels need not be measured."""
-    figure = axes.get_figure(root=True)
-    assert figure is not None
-    below = ScaledTranslation(0, -NAME_BELOW, figure.dpi_scale_trans)
-    left = ScaledTranslation(-NAME_LEFT, 0, figure.dpi_scale_trans)
-    axes.xaxis.set_label_coords(0.5, 0, axes.transAxes + below)
-    axes.yaxis.set_label_coords(0, 0.5, axes.transAxes + left)
+# --- axes -----------------------------------------------------------------------------
 
 
 def columns_of(count: int) -> int:
@@ -156,7 +83,7 @@ def name_above(axes: Axes, x: float, name: str, **style: Any) -> None:
         xycoords=("data", "axes fraction"),
         textcoords="offset points",
         ha="center",
-        fontsize=8,
+        fontsize="small",
         **style,
     )
 
@@ -166,37 +93,46 @@ def name_above(axes: Axes, x: float, name: str, **style: Any) -> None:
 
 @dataclass(frozen=True)
 class PanelSettings:
-    """How forms and points are drawn in one panel: ``line_width`` and ``mark_size`` in
-    points, each mark in its own size unless that is given."""
+    """What is drawn in one panel, and how: ``line_width`` and ``mark_size`` in points,
+    each mark in its own size unless that is given."""
 
     line_width: float = 1.8
     mark_size: float | None = None
+    selection: Selection = EVERYTHING
 
 
 DEFAULT_PANEL = PanelSettings()
 
 
+def is_part_of_turn(plane: Plane) -> bool:
+    """Whether the frame is smaller than the torus: what lies outside is not drawn.
+    (What lies on an edge of a whole torus is, over the edge.)"""
+    return any(
+        scale.is_periodic and np.ptp(scale.limits) < 2 * scale.half * (1 - FLAT)
+        for scale in plane.scales
+    )
+
+
 def draw_forms(
     axes: Axes, atlas: Atlas, plane: Plane, settings: PanelSettings = DEFAULT_PANEL
 ) -> None:
-    """All forms in a plane, near motions dotted, with axes to match."""
-    for i, branch in enumerate(shown_branches(atlas)):
-        points = plane.project(curve_points(branch))
+    """The forms in a plane that are drawn, with axes to match; lines carry the names of
+    the forms, for a legend."""
+    clip_on = is_part_of_turn(plane)
+    for curve in drawn_curves(atlas, settings.selection):
+        points = plane.project(curve_points(curve.branch))
         if len(points):
             rows = cut_to_frame(points, plane.scales)
-            # not cut at the frame, in which curves on a torus lie anyway
-            line = curve_style(atlas, i).line
-            style: Properties = {"linewidth": settings.line_width, **line}
-            axes.plot(*rows.T, clip_on=False, zorder=2, **style)
+            line = {"linewidth": settings.line_width, **curve.style.line}
+            axes.plot(*rows.T, clip_on=clip_on, zorder=2, label=curve.name, **line)
     horizontal, vertical = plane.scales
     _label_axis(axes.xaxis, horizontal)
     _label_axis(axes.yaxis, vertical)
     if horizontal.is_periodic:
-        axes.set_xlim(-horizontal.half, horizontal.half)
+        axes.set_xlim(horizontal.limits)
     if vertical.is_periodic:
-        axes.set_ylim(-vertical.half, vertical.half)
+        axes.set_ylim(vertical.limits)
     if horizontal.is_periodic and vertical.is_periodic:
-        axes.set_box_aspect(1)
         fix_names_of_axes(axes)
     widen_flat_axes(axes, atlas, (horizontal.factor, vertical.factor))
     axes.grid(True)
@@ -204,19 +140,60 @@ def draw_forms(
         spine.set_zorder(1)  # forms that lie on the edge of the frame are drawn over it
 
 
-def curve_style(atlas: Atlas, index: int) -> Style:
-    """Style of number ``index`` of the `shown_branches` of an atlas."""
-    if index < len(atlas.forms):
-        return form_style(index)
-    return near_motion_style(index)
+class DrawnCurve(NamedTuple):
+    """A form or a near motion as it is drawn."""
+
+    name: str
+    branch: Branch
+    style: Style
+
+
+def drawn_curves(atlas: Atlas, selection: Selection) -> list[DrawnCurve]:
+    """The forms that are drawn, in the order of their names; and the near motions with
+    a curve, dotted, where no forms are chosen."""
+    curves = []
+    for i in selection.indices(atlas):
+        form = atlas.forms[i]
+        curves.append(DrawnCurve(form.name, form.branch, line_style(i)))
+    if selection.forms:
+        return curves
+    index = len(atlas.forms)
+    for near in atlas.near_motions:
+        if near.branch:
+            name = f"{near.name}, misses closure by {near.misclosure:.1e}"
+            curves.append(DrawnCurve(name, near.branch, near_motion_style(index)))
+            index += 1
+    return curves
+
+
+class DegreeLocator(Locator):
+    """Ticks that divide a turn, as many as have room, up to `MOST_TICKS` parts."""
+
+    def __init__(self, has_ends: bool = True):
+        self._has_ends = has_ends
+
+    def __call__(self) -> Sequence[float]:
+        """The places of the ticks."""
+        assert self.axis is not None
+        low, high = sorted(self.axis.get_view_interval())
+        return self.tick_values(low, high)
+
+    def tick_values(self, vmin: float, vmax: float) -> Sequence[float]:
+        """The places of the ticks between two angles."""
+        assert self.axis is not None
+        most = max(min(self.axis.get_tick_space(), MOST_TICKS), 2)
+        steps = [step for step in DEGREE_STEPS if (vmax - vmin) / step <= most]
+        step = steps[0] if steps else 360
+        aside = FLAT if self._has_ends else -FLAT  # of a step
+        first, last = np.ceil(vmin / step - aside), np.floor(vmax / step + aside)
+        return [float(step * k) for k in np.arange(first, last + 1)]
 
 
 def _label_axis(axis: Axis, scale: Scale) -> None:
     """Name and ticks; a whole turn is divided by right angles."""
     axis.set_label_text(scale.label)
-    if scale.half == 180.0:
-        axis.set_major_locator(MultipleLocator(90))
-        axis.set_minor_locator(MultipleLocator(30))
+    if scale.is_degrees:
+        axis.set_major_locator(DegreeLocator())
 
 
 # --- marks ----------------------------------------------------------------------------
@@ -225,79 +202,58 @@ def _label_axis(axis: Axis, scale: Scale) -> None:
 def draw_marks(
     axes: Axes, atlas: Atlas, plane: Plane, settings: PanelSettings = DEFAULT_PANEL
 ) -> None:
-    """Singular points, isolated solutions, surfaces, and the configuration as drawn in a
-    plane, on both edges where they lie on one."""
+    """Singular points, isolated solutions and surfaces in a plane, on both edges where
+    they lie on one, and what the user lays over."""
+    clip_on = is_part_of_turn(plane)
     for surface in atlas.surfaces:
         shown = place_in_frame(plane.project(surface.samples), plane.scales)
         axes.plot(*shown.T, ".", color="0.6", markersize=2, zorder=1)
     for solution in atlas.rigid:
-        size = settings.mark_size or 5.5
-        style: Properties = {"color": "0.3", "markersize": size, "zorder": 3}
-        axes.plot(*plane.copies(solution).T, "x", clip_on=False, **style)
+        style: Properties = {"markersize": settings.mark_size or 5.5, **RIGID}
+        places = plane.copies(solution).T
+        axes.plot(*places, ls="", clip_on=clip_on, zorder=3, **style)
     _draw_as_given(axes, atlas, plane)
+    _draw_singular_points(axes, atlas, plane, settings)
+    _draw_overlay(axes, atlas, plane, settings.selection)
+
+
+def _draw_singular_points(
+    axes: Axes, atlas: Atlas, plane: Plane, settings: PanelSettings
+) -> None:
+    clip_on = is_part_of_turn(plane)
     spots: dict[Mark, list[np.ndarray]] = {}
-    for point in atlas.points:
+    for point in settings.selection.points(atlas):
         mark = point.kind.mark
         mark = mark._replace(size=settings.mark_size or mark.size)
         spots.setdefault(mark, []).append(plane.copies(point.point.u))
-    for mark, places in spots.items():
+    for mark, copies in spots.items():
         style = {"markeredgewidth": 1.1, **hollow(mark)}
-        axes.plot(*np.concatenate(places).T, ls="", clip_on=False, zorder=4, **style)
+        places = np.concatenate(copies).T
+        axes.plot(*places, ls="", clip_on=clip_on, zorder=4, **style)
+
+
+def _draw_overlay(axes: Axes, atlas: Atlas, plane: Plane, selection: Selection) -> None:
+    clip_on = is_part_of_turn(plane)
+    over = selection.points_over(
+        atlas.names[plane.horizontal], atlas.names[plane.vertical]
+    )
+    if over is not None:
+        factors = [scale.factor for scale in plane.scales]
+        shown = place_in_frame(over / factors, plane.scales)
+        axes.plot(*shown.T, ls="", clip_on=clip_on, zorder=5, **OVERLAY)
 
 
 def _draw_as_given(axes: Axes, atlas: Atlas, plane: Plane) -> None:
     """The configuration as drawn, if there is one, and dead points of drivers."""
     for event in _driven(atlas):
-        style = {"clip_on": False, "zorder": 3.5, **DEAD}
+        style = {"clip_on": is_part_of_turn(plane), "zorder": 3.5, **DEAD}
         axes.plot(*plane.copies(event.u).T, ls="", **style)
     if atlas.drawn is not None:
-        style = {"clip_on": False, "zorder": 5, **AS_DRAWN}
+        style = {"clip_on": is_part_of_turn(plane), "zorder": 5, **AS_DRAWN}
         axes.plot(*plane.copies(atlas.drawn).T, ls="", **style)
 
 
 # --- the legend -----------------------------------------------------------------------
-
-
-def draw_legend(figure: Figure, atlas: Atlas, edge: float) -> None:
-    """Names of the forms and of the marks, at the right of the figure, ``edge`` (inches)
-    below its top."""
-    width, height = figure.get_size_inches()
-    left = 1 - (legend_size(atlas).width - LEGEND_GAP) / width
-    _draw_legend(
-        figure,
-        atlas,
-        loc="upper left",
-        bbox_to_anchor=(left, 1 - edge / height),
-        borderpad=0,
-        borderaxespad=0,
-        handletextpad=HANDLE_GAP,
-    )
-
-
-def draw_legend_outside(figure: Figure, atlas: Atlas) -> None:
-    """The same at the right of a figure whose layout makes room for it."""
-    _draw_legend(figure, atlas, loc="outside right upper")
-
-
-def _draw_legend(figure: Figure, atlas: Atlas, **options: Any) -> None:
-    entries = list(_entries(atlas))
-    if entries:
-        length = HANDLE_LENGTH
-        figure.legend(handles=entries, frameon=False, handlelength=length, **options)
-
-
-def _entries(atlas: Atlas) -> Iterator[Line2D]:
-    """Entries of the forms, of the singular points, kind by kind, of isolated solutions
-    and of surfaces, as far as there are any."""
-    for i, form in enumerate(atlas.forms):
-        name = textwrap.fill(form.name, NAME_WIDTH)
-        yield Line2D([], [], linewidth=1.8, label=name, **form_style(i).line)
-    curves = [near for near in atlas.near_motions if near.branch]
-    for i, near in enumerate(curves, start=len(atlas.forms)):
-        name = f"{near.name}, misses\nclosure by {near.misclosure:.1e}"
-        yield Line2D([], [], linewidth=1.8, label=name, **near_motion_style(i).line)
-    for label, style in _marks_of(atlas):
-        yield Line2D([], [], linestyle="", label=label, **style)
 
 
 def _driven(atlas: Atlas) -> list[Event]:
@@ -312,41 +268,30 @@ def _driven(atlas: Atlas) -> list[Event]:
     return moving
 
 
-def _marks_of(atlas: Atlas) -> list[tuple[str, Properties]]:
-    """What the marks of an atlas mean, and how each is drawn."""
+def legend_entries(atlas: Atlas, selection: Selection = EVERYTHING) -> list[Line2D]:
+    """Entries of the forms in the order of their names, of the singular points, kind by
+    kind, of isolated solutions, of surfaces and of what is laid over, as far as there
+    are any."""
+    entries = []
+    for curve in drawn_curves(atlas, selection):
+        line = {"linewidth": 1.8, **curve.style.line}
+        entries.append(Line2D([], [], label=curve.name, **line))
     marks: list[tuple[str, Properties]] = []
-    for kind in dict.fromkeys(point.kind for point in atlas.points):
+    for kind in dict.fromkeys(point.kind for point in selection.points(atlas)):
         marks.append((kind.value, hollow(kind.mark)))
     if len(atlas.rigid):
-        marks.append((RIGID_LABEL, {"marker": "x", "color": "0.3"}))
+        marks.append((RIGID_LABEL, RIGID))
     if atlas.surfaces:
         marks.append((SURFACE_LABEL, {"marker": ".", "color": "0.6"}))
     for index in sorted({event.index for event in _driven(atlas)}):
         marks.append((f"dead point of {atlas.names[index]}", DEAD))
     if atlas.drawn is not None:
         marks.append((AS_DRAWN_LABEL, AS_DRAWN))
-    return marks
-
-
-class LegendSize(NamedTuple):
-    """Room that the legend takes, in inches."""
-
-    width: float
-    height: float
-
-
-def legend_size(atlas: Atlas) -> LegendSize:
-    """Room that the legend of an atlas takes, with the gaps beside it."""
-    letters = FontProperties(size=LETTER_SIZE)
-    longest = 0.0
-    height = LINE_HEIGHT
-    for entry in _entries(atlas):
-        for line in str(entry.get_label()).splitlines():
-            size = text_to_path.get_text_width_height_descent(line, letters, False)
-            longest = max(longest, size[0])
-            height += LINE_HEIGHT
-    points = longest + LETTER_SIZE * (HANDLE_LENGTH + HANDLE_GAP)
-    return LegendSize(points / 72 + 2 * LEGEND_GAP, height)
+    if selection.overlay:
+        marks.append((OVERLAY_LABEL, OVERLAY))
+    for label, style in marks:
+        entries.append(Line2D([], [], linestyle="", label=label, **style))
+    return entries
 
 
 # --- nothing to draw ------------------------------------------------------------------
@@ -358,7 +303,7 @@ def note_emptiness(axes: Axes, atlas: Atlas) -> None:
         return
     style: Properties = {"ha": "center", "va": "center", "color": "0.4"}
     note = "\n".join(emptiness(atlas))
-    axes.text(0.5, 0.5, note, transform=axes.transAxes, fontsize=11, **style)
+    axes.text(0.5, 0.5, note, transform=axes.transAxes, **style)
 
 
 def emptiness(atlas: Atlas) -> list[str]:

@@ -3,61 +3,123 @@
 from __future__ import annotations
 
 import textwrap
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from itertools import pairwise
 
 import networkx as nx
 import numpy as np
-from matplotlib import rc_context
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import text_to_path
 
 from bifurc.atlas import Atlas
 from bifurc.figures.drawing import note_emptiness
-from bifurc.figures.rendering import RC
-from bifurc.figures.style import Properties, Style, form_style
+from bifurc.figures.layout import Canvas, Size, figure_of, size_of
+from bifurc.figures.rc import drawing_style, letter_size, line_style, size_of_user
+from bifurc.figures.selection import EVERYTHING, Selection
+from bifurc.figures.style import Properties, Style
 from bifurc.graphs import transition_graph
 
 SURFACE = Style("0.6", "-")
-MARGIN = 0.9  # around the forms, in inches
 NAME_WIDTH = 16  # letters of a line in a box
+PADDING = 0.5  # of a box, over the size of its letters
+LINE = 1.25  # height of a line in it, over the same
+EDGE = 0.12  # beside a box at the rim, in inches
 CENTERED: Properties = {"ha": "center", "va": "center"}
-BOX = {"boxstyle": "round,pad=0.5", "facecolor": "white", "linewidth": 2.0}
+BOX = {"boxstyle": f"round,pad={PADDING}", "facecolor": "white", "linewidth": 2.0}
 EDGE_BOX = {"boxstyle": "square,pad=0.15", "facecolor": "white", "linewidth": 0}
 
 
-def plot_form_graph(atlas: Atlas, figure: Figure | None = None) -> Figure:
+def plot_form_graph(
+    atlas: Atlas,
+    figure: Canvas | None = None,
+    *,
+    ax: Axes | None = None,
+    selection: Selection = EVERYTHING,
+) -> Figure:
     """Forms as boxes, joined by a line for every bifurcation at which two of them meet;
     components stand apart.
 
-    Surfaces that meet a form or another surface are grey boxes.
+    Surfaces that meet a form or another surface are grey boxes. It is drawn into
+    ``ax``, or into a ``figure`` or a part of one, or into a new one.
     """
-    layout = lay_out_graph(atlas)
-    low = np.zeros(2)
-    high = np.full(2, 2.0)
-    if layout.names:
-        low = layout.places.min(axis=0) - MARGIN
-        high = layout.places.max(axis=0) + MARGIN
-    with rc_context(RC):
-        figure = figure or Figure(figsize=tuple(np.maximum(high - low, [3.2, 1.6])))
-        axes = figure.add_axes((0, 0, 1, 1))
-        axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
-        axes.set_axis_off()
-        for edge in layout.edges:
-            axes.plot(*edge.line.T, color="0.35", linewidth=1.2, zorder=1)
-            x, y = edge.label.tolist()
-            style = {"fontsize": 8.5, "zorder": 2, "bbox": EDGE_BOX, **CENTERED}
-            axes.text(x, y, edge.name, **style)
-        for i, name in enumerate(layout.names):
-            color, dashes = form_style(i) if i < len(atlas.forms) else SURFACE
-            text = textwrap.fill(name, NAME_WIDTH)
-            box = {"edgecolor": color, "linestyle": dashes, **BOX}
-            x, y = layout.places[i].tolist()
-            axes.text(x, y, text, fontsize=9, zorder=3, bbox=box, **CENTERED)
+    with drawing_style():
+        rim = _rim(atlas, selection)
+        room = _room(figure, ax)
+        layout = lay_out_graph(atlas, selection, room and room.width - 2 * rim[0])
+        low, high = _corners(layout, rim)
+        if ax is None:
+            if figure is None:
+                width, height = np.maximum(high - low, [3.2, 1.4])
+                figure = Figure(figsize=(room.width if room else width, height))
+            room = size_of(figure)
+            ax = figure.add_axes((0, 0, 1, 1))
+        # what has room is drawn to scale
+        aside = 0.5 * np.maximum(np.array(room) - (high - low), 0.0)
+        low, high = low - aside, high + aside
+        ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+        ax.set_axis_off()
+        _draw_graph(ax, atlas, layout)
         if not layout.names:
-            note_emptiness(axes, atlas)
-    return figure
+            note_emptiness(ax, atlas)
+    return figure_of(ax)
+
+
+def _corners(layout: GraphLayout, rim: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The lower left and the upper right corner (2,) of a graph whose boxes reach so
+    far, width and height (2,), in inches."""
+    if not layout.names:
+        return -rim, rim
+    low = layout.places.min(axis=0) - rim
+    high = layout.places.max(axis=0) + rim
+    for edge in layout.edges:
+        low = np.minimum(low, edge.line.min(axis=0) - EDGE)
+        high = np.maximum(high, edge.line.max(axis=0) + EDGE)
+    return low, high
+
+
+def _room(figure: Canvas | None, ax: Axes | None) -> Size | None:
+    """The size of what the graph is drawn into; None where it takes what it needs."""
+    part = ax or figure
+    if part is not None:
+        return size_of(part)
+    of_user = size_of_user()
+    return of_user and Size(*of_user)
+
+
+def _rim(atlas: Atlas, selection: Selection) -> np.ndarray:
+    """Half of the largest box, width and height (2,), with some room, in inches."""
+    letter = letter_size()
+    properties = FontProperties(size=72 * letter)
+    half = np.zeros(2)
+    for name in _names(atlas, selection):
+        lines = textwrap.wrap(name, NAME_WIDTH)
+        widths = [
+            text_to_path.get_text_width_height_descent(line, properties, False)[0]
+            for line in lines
+        ]
+        size = np.array([max(widths) / 72, LINE * letter * len(lines)])
+        half = np.maximum(half, 0.5 * size + PADDING * letter)
+    return half + EDGE
+
+
+def _draw_graph(ax: Axes, atlas: Atlas, layout: GraphLayout) -> None:
+    for edge in layout.edges:
+        ax.plot(*edge.line.T, color="0.35", linewidth=1.2, zorder=1)
+        x, y = edge.label.tolist()
+        ax.text(x, y, edge.name, zorder=2, bbox=EDGE_BOX, **CENTERED)
+    numbers = {form.name: number for number, form in enumerate(atlas.forms)}
+    for name, place in zip(layout.names, layout.places, strict=True):
+        style = line_style(numbers[name]) if name in numbers else SURFACE
+        text = textwrap.fill(name, NAME_WIDTH)
+        box = {"edgecolor": style.color, "linestyle": style.dashes, **BOX}
+        x, y = place.tolist()
+        ax.text(x, y, text, zorder=3, bbox=box, **CENTERED)
 
 
 REACH = 1.9  # distance between neighbouring forms, in inches
+ROW_REACH = 0.9  # between rows of components
 BOW = 0.34  # between neighbouring edges of the same two forms, in inches
 EDGE_POINTS = 41
 LAYOUT_STEPS = 1000  # at most; a step of the layout of twelve forms takes 40 us
@@ -87,24 +149,66 @@ class GraphLayout:
     edges: tuple[GraphEdge, ...]
 
 
-def lay_out_graph(atlas: Atlas) -> GraphLayout:
+def lay_out_graph(
+    atlas: Atlas, selection: Selection = EVERYTHING, width: float | None = None
+) -> GraphLayout:
     """The graph of forms in the plane; every component is laid out by itself, side by
-    side."""
+    side, or in rows where the ``width`` ends, inches."""
+    names = _names(atlas, selection)
+    graph = transition_graph(atlas).subgraph(names)
+    places = np.zeros((len(names), 2))
+    rows = [_Row()]
+    for indices in _components(graph, names):
+        spots = _component(graph, [names[i] for i in indices], width)
+        end = rows[-1].right + np.ptp(spots[:, 0])
+        if width is not None and rows[-1].indices and end > width:
+            rows.append(_Row())
+        spots[:, 0] += rows[-1].right - spots[:, 0].min()
+        places[indices] = spots
+        rows[-1].indices += indices
+        rows[-1].right = spots[:, 0].max() + REACH
+    for above, below in pairwise(rows):
+        top = places[above.indices, 1].min() - ROW_REACH
+        places[below.indices, 1] += top - places[below.indices, 1].max()
+    return GraphLayout(tuple(names), places, _lay_out_edges(graph, names, places))
+
+
+@dataclass
+class _Row:
+    """Components side by side: the ``indices`` of their names, and where the next one
+    begins at the ``right``."""
+
+    indices: list[int] = field(default_factory=list)
+    right: float = 0.0
+
+
+def _names(atlas: Atlas, selection: Selection) -> list[str]:
+    """The names of the forms that are drawn, and of the surfaces that meet some of them
+    or each other."""
     everything = transition_graph(atlas)
-    names = [form.name for form in atlas.forms]
+    chosen = selection.indices(atlas) if selection.forms else range(len(atlas.forms))
+    names = [atlas.forms[i].name for i in chosen]
     for surface in atlas.surfaces:
         if everything.degree(surface.name):
             names.append(surface.name)
-    graph = everything.subgraph(names)
-    places = np.zeros((len(names), 2))
-    left = 0.0
-    for indices in _components(graph, names):
-        members = [names[i] for i in indices]
-        spots = _component_places(nx.Graph(graph.subgraph(members)), members)
-        spots[:, 0] += left - spots[:, 0].min()
-        left = spots[:, 0].max() + REACH
-        places[indices] = spots
-    return GraphLayout(tuple(names), places, _lay_out_edges(graph, names, places))
+    return names
+
+
+def shows_transitions(atlas: Atlas, selection: Selection) -> bool:
+    """Whether the graph has more than one box."""
+    return len(_names(atlas, selection)) > 1
+
+
+def _fitted(spots: np.ndarray, width: float | None) -> np.ndarray:
+    """Places (k, 2), upright where they are wider than there is room, and narrower
+    where they still are."""
+    if width is None or np.ptp(spots[:, 0]) <= width:
+        return spots
+    if np.ptp(spots[:, 1]) < np.ptp(spots[:, 0]):
+        spots = np.stack([spots[:, 1], -spots[:, 0]], axis=1)
+    extent = np.ptp(spots[:, 0])
+    spots[:, 0] *= min(1.0, width / extent) if extent > 0 else 1.0
+    return spots
 
 
 # --- places ---------------------------------------------------------------------------
@@ -116,6 +220,14 @@ def _components(graph: nx.MultiGraph, names: list[str]) -> list[list[int]]:
     for members in nx.connected_components(graph):
         components.append(sorted(names.index(name) for name in members))
     return sorted(components)
+
+
+def _component(
+    graph: nx.MultiGraph, names: list[str], width: float | None
+) -> np.ndarray:
+    """Places (k, 2) of the forms of one component, fitted into a width."""
+    spots = _component_places(nx.Graph(graph.subgraph(names)), names)
+    return _fitted(spots, width)
 
 
 def _component_places(graph: nx.Graph, names: list[str]) -> np.ndarray:

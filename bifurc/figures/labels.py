@@ -7,14 +7,19 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.backend_bases import RendererBase
+from matplotlib.text import Annotation
 
 from bifurc import torus
 from bifurc.atlas import Atlas
+from bifurc.figures.layout import figure_of
 from bifurc.figures.planes import Plane, copies_in_frame
+from bifurc.figures.selection import EVERYTHING, Selection
 
 REACH = 11.0  # from a mark to its name
-REACH_FACTORS = (1.0, 1.5, 2.2)
+REACH_FACTORS = (1.0, 1.5, 2.2, 3.2)
 DIRECTIONS = [
     np.array([np.cos(a), np.sin(a)])
     for a in np.deg2rad([45, 135, 315, 225, 0, 180, 90, 270])
@@ -27,7 +32,8 @@ BACKGROUND = {
     "alpha": 0.75,
     "linewidth": 0,
 }
-SAME_MARK = 2.0  # pixels: marks that are closer share a name
+SAME_MARK = 0.005  # of the frame: marks that are closer share a name
+ROOM = 1.0  # around a name, in points
 SAME_SPOT = 0.01  # of the frame: points that are closer share a name
 
 # What a name costs in a place, over one point of a curve that it covers.
@@ -85,25 +91,28 @@ class _Page:
         )
 
 
-class _Label(NamedTuple):
+class Label(NamedTuple):
     """The names of the singular points on one ``spot`` (2,) of the plane."""
 
     text: str
     spot: np.ndarray
 
 
-def label_points(axes: Axes, atlas: Atlas, plane: Plane) -> None:
-    """Names beside the singular points, one label for those on one spot, where curves
-    and other names leave room."""
+def label_points(
+    axes: Axes, atlas: Atlas, plane: Plane, selection: Selection = EVERYTHING
+) -> None:
+    """Names beside the singular points that are drawn, one label for those on one spot,
+    where curves and other names leave room."""
     periods = np.array([2 * scale.half for scale in plane.scales])
     tolerance = SAME_SPOT * _extent(atlas, plane, periods)
 
     def are_same(spot: np.ndarray, other: np.ndarray) -> bool:
         return bool(np.all(np.abs(torus.difference(spot, other, periods)) < tolerance))
 
-    names = [point.name for point in atlas.points]
-    spots = [plane.spot(point.point.u) for point in atlas.points]
-    labels = _joined(names, spots, are_same)
+    points = selection.points(atlas)
+    names = [point.name for point in points]
+    spots = [plane.spot(point.point.u) for point in points]
+    labels = joined(names, spots, are_same)
     copies = [copies_in_frame(label.spot, plane.scales) for label in labels]
     _draw_labels(axes, labels, [copy for places in copies for copy in places])
 
@@ -111,59 +120,84 @@ def label_points(axes: Axes, atlas: Atlas, plane: Plane) -> None:
 def label_spots(axes: Axes, names: Sequence[str], spots: Sequence[np.ndarray]) -> None:
     """Names beside marks on ``spots`` (2,), where curves and other names leave room;
     marks on one spot share a name."""
+    tolerance = SAME_MARK * np.ptp([axes.get_xlim(), axes.get_ylim()], axis=1)
 
     def are_same(spot: np.ndarray, other: np.ndarray) -> bool:
-        gap = _on_page(axes, spot, 1.0) - _on_page(axes, other, 1.0)
-        return bool(np.abs(gap).max() < SAME_MARK)
+        return bool(np.all(np.abs(spot - other) < tolerance))
 
-    _draw_labels(axes, _joined(names, spots, are_same), spots)
+    _draw_labels(axes, joined(names, spots, are_same), spots)
 
 
-def _joined(
+def joined(
     names: Sequence[str],
     spots: Sequence[np.ndarray],
     are_same: Callable[[np.ndarray, np.ndarray], bool],
-) -> list[_Label]:
+) -> list[Label]:
     """Names on their spots (2,); those on spots that are the same are one label."""
-    labels: list[_Label] = []
+    labels: list[Label] = []
     for name, spot in zip(names, spots, strict=True):
         for k, label in enumerate(labels):
             if are_same(spot, label.spot):
-                labels[k] = _Label(f"{label.text}, {name}", label.spot)
+                labels[k] = Label(f"{label.text}, {name}", label.spot)
                 break
         else:
-            labels.append(_Label(name, spot))
+            labels.append(Label(name, spot))
     return labels
 
 
 def _draw_labels(
-    axes: Axes, labels: Sequence[_Label], marks: Sequence[np.ndarray]
+    axes: Axes, labels: Sequence[Label], marks: Sequence[np.ndarray]
 ) -> None:
-    """Names beside the marks on spots (2,) of the plane."""
-    figure = axes.figure.get_figure(root=True)
-    assert figure is not None
-    axes.apply_aspect()  # its place and its limits are now what they will be
-    axes.autoscale_view()
-    scale = 72.0 / figure.dpi
-    page = _page(axes, scale)
-    for spot in marks:
-        page.boxes.append(_Box(_on_page(axes, spot, scale), MARK_HALF))
+    """Names beside the marks on spots (2,) of the plane, as far as these are shown."""
+    texts = []
     for label in labels:
-        mark = _on_page(axes, label.spot, scale)
-        half = np.array([2.8 * len(label.text) + 1, 4.5])
-        box = page.place(mark, half)
-        axes.annotate(
+        text = axes.annotate(
             label.text,
             tuple(label.spot.tolist()),
-            tuple((box.middle - mark).tolist()),
+            (0.0, 0.0),
             textcoords="offset points",
+            annotation_clip=True,
             ha="center",
             va="center",
-            fontsize=9,
             fontweight="bold",
             zorder=6,
             bbox=BACKGROUND,
         )
+        text.set_in_layout(False)  # where it stands follows from the layout
+        texts.append(text)
+    if texts:
+        axes.add_artist(_Placement(axes, texts, marks))
+
+
+class _Placement(Artist):
+    """Puts names in their places when a figure is drawn, below all else that is drawn:
+    only then it is known how large the frame is."""
+
+    def __init__(
+        self, axes: Axes, texts: Sequence[Annotation], marks: Sequence[np.ndarray]
+    ):
+        super().__init__()
+        self._axes = axes
+        self._texts = texts
+        self._marks = marks
+        self.set_zorder(-1)
+        self.set_in_layout(False)
+
+    def draw(self, renderer: RendererBase) -> None:
+        """Place the names; nothing is drawn."""
+        axes = self._axes
+        figure = figure_of(axes)
+        scale = 72.0 / figure.dpi
+        page = _page(axes, scale)
+        for spot in self._marks:
+            page.boxes.append(_Box(_on_page(axes, spot, scale), MARK_HALF))
+        for text in self._texts:
+            spot = np.array(text.xy, dtype=float)
+            mark = _on_page(axes, spot, scale)
+            extent = text.get_window_extent(renderer)
+            half = 0.5 * scale * np.array([extent.width, extent.height]) + ROOM
+            box = page.place(mark, half)
+            text.set_position(tuple((box.middle - mark).tolist()))
 
 
 def _page(axes: Axes, scale: float) -> _Page:

@@ -10,11 +10,9 @@ from __future__ import annotations
 import io
 from typing import Any
 
-from matplotlib import rc_context
-
 from bifurc.atlas import Atlas
 from bifurc.figures.plotting import plot_transition_map
-from bifurc.figures.rendering import RC
+from bifurc.figures.rc import drawing_style
 
 
 def load_ipython_extension(shell: Any) -> None:
@@ -26,7 +24,7 @@ def load_ipython_extension(shell: Any) -> None:
 def atlas_page(atlas: Atlas) -> str:
     """The transition map of an atlas as inline SVG, and its tables, in HTML."""
     picture = io.StringIO()
-    with rc_context(RC):
+    with drawing_style():
         figure = plot_transition_map(atlas)
         figure.savefig(picture, format="svg", metadata={"Date": None, "Creator": None})
     text = picture.getvalue()

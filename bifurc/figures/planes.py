@@ -26,16 +26,29 @@ SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 @dataclass(frozen=True)
 class Scale:
     """How an unknown is drawn: ``factor`` to the shown unit, ``half`` of the period
-    shown (inf where there is none)."""
+    shown (inf where there is none) about its ``middle``, and the ``window`` of it, the
+    whole period where there is none."""
 
     factor: float
     half: float
     label: str
+    middle: float = 0.0
+    window: tuple[float, float] | None = None
 
     @property
     def is_periodic(self) -> bool:
         """Whether the frame ends where the period does."""
         return bool(np.isfinite(self.half))
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """The first and the last value that are shown, of an unknown with a period."""
+        return self.window or (self.middle - self.half, self.middle + self.half)
+
+    @property
+    def is_degrees(self) -> bool:
+        """Whether it is an angle that is divided by right angles."""
+        return self.half == 180.0
 
 
 @dataclass(frozen=True)
@@ -62,32 +75,54 @@ class Plane:
 
 
 def indices_of(
-    atlas: Atlas, name: str, numbers: Sequence[int], count: int
+    atlas: Atlas, name: str, unknowns: Sequence[str | int], count: int
 ) -> list[int]:
-    """The indices of ``count`` unknowns from their numbers, which the user gave as
-    ``name``; raises `ProblemError`."""
-    n = len(atlas.names)
-    different = len(set(numbers)) == len(numbers) == count
-    if not different or not all(1 <= number <= n for number in numbers):
-        allowed = f"{count} of the unknowns, numbered from 1 to {n}"
-        raise ProblemError(name, list(numbers), allowed)
-    return [number - 1 for number in numbers]
+    """The indices of ``count`` unknowns from their names or their numbers, which the
+    user gave as ``name``; raises `ProblemError`."""
+    indices = [_index_of(atlas, unknown) for unknown in unknowns]
+    known = [index for index in indices if index is not None]
+    if not len(set(known)) == len(indices) == count:
+        names = ", ".join(atlas.names)
+        allowed = (
+            f"{count} of the unknowns {names}, numbered from 1 to {len(atlas.names)}"
+        )
+        raise ProblemError(name, list(unknowns), allowed)
+    return known
 
 
-def plane_of(atlas: Atlas, horizontal: int, vertical: int) -> Plane:
-    """The plane of two unknowns, given by their indices."""
-    scales = scale_of(atlas, horizontal), scale_of(atlas, vertical)
+def _index_of(atlas: Atlas, unknown: str | int) -> int | None:
+    """The index of an unknown from its name or its number; None where there is none."""
+    if isinstance(unknown, str):
+        return atlas.names.index(unknown) if unknown in atlas.names else None
+    return unknown - 1 if 1 <= unknown <= len(atlas.names) else None
+
+
+def plane_of(
+    atlas: Atlas,
+    horizontal: int,
+    vertical: int,
+    window: tuple[float, float] | None = None,
+) -> Plane:
+    """The plane of two unknowns, given by their indices; ``window`` are the first and
+    the last angle that are shown, in degrees."""
+    scales = scale_of(atlas, horizontal, window), scale_of(atlas, vertical, window)
     return Plane(horizontal, vertical, scales)
 
 
-def scale_of(atlas: Atlas, index: int) -> Scale:
-    """Angles are shown in degrees, everything else in its `shown_unit`."""
+def scale_of(
+    atlas: Atlas, index: int, window: tuple[float, float] | None = None
+) -> Scale:
+    """Angles are shown in degrees, between those of a ``window`` where they have a
+    period, everything else in its `shown_unit`."""
     name = atlas.names[index]
     period = float(atlas.periods[index])
     if name.startswith("theta"):
         name = "θ" + name.removeprefix("theta").translate(SUBSCRIPTS)
     if atlas.units[index] == "rad":
-        return Scale(180.0 / np.pi, 90.0 * period / np.pi, f"{name} (deg)")
+        factor, half, label = 180.0 / np.pi, 90.0 * period / np.pi, f"{name} (deg)"
+        if window is None or not np.isfinite(half):
+            return Scale(factor, half, label)
+        return Scale(factor, half, label, 0.5 * (window[0] + window[1]), window)
     factor, unit = shown_unit(atlas, index)
     return Scale(factor, 0.5 * factor * period, f"{name} ({unit})" if unit else name)
 
@@ -113,14 +148,17 @@ def curve_points(branch: Branch) -> np.ndarray:
 
 
 def place_in_frame(points: np.ndarray, scales: tuple[Scale, Scale]) -> np.ndarray:
-    """Shown coordinates (k, 2) of points (k, 2), periodic ones within (-half, half].
+    """Shown coordinates (k, 2) of points (k, 2), periodic ones within (-half, half] of
+    the middle.
 
     A point on the lower edge, but for errors of its location, goes to the upper one.
     """
     periods = np.array([2 * scale.half for scale in scales])
-    shown = torus.wrap(points * [scale.factor for scale in scales], periods)
+    middles = np.array([scale.middle for scale in scales])
+    factors = np.array([scale.factor for scale in scales])
+    shown = torus.wrap(points * factors - middles, periods)
     is_on_lower_edge = shown < -0.5 * periods * (1 - ON_EDGE)
-    return np.where(is_on_lower_edge, shown + periods, shown)
+    return np.asarray(np.where(is_on_lower_edge, shown + periods, shown) + middles)
 
 
 def copies_in_frame(spot: np.ndarray, scales: tuple[Scale, Scale]) -> np.ndarray:
@@ -133,8 +171,11 @@ def copies_in_frame(spot: np.ndarray, scales: tuple[Scale, Scale]) -> np.ndarray
 
 def _copies(x: float, scale: Scale) -> list[float]:
     """A coordinate, or both ends of the frame where it lies on one."""
-    if scale.is_periodic and abs(abs(x) - scale.half) < ON_EDGE * scale.half:
-        return [scale.half, -scale.half]
+    if not scale.is_periodic:
+        return [x]
+    to_edge = abs(abs(x - scale.middle) - scale.half)
+    if to_edge < ON_EDGE * scale.half:
+        return [scale.middle + scale.half, scale.middle - scale.half]
     return [x]
 
 
@@ -146,13 +187,14 @@ def cut_to_frame(points: np.ndarray, scales: tuple[Scale, Scale]) -> np.ndarray:
     edges, so that a line leaves at one edge exactly where it comes back at the other.
     ``points`` are unwrapped, in the unknowns' own units.
     """
-    shown = points * [scale.factor for scale in scales]
+    middles = np.array([scale.middle for scale in scales])
+    shown = points * [scale.factor for scale in scales] - middles
     half = np.array([scale.half for scale in scales])
     parts = []
     for dx in _shifts(shown[:, 0], scales[0]):
         for dy in _shifts(shown[:, 1], scales[1]):
             parts.append(_inside(shown + np.array([dx, dy]), half))
-    return np.concatenate(parts)
+    return np.asarray(np.concatenate(parts) + middles)
 
 
 def _shifts(x: np.ndarray, scale: Scale) -> np.ndarray:

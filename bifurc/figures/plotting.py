@@ -2,8 +2,9 @@
 and the graph of forms.
 
 Each function draws into the figure given, or makes one, and returns it; nothing depends
-on the state of pyplot or on the user's settings. Forms are told apart by colour (safe
-for the colour-blind) and by line style (safe in print).
+on the state of pyplot. Settings of matplotlib are the user's where there are any
+(`bifurc.figures.rc`). Forms are told apart by colour (safe for the colour-blind) and by
+line style (safe in print).
 """
 
 from __future__ import annotations
@@ -12,26 +13,25 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
+from typing import TypeAlias
 
-from matplotlib import rc_context
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullLocator
 
 from bifurc.atlas import Atlas
 from bifurc.checks import check_type
 from bifurc.figures.diagram_plot import plot_diagram
 from bifurc.figures.drawing import (
-    Margins,
     PanelSettings,
     draw_forms,
-    draw_legend,
     draw_marks,
-    legend_size,
-    make_panels,
+    legend_entries,
     note_emptiness,
 )
-from bifurc.figures.form_graph import plot_form_graph
+from bifurc.figures.form_graph import plot_form_graph, shows_transitions
 from bifurc.figures.labels import label_points
+from bifurc.figures.layout import Canvas, Margins, PanelPlan, figure_of, lay_out
 from bifurc.figures.planes import (
     choose_plane,
     indices_of,
@@ -39,156 +39,166 @@ from bifurc.figures.planes import (
     scale_of,
     shown_branches,
 )
-from bifurc.figures.rendering import RC, render
+from bifurc.figures.rc import drawing_style
+from bifurc.figures.rendering import contents_of
+from bifurc.figures.selection import EVERYTHING, Selection
 from bifurc.figures.singular_values import plot_singular_values
 from bifurc.files.atomic import replace_file
 
-SMALL_PANEL = PanelSettings(line_width=1.4, mark_size=3.5)
 RESOLUTION = 140  # dots per inch of the files
-
-# In inches.
-FRAME_SIDE = 4.3  # of the transition map
-PANEL_SIDE = 1.6  # of the small panels
-TICKS = 0.75  # room for ticks, their labels and the name of an axis, at its left
-WIDE_TICKS = 1.0  # the same where these are not angles in degrees
-TICKS_BELOW = 0.5  # the same below it
+NARROW_TICKS = 0.62  # in inches, at the left of a frame: ticks and the name of the axis
+WIDE_TICKS = 0.9  # the same where these are not angles in degrees
+TICKS_BELOW = 0.45  # the same below it
 EDGE = 0.15  # beside a frame where nothing stands
-COLUMN_EDGE = 0.1  # between a panel and the room for the ticks of the next one
-ROW_GAP = 0.3
+LEAST_HEIGHT = 1.4  # of the frame of the transition map
 
 
 def plot_transition_map(
-    atlas: Atlas, figure: Figure | None = None, joints: Sequence[int] | None = None
+    atlas: Atlas,
+    figure: Canvas | None = None,
+    joints: Sequence[str | int] | None = None,
+    *,
+    ax: Axes | None = None,
+    selection: Selection = EVERYTHING,
 ) -> Figure:
     """The forms in the plane of two unknowns, with the singular points marked and
     named.
 
-    ``joints`` are two numbers of unknowns, from 1; left out, the plane is chosen that
-    tells the forms apart best. Angles are drawn in degrees on the torus. Raises
-    `ProblemError` for numbers that are not two of the unknowns.
+    ``joints`` are two unknowns, by their names or by their numbers from 1; left out,
+    the plane is chosen that tells the forms apart best. Angles are drawn in degrees on
+    the torus. It is drawn into ``ax``, whose lines are then named for a legend, or with
+    a legend into a ``figure`` or a part of one, or into a new one. Raises
+    `ProblemError` for what are not two of the unknowns.
     """
     check_type("atlas", atlas, Atlas)
     if joints is None:
-        plane = plane_of(atlas, *choose_plane(atlas))
+        horizontal, vertical = choose_plane(atlas)
     else:
         horizontal, vertical = indices_of(atlas, "joints", joints, 2)
-        plane = plane_of(atlas, horizontal, vertical)
-    with rc_context(RC):
-        legend = legend_size(atlas)
-        height = max(FRAME_SIDE + TICKS_BELOW + EDGE, legend.height)
-        ticks = _room_for_ticks(atlas)
-        size = (ticks + FRAME_SIDE + legend.width, height)
-        figure = figure or Figure(figsize=size)
-        margins = Margins(ticks, legend.width, TICKS_BELOW, EDGE)
-        (axes,) = make_panels(figure, 1, 1, margins)
-        draw_forms(axes, atlas, plane)
-        draw_marks(axes, atlas, plane)
-        draw_legend(figure, atlas, EDGE)
-        if not shown_branches(atlas):
-            note_emptiness(axes, atlas)
-        label_points(axes, atlas, plane)
-    return figure
+    plane = plane_of(atlas, horizontal, vertical, selection.window)
+    settings = PanelSettings(selection=selection)
+    with drawing_style():
+        if ax is None:
+            margins = Margins(_room_for_ticks(atlas), EDGE, TICKS_BELOW, EDGE)
+            plan = PanelPlan(1, 1, 4.3, 4.3, margins, least_height=LEAST_HEIGHT)
+            figure, (ax,), _ = lay_out(figure, plan, legend_entries(atlas, selection))
+        draw_forms(ax, atlas, plane, settings)
+        draw_marks(ax, atlas, plane, settings)
+        _note_emptiness(ax, atlas)
+        label_points(ax, atlas, plane, selection)
+    return figure_of(ax)
 
 
 def plot_joint_angles(
-    atlas: Atlas, figure: Figure | None = None, input_joint: int = 1
+    atlas: Atlas,
+    figure: Canvas | None = None,
+    input_joint: str | int = 1,
+    *,
+    selection: Selection = EVERYTHING,
 ) -> Figure:
-    """Every unknown against the input one, in panels of their own.
+    """Every unknown against the input one, in panels of their own, in a ``figure`` or a
+    part of one, or in a new one.
 
-    ``input_joint`` is counted from 1. Raises `ProblemError` where there is no such
-    unknown.
+    ``input_joint`` is a name or a number from 1. Raises `ProblemError` where there is
+    no such unknown.
     """
-    (first,) = indices_of(atlas, "joints", [input_joint], 1)
+    (first,) = indices_of(atlas, "input_joint", [input_joint], 1)
     others = [i for i in range(len(atlas.names)) if i != first] or [first]
     columns = min(len(others), 3 if len(others) <= 9 else 4)
-    rows = -(-len(others) // columns)
-    with rc_context(RC):
-        legend = legend_size(atlas)
-        inner_height = rows * PANEL_SIDE + (rows - 1) * ROW_GAP
-        height = max(inner_height + TICKS_BELOW + EDGE, legend.height)
+    settings = PanelSettings(line_width=1.4, mark_size=3.5, selection=selection)
+    with drawing_style():
         ticks = _room_for_ticks(atlas)
-        column_gap = COLUMN_EDGE + ticks
-        inner_width = columns * PANEL_SIDE + (columns - 1) * column_gap
-        size = (ticks + inner_width + legend.width, height)
-        figure = figure or Figure(figsize=size)
-        margins = Margins(ticks, legend.width, TICKS_BELOW, EDGE, column_gap, ROW_GAP)
-        panels = make_panels(figure, len(others), columns, margins)
-        for k, other in enumerate(others):
-            axes = panels[k]
-            plane = plane_of(atlas, first, other)
-            draw_forms(axes, atlas, plane, SMALL_PANEL)
-            draw_marks(axes, atlas, plane, SMALL_PANEL)
-            axes.xaxis.set_minor_locator(NullLocator())
-            axes.yaxis.set_minor_locator(NullLocator())
-            has_panel_below = k + columns < len(others)
+        margins = Margins(ticks, EDGE, TICKS_BELOW, EDGE, EDGE + ticks, 2 * EDGE)
+        plan = PanelPlan(len(others), columns, 1.6, 1.6, margins)
+        sheet = lay_out(figure, plan, legend_entries(atlas, selection))
+        for k, (axes, other) in enumerate(zip(sheet.panels, others, strict=True)):
+            plane = plane_of(atlas, first, other, selection.window)
+            draw_forms(axes, atlas, plane, settings)
+            draw_marks(axes, atlas, plane, settings)
+            has_panel_below = k + sheet.columns < len(others)
             if has_panel_below:
                 axes.set_xlabel("")
                 axes.tick_params(labelbottom=False)
-        draw_legend(figure, atlas, EDGE)
-        if not shown_branches(atlas):
-            note_emptiness(panels[0], atlas)
-    return figure
+        _note_emptiness(sheet.panels[0], atlas)
+    return figure_of(sheet.canvas)
+
+
+def _note_emptiness(axes: Axes, atlas: Atlas) -> None:
+    """Say so where there is neither a form nor a near motion."""
+    if not shown_branches(atlas):
+        note_emptiness(axes, atlas)
 
 
 def _room_for_ticks(atlas: Atlas) -> float:
     """Width of ticks, their labels and the name of an axis, in inches."""
-    is_angle = [scale_of(atlas, i).half == 180.0 for i in range(len(atlas.names))]
-    return TICKS if all(is_angle) else WIDE_TICKS
+    is_angle = [scale_of(atlas, i).is_degrees for i in range(len(atlas.names))]
+    return NARROW_TICKS if all(is_angle) else WIDE_TICKS
 
 
 # --- files ----------------------------------------------------------------------------
 
-FIGURES: dict[str, Callable[[Atlas], Figure]] = {
-    "transition_map": plot_transition_map,
-    "joint_angles": plot_joint_angles,
-    "singular_values": plot_singular_values,
-    "form_graph": plot_form_graph,
-}
+FORMATS = ("png", "svg", "pdf")
+USUAL_FORMATS = ("png", "svg")
+
+Plot: TypeAlias = Callable[[Atlas], Figure]
 
 
 def save_figures(
     atlas: Atlas,
     folder: str | os.PathLike[str],
-    others: Mapping[str, Callable[[Atlas], Figure]] | None = None,
+    others: Mapping[str, Plot] = MappingProxyType({}),
+    formats: Sequence[str] = USUAL_FORMATS,
+    selection: Selection = EVERYTHING,
 ) -> list[Path]:
-    """Paths of the figures just written into an existing ``folder``, as PNG and SVG
-    each; ``others`` are drawn in place of those of the same name.
+    """Paths of the figures just written into an existing ``folder``, in all of the
+    ``formats``, some of `FORMATS`; ``others`` are drawn in place of those of the same
+    name, or besides.
 
     The unknowns of equations are drawn in `unknowns`, of anything else in
-    `joint_angles`; with a parameter there is `diagram`.
+    `joint_angles`; with a parameter there is `diagram`. What would show nothing is not
+    written: singular values without a form, a graph of one box.
 
-    The same atlas gives the same bytes. There is never a half-written file. Raises
-    `OSError` that names the file that cannot be written.
+    The same atlas gives the same bytes, by the same settings of matplotlib. There is
+    never a half-written file. Raises `OSError` that names the file that cannot be
+    written.
     """
     paths = []
-    for name, plot in {**_figures_of(atlas), **(others or {})}.items():
-        with rc_context(RC):
+    for name, plot in {**_figures_of(atlas, selection), **others}.items():
+        with drawing_style():
             figure = plot(atlas)
-        paths += save_figure(figure, Path(folder) / name)
+        paths += save_figure(figure, Path(folder) / name, formats)
     return paths
 
 
-def save_figure(figure: Figure, stem: Path) -> list[Path]:
-    """The paths of a figure just written as PNG and as SVG, each ``stem`` with its
-    ending.
+def save_figure(
+    figure: Figure, stem: Path, formats: Sequence[str] = USUAL_FORMATS
+) -> list[Path]:
+    """The paths of a figure just written, in each format to ``stem`` with its ending.
 
     The same figure gives the same bytes; a file is written whole or not at all. Raises
     `OSError` that names the file that cannot be written.
     """
-    with rc_context(RC):
-        rendering = render(figure, RESOLUTION)
+    with drawing_style():
+        contents = contents_of(figure, RESOLUTION, formats)
     paths = []
-    for ending, content in rendering._asdict().items():
+    for ending, content in contents.items():
         path = stem.with_name(f"{stem.name}.{ending}")
         paths.append(replace_file(path, partial(_write, content)))
     return paths
 
 
-def _figures_of(atlas: Atlas) -> dict[str, Callable[[Atlas], Figure]]:
+def _figures_of(atlas: Atlas, selection: Selection) -> dict[str, Plot]:
     """The functions that draw the figures of an atlas, by the names of the files."""
-    figures = dict(FIGURES)
-    if atlas.subject.get("kind") == "system":
-        figures["unknowns"] = figures.pop("joint_angles")
+    figures: dict[str, Plot] = {
+        "transition_map": partial(plot_transition_map, selection=selection)
+    }
+    is_system = atlas.subject.get("kind") == "system"
+    name = "unknowns" if is_system else "joint_angles"
+    figures[name] = partial(plot_joint_angles, selection=selection)
+    if atlas.forms:
+        figures["singular_values"] = partial(plot_singular_values, selection=selection)
+    if shows_transitions(atlas, selection):
+        figures["form_graph"] = partial(plot_form_graph, selection=selection)
     if atlas.diagram is not None and atlas.diagram.parameter:
         figures["diagram"] = plot_diagram
     return figures

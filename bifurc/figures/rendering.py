@@ -7,11 +7,10 @@ transformed lines.
 from __future__ import annotations
 
 import io
-import pathlib
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib import rc_params_from_file
 from matplotlib.backend_bases import GraphicsContextBase, RendererBase
 from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.backends.backend_svg import RendererSVG
@@ -23,14 +22,13 @@ from matplotlib.transforms import Affine2D, Bbox, Transform, TransformedPath
 from PIL import Image
 
 POINTS = 72  # of an inch, the unit of SVG
-# Settings of matplotlib for all figures, which the user's own must not disturb.
-RC: dict[Any, Any] = rc_params_from_file(
-    pathlib.Path(__file__).with_name("bifurc.mplstyle"), use_default_template=False
-)
 # No dates, no names of programs, so that the same figure gives the same bytes.
 NO_METADATA = {"Date": None, "Creator": None}
 WHOLE = 1e-6  # of a pixel, by which rounding may miss a whole number of them
 QUICK_COMPRESSION = 2  # of PNG: two thirds of the time of 6, a tenth more bytes
+
+
+NO_DATE: dict[str, Any] = {"CreationDate": None}  # of PDF
 
 
 class Rendering(NamedTuple):
@@ -38,6 +36,20 @@ class Rendering(NamedTuple):
 
     png: bytes
     svg: bytes
+
+
+def contents_of(
+    figure: Figure, resolution: float, formats: Sequence[str]
+) -> dict[str, bytes]:
+    """The bytes of files of a figure in these formats."""
+    contents: dict[str, bytes] = {}
+    if {"png", "svg"} & set(formats):
+        contents.update(render(figure, resolution)._asdict())
+    if "pdf" in formats:
+        stream = io.BytesIO()
+        figure.savefig(stream, format="pdf", metadata=NO_DATE)
+        contents["pdf"] = stream.getvalue()
+    return {ending: contents[ending] for ending in formats}
 
 
 def render(figure: Figure, resolution: float) -> Rendering:

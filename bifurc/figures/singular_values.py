@@ -6,34 +6,40 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, MultipleLocator, NullLocator
+from matplotlib.ticker import FuncFormatter, NullLocator
 
 from bifurc.atlas import Atlas, Event, Form
-from bifurc.errors import ProblemError
 from bifurc.figures.drawing import (
-    Margins,
+    DegreeLocator,
     columns_of,
-    fix_names_of_axes,
-    make_panels,
     name_above,
     note_emptiness,
 )
-from bifurc.figures.planes import Scale, place_in_frame, scale_of
+from bifurc.figures.layout import (
+    Canvas,
+    Margins,
+    PanelPlan,
+    Sheet,
+    figure_of,
+    fix_names_of_axes,
+    lay_out,
+)
+from bifurc.figures.planes import Scale, indices_of, place_in_frame, scale_of
 from bifurc.figures.quantities import shown_unit
-from bifurc.figures.rendering import RC
-from bifurc.figures.style import Properties, Style, form_style
+from bifurc.figures.rc import drawing_style, letter_size, line_style
+from bifurc.figures.selection import EVERYTHING, Selection
+from bifurc.figures.style import Properties, Style
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-MARGINS = Margins(0.85, 0.2, 0.6, 0.45, between_columns=0.3, between_rows=0.75)
+MARGINS = Margins(0.7, 0.2, 0.5, 0.42, between_columns=0.3, between_rows=0.65)
+LEAST_WIDTH = 2.0  # of a panel, in inches, above which its name stands
 STEEP = 1.3  # values of neighbours over each other, above which points are put between
 LOWEST = 1e-16  # of the largest value: what is drawn of a zero
-DECADES = 5  # at least, on the vertical axis
 PLAIN = Scale(1.0, np.inf, "")
 AT_POINT: Properties = {"color": "0.35", "linewidth": 0.8, "linestyle": (0, (3, 2))}
-SAME_LABEL = 0.05  # of the length of a form: points that are closer share a label
+LETTER_WIDTH = 0.7  # of a name, over the size of its letters
 
 
 class _Range(NamedTuple):
@@ -50,27 +56,41 @@ class _Stop(NamedTuple):
     name: str
 
 
-def plot_singular_values(atlas: Atlas, figure: Figure | None = None) -> Figure:
+def plot_singular_values(
+    atlas: Atlas, figure: Canvas | None = None, *, selection: Selection = EVERYTHING
+) -> Figure:
     """The regular singular values along each form on a logarithmic scale, in one panel
-    a form.
+    a form, in a ``figure`` or a part of one, or in a new one.
 
     The smallest is drawn strongly. It vanishes at singular points (dashed, named); near
     misses carry their value. Bars on the axis show where a form is not certified.
     """
-    count = max(len(atlas.forms), 1)
-    columns = columns_of(count)
-    rows = -(-count // columns)
+    forms = selection.indices(atlas)
     limits = _limits(atlas)
-    size = (4.6 * columns if count > 1 else 6.4, 2.3 * rows + 0.4)
-    with rc_context(RC):
-        figure = figure or Figure(figsize=size)
-        panels = make_panels(figure, count, columns, MARGINS, has_common_ordinate=True)
-        for i in range(len(atlas.forms)):
-            _draw_form(panels[i], atlas, i, limits)
-        figure.supxlabel(f"arclength{_unit(atlas)}", fontsize=9)
-        figure.supylabel("singular value", fontsize=9)
-        note_emptiness(panels[0], atlas)
-    return figure
+    with drawing_style():
+        sheet = _lay_out(figure, len(forms))
+        for axes, i in zip(sheet.panels, forms, strict=False):
+            _draw_form(axes, atlas, i, limits)
+        sheet.canvas.supxlabel(f"arclength{_unit(atlas)}")
+        sheet.canvas.supylabel("singular value")
+        note_emptiness(sheet.panels[0], atlas)
+    return figure_of(sheet.canvas)
+
+
+def _lay_out(figure: Canvas | None, forms: int) -> Sheet:
+    """A figure with an empty panel for each form, and one where there is none."""
+    count = max(forms, 1)
+    width = 4.2 if count > 1 else 5.4
+    plan = PanelPlan(
+        count,
+        columns_of(count),
+        width,
+        1.6,
+        MARGINS,
+        has_common_ordinate=True,
+        least_width=LEAST_WIDTH,
+    )
+    return lay_out(figure, plan)
 
 
 def _unit(atlas: Atlas) -> str:
@@ -102,22 +122,28 @@ def _limits(atlas: Atlas) -> _Range:
 
 def _draw_form(axes: Axes, atlas: Atlas, index: int, limits: _Range) -> None:
     form = atlas.forms[index]
-    style = form_style(index)
+    style = line_style(index)
     stops = _stops(atlas, index)
     misses = [event for event in atlas.near_misses if event.form == index]
     zeros = [stop.s for stop in stops]
     _draw_values(axes, form, zeros, misses, style, limits)
     for event in misses:
         _draw_near_miss(axes, event, form.branch.length)
-    _name_stops(axes, stops, form.branch.length)
-    _mark_refusals(axes, form)
     axes.set(yscale="log", ylim=limits, xlim=(0.0, form.branch.length))
+    _name_stops(axes, stops)
+    _mark_refusals(axes, form)
     axes.yaxis.set_major_formatter(FuncFormatter(_power_of_ten))
     axes.yaxis.set_minor_locator(NullLocator())
     fix_names_of_axes(axes)
-    pad = 14 if stops else 6
-    axes.set_title(form.name, color=style.color, fontsize=9, loc="left", pad=pad, y=1.0)
+    _name_form(axes, form, style, stops)
     axes.grid(True)
+
+
+def _name_form(axes: Axes, form: Form, style: Style, stops: Sequence[_Stop]) -> None:
+    """The name of a form above its panel, and above the names of its ``stops``."""
+    lines = 2.0 if stops else 0.8
+    pad = 72 * letter_size() * (lines - 0.4)
+    axes.set_title(form.name, color=style.color, loc="left", pad=pad, y=1.0)
 
 
 def _stops(atlas: Atlas, index: int) -> list[_Stop]:
@@ -190,7 +216,7 @@ def _draw_near_miss(axes: Axes, event: Event, length: float) -> None:
         textcoords="offset points",
         ha="right" if on_the_left else "left",
         va="top",
-        fontsize=7,
+        fontsize="x-small",
     )
 
 
@@ -215,20 +241,29 @@ def _mark_refusals(axes: Axes, form: Form) -> None:
         )
 
 
-def _name_stops(axes: Axes, stops: Sequence[_Stop], length: float) -> None:
-    """Dashed lines at singular points, their names above the panel, those close
-    together in one label."""
-    groups: list[list[_Stop]] = []
+def _name_stops(axes: Axes, stops: Sequence[_Stop]) -> None:
+    """Dashed lines at singular points, their names above the panel, those that have no
+    room beside each other in one label."""
+    figure = figure_of(axes)
+    low, high = axes.get_xlim()
+    letter = LETTER_WIDTH * letter_size("xtick.labelsize")
+    letter *= (high - low) * figure.dpi / axes.bbox.width  # along the axis
+    groups: list[tuple[str, float]] = []
     for stop in sorted(stops, key=lambda stop: stop.s):
         axes.axvline(stop.s, zorder=0, **AT_POINT)
-        if groups and stop.s - groups[-1][-1].s < SAME_LABEL * length:
-            groups[-1].append(stop)
-        else:
-            groups.append([stop])
-    for group in groups:
-        middle = float(np.mean([stop.s for stop in group]))
-        names = ", ".join(stop.name for stop in group)
-        name_above(axes, middle, names, va="bottom")
+        name, place = stop.name, stop.s
+        while groups:
+            before, middle = groups[-1]
+            if place - middle > 0.5 * letter * (len(before) + len(name) + 2):
+                break
+            groups.pop()
+            share = len(name) / (len(before) + len(name))
+            name, place = f"{before}, {name}", middle + share * (place - middle)
+        groups.append((name, place))
+    for name, place in groups:
+        half = 0.5 * letter * len(name)
+        inside = min(max(place, low + half), high - half)
+        name_above(axes, inside, name, va="bottom")
 
 
 def _power_of_ten(value: float, _: int) -> str:
@@ -241,68 +276,65 @@ def _power_of_ten(value: float, _: int) -> str:
 
 
 def plot_singular_values_against(
-    atlas: Atlas, unknown: int, figure: Figure | None = None
+    atlas: Atlas,
+    unknown: str | int,
+    figure: Canvas | None = None,
+    *,
+    selection: Selection = EVERYTHING,
 ) -> Figure:
-    """The regular singular values of each form against one unknown, numbered from 1, on
-    a logarithmic scale, in one panel a form.
+    """The regular singular values of each form against one unknown, by its name or its
+    number from 1, on a logarithmic scale, in one panel a form, in a ``figure`` or a
+    part of one, or in a new one.
 
     The smallest is drawn strongly; bifurcations are dashed lines with their names, near
     misses triangles. Raises `ProblemError` where there is no such unknown.
     """
-    n = len(atlas.names)
-    if not 1 <= unknown <= n:
-        allowed = f"one of the unknowns, numbered from 1 to {n}"
-        raise ProblemError("unknown", unknown, allowed)
-    count = max(len(atlas.forms), 1)
-    columns = columns_of(count)
-    rows = -(-count // columns)
-    scale = scale_of(atlas, unknown - 1)
-    with rc_context(RC):
-        size = (4.6 * columns if count > 1 else 6.4, 2.5 * rows + 0.4)
-        figure = figure or Figure(figsize=size, layout="constrained")
-        panels = figure.subplots(rows, columns, squeeze=False, sharey=True).flat
-        for axes in panels[count:]:
-            axes.set_visible(False)
-        for i in range(len(atlas.forms)):
-            _draw_form_against(panels[i], atlas, i, unknown - 1, scale)
-        figure.supxlabel(scale.label, fontsize=9)
-        figure.supylabel("singular value", fontsize=9)
-        note_emptiness(panels[0], atlas)
-    return figure
+    (index,) = indices_of(atlas, "unknown", [unknown], 1)
+    forms = selection.indices(atlas)
+    scale = scale_of(atlas, index, selection.window)
+    limits = _limits(atlas)
+    with drawing_style():
+        sheet = _lay_out(figure, len(forms))
+        for axes, i in zip(sheet.panels, forms, strict=False):
+            _draw_form_against(axes, atlas, i, index, scale, limits)
+        sheet.canvas.supxlabel(scale.label)
+        sheet.canvas.supylabel("singular value")
+        note_emptiness(sheet.panels[0], atlas)
+    return figure_of(sheet.canvas)
 
 
 def _draw_form_against(
-    axes: Axes, atlas: Atlas, index: int, unknown: int, scale: Scale
+    axes: Axes, atlas: Atlas, index: int, unknown: int, scale: Scale, limits: _Range
 ) -> None:
     form = atlas.forms[index]
-    style = form_style(index)
+    style = line_style(index)
     stops = _stops(atlas, index)
     s, values = _values_at_stops(form, [stop.s for stop in stops])
-    top = float(values.max())
     shown = _shown(form.branch(s)[:, unknown], scale)
     jumps = np.flatnonzero(np.abs(np.diff(shown)) > scale.half) + 1
     x = np.insert(shown, jumps, np.nan)
-    y = np.insert(np.maximum(values, LOWEST * top), jumps, np.nan, axis=0)
+    y = np.insert(np.maximum(values, LOWEST * limits.high), jumps, np.nan, axis=0)
     axes.plot(x, y[:, :-1], color="0.75", linewidth=0.8, zorder=1)
     axes.plot(x, y[:, -1], color=style.color, linewidth=1.6, zorder=2)
-    for point in atlas.points:
-        if any(number == index for number, _ in point.passes):
-            place = _shown(point.point.u[[unknown]], scale)[0]
-            axes.axvline(place, **AT_POINT)
-            name_above(axes, place, point.name)
-    least = np.inf
     for event in atlas.near_misses:
         if event.form == index:
             place = _shown(event.u[[unknown]], scale)[0]
             axes.plot(place, event.value, "v", color="black", markersize=4, zorder=4)
-            least = min(least, event.value)
-    axes.set(yscale="log", ylim=(min(least / 10, top * 10.0**-DECADES), 2 * top))
+    axes.set(yscale="log", ylim=limits)
     axes.yaxis.set_major_formatter(FuncFormatter(_power_of_ten))
+    axes.yaxis.set_minor_locator(NullLocator())
     if scale.is_periodic:
-        axes.set_xlim(-scale.half, scale.half)
-    if scale.half == 180.0:
-        axes.xaxis.set_major_locator(MultipleLocator(90))
-    axes.set_title(form.name, color=style.color, fontsize=9, loc="left", pad=14)
+        axes.set_xlim(scale.limits)
+    if scale.is_degrees:
+        axes.xaxis.set_major_locator(DegreeLocator())
+    places: list[_Stop] = []
+    for point in atlas.points:
+        if any(number == index for number, _ in point.passes):
+            place = float(_shown(point.point.u[[unknown]], scale)[0])
+            places.append(_Stop(place, point.name))
+    low, high = axes.get_xlim()
+    _name_stops(axes, [stop for stop in places if low <= stop.s <= high])
+    _name_form(axes, form, style, places)
     axes.grid(True)
 
 

@@ -5,115 +5,138 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator, MultipleLocator
+from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d import Axes3D, proj3d
 
 from bifurc import torus
 from bifurc.atlas import Atlas
-from bifurc.figures.drawing import curve_style, draw_legend_outside, legend_size
-from bifurc.figures.planes import (
-    Scale,
-    curve_points,
-    indices_of,
-    scale_of,
-    shown_branches,
-)
-from bifurc.figures.rendering import RC
+from bifurc.figures.drawing import DegreeLocator, drawn_curves, legend_entries
+from bifurc.figures.labels import joined
+from bifurc.figures.layout import Canvas, Margins, PanelPlan, figure_of, lay_out
+from bifurc.figures.planes import Scale, curve_points, indices_of, scale_of
+from bifurc.figures.rc import drawing_style
+from bifurc.figures.selection import EVERYTHING, Selection
 from bifurc.figures.style import hollow
+
+SPACE = {"projection": "3d", "proj_type": "ortho"}
+MARGINS = Margins(0.1, 0.3, 0.25, 0.1)
+LEAST_HEIGHT = 2.4  # of the cube with its ticks, in inches
+SAME_SPOT = 0.004  # of the picture: points that are closer share a name
 
 
 def plot_map_in_space(
-    atlas: Atlas, unknowns: Sequence[int], figure: Figure | None = None
+    atlas: Atlas,
+    unknowns: Sequence[str | int],
+    figure: Canvas | None = None,
+    *,
+    ax: Axes3D | None = None,
+    selection: Selection = EVERYTHING,
 ) -> Figure:
-    """The forms in the space of three unknowns, numbered from 1, with the singular
-    points marked and named; angles in degrees, on the torus.
+    """The forms in the space of three unknowns, by their names or by their numbers from
+    1, with the singular points marked and named; angles in degrees, on the torus.
 
-    Raises `ProblemError` for numbers that are not three of the unknowns.
+    It is drawn into ``ax``, or with a legend into a ``figure`` or a part of one, or
+    into a new one. Raises `ProblemError` for what are not three of the unknowns.
     """
     indices = indices_of(atlas, "unknowns", unknowns, 3)
-    scales = [scale_of(atlas, index) for index in indices]
-    legend = legend_size(atlas)
-    with rc_context(RC):
-        size = (5.6 + legend.width, max(5.2, legend.height))
-        figure = figure or Figure(figsize=size, layout="constrained")
-        FigureCanvasAgg(figure)
-        axes = figure.add_subplot(projection="3d", proj_type="ortho")
-        _draw_forms(axes, atlas, indices, scales)
-        _set_frame(axes, scales)
-        _draw_points(axes, atlas, indices, scales)
-        draw_legend_outside(figure, atlas)
-    return figure
+    scales = [scale_of(atlas, index, selection.window) for index in indices]
+    with drawing_style():
+        if ax is None:
+            plan = PanelPlan(1, 1, 4.9, 4.9, MARGINS, least_height=LEAST_HEIGHT)
+            entries = legend_entries(atlas, selection)
+            figure, (ax,), _ = lay_out(figure, plan, entries, SPACE)
+        FigureCanvasAgg(figure_of(ax))
+        _draw_forms(ax, atlas, indices, scales, selection)
+        _set_frame(ax, scales)
+        _draw_points(ax, atlas, indices, scales, selection)
+    return figure_of(ax)
 
 
 def _shown(points: np.ndarray, scales: Sequence[Scale]) -> np.ndarray:
     """Points (k, 3) as they are shown, periodic unknowns within the frame."""
     periods = np.array([2 * scale.half for scale in scales])
     factors = np.array([scale.factor for scale in scales])
-    return np.asarray(torus.wrap(points * factors, periods))
+    middles = np.array([scale.middle for scale in scales])
+    return np.asarray(torus.wrap(points * factors - middles, periods) + middles)
 
 
 def _draw_forms(
-    axes: Axes3D, atlas: Atlas, indices: Sequence[int], scales: Sequence[Scale]
+    axes: Axes3D,
+    atlas: Atlas,
+    indices: Sequence[int],
+    scales: Sequence[Scale],
+    selection: Selection,
 ) -> None:
     """Every form and near motion, with breaks where it leaves the frame."""
     half = np.array([scale.half for scale in scales])
-    for i, branch in enumerate(shown_branches(atlas)):
-        points = curve_points(branch)
+    for curve in drawn_curves(atlas, selection):
+        points = curve_points(curve.branch)
         if not len(points):
             continue
         shown = _shown(points[:, list(indices)], scales)
         is_jump = np.any(np.abs(np.diff(shown, axis=0)) > half, axis=1)
+        for column, scale in zip(shown.T, scales, strict=True):
+            if scale.is_periodic:
+                low, high = scale.limits
+                column[(column < low) | (column > high)] = np.nan
         rows = np.insert(shown, np.flatnonzero(is_jump) + 1, np.nan, axis=0)
-        axes.plot(*rows.T, linewidth=1.6, **curve_style(atlas, i).line)
+        axes.plot(*rows.T, linewidth=1.6, label=curve.name, **curve.style.line)
 
 
 def _draw_points(
-    axes: Axes3D, atlas: Atlas, indices: Sequence[int], scales: Sequence[Scale]
+    axes: Axes3D,
+    atlas: Atlas,
+    indices: Sequence[int],
+    scales: Sequence[Scale],
+    selection: Selection,
 ) -> None:
     """Singular points with their names, and isolated solutions."""
-    for point in atlas.points:
-        spot = _shown(point.point.u[None, list(indices)], scales)[0]
+    points = selection.points(atlas)
+    spots = [_shown(one.point.u[None, list(indices)], scales)[0] for one in points]
+    for point, spot in zip(points, spots, strict=True):
         axes.plot(*spot[:, None], zorder=4, **hollow(point.kind.mark))
-        _write_name(axes, spot, point.name)
+
+    def are_same(spot: np.ndarray, other: np.ndarray) -> bool:
+        return bool(np.abs(_seen(axes, spot) - _seen(axes, other)).max() < SAME_SPOT)
+
+    for label in joined([point.name for point in points], spots, are_same):
+        _write_name(axes, label.spot, label.text)
     for solution in atlas.rigid:
         spot = _shown(solution[None, list(indices)], scales)[0]
         axes.plot(*spot[:, None], "x", color="0.3", markersize=4)
 
 
+def _seen(axes: Axes3D, spot: np.ndarray) -> np.ndarray:
+    """Where in the picture (2,) a spot (3,) is seen."""
+    return np.array(proj3d.proj_transform(*spot, axes.get_proj())[:2])
+
+
 def _write_name(axes: Axes3D, spot: np.ndarray, name: str) -> None:
     """A name beside a spot (3,), towards the middle: at the right are ticks."""
-    across, _, _ = proj3d.proj_transform(*spot, axes.get_proj())
-    is_right = across > 0
+    is_right = _seen(axes, spot)[0] > 0
     text, side = (f"{name}  ", "right") if is_right else (f"  {name}", "left")
-    axes.text(*spot, text, ha=side, fontsize=8.5, fontweight="bold", zorder=5)
-
-
-def _inner_number(degrees: float, _: int | None = None) -> str:
-    """The number at a tick; nothing at the ends of a turn."""
-    number = round(degrees)
-    return "" if abs(number) >= 180 else str(number).replace("-", "\N{MINUS SIGN}")
+    axes.text(*spot, text, ha=side, fontweight="bold", zorder=5)
 
 
 def _set_frame(axes: Axes3D, scales: Sequence[Scale]) -> None:
     """Names, ticks and limits of the three axes. The second one begins where the first
-    ends, and ends where the third begins: its ticks there have no numbers."""
+    ends, and ends where the third begins: it has no ticks there."""
     labels = (axes.set_xlabel, axes.set_ylabel, axes.set_zlabel)
     limits = (axes.set_xlim, axes.set_ylim, axes.set_zlim)
     lines = (axes.xaxis, axes.yaxis, axes.zaxis)
     for scale, label, limit, line in zip(scales, labels, limits, lines, strict=True):
         label(scale.label)
         if scale.is_periodic:
-            limit(-scale.half, scale.half)
-        if scale.half == 180.0:
-            line.set_major_locator(MultipleLocator(90))
+            limit(scale.limits)
+        if scale.is_degrees:
+            line.set_major_locator(DegreeLocator())
         else:
             line.set_major_locator(MaxNLocator(5))
-    second, half = axes.yaxis, scales[1].half
-    if half == 180.0:
-        second.set_major_formatter(_inner_number)
+    second = axes.yaxis
+    if scales[1].is_degrees:
+        second.set_major_locator(DegreeLocator(has_ends=False))
     else:
         second.set_major_locator(MaxNLocator(5, prune="both"))
     axes.set_box_aspect((1, 1, 1), zoom=0.9)

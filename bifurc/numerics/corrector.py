@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.limits import is_time_over
+from bifurc.limits import is_time_over, left_behind
 from bifurc.numerics.bordered import Bordered, bordered_at, bordered_matrix
 from bifurc.system import (
     SphereProjection,
@@ -256,7 +256,8 @@ def _damped_step(problem: System, at: _Iterate, weight: float) -> np.ndarray | N
         if not np.all(np.isfinite(jacobian)):
             return None
         normal = jacobian.T @ jacobian + weight * np.eye(problem.n)
-        step, *_ = np.linalg.lstsq(normal, jacobian.T @ at.residual, rcond=None)
+        solve = left_behind(problem.n, np.linalg.lstsq)
+        step, *_ = solve(normal, jacobian.T @ at.residual, rcond=None)
         return np.asarray(step)
     from scipy.sparse import csc_array, eye_array
     from scipy.sparse.linalg import splu

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc import _core
+from bifurc.limits import left_behind
 from bifurc.system import System, relative_jacobians
 
 # Unknowns up to which compiled code takes them by Jacobi's method, which knows small ones
@@ -46,7 +47,8 @@ def factors_of(matrices: np.ndarray, full_matrices: bool = True) -> Factors:
     """The singular value decomposition of matrices (..., m, n); infinite singular
     values of one that is not finite."""
     is_finite, sound = _sound(matrices)
-    left, sigma, right = np.linalg.svd(sound, full_matrices=full_matrices)
+    decompose = left_behind(sound.shape[-1], np.linalg.svd)
+    left, sigma, right = decompose(sound, full_matrices=full_matrices)
     return Factors(left, np.where(is_finite[..., None], sigma, np.inf), right)
 
 
@@ -54,7 +56,7 @@ def values_of(matrices: np.ndarray) -> np.ndarray:
     """The singular values (..., min(m, n)) of matrices (..., m, n) alone, in decreasing
     order; infinite ones of a matrix that is not finite."""
     is_finite, sound = _sound(matrices)
-    values = np.linalg.svd(sound, compute_uv=False)
+    values = left_behind(sound.shape[-1], np.linalg.svd)(sound, compute_uv=False)
     return np.where(is_finite[..., None], values, np.inf)
 
 

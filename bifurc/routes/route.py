@@ -23,6 +23,7 @@ from bifurc.routes.places import (
 )
 from bifurc.routes.surface_legs import Crossing
 from bifurc.routes.ways import GOAL, START, Stage, WayGraph
+from bifurc.routes.wishes import NONE, Wishes
 from bifurc.surfaces.geodesic import place_at, spread
 from bifurc.torus import wrap
 
@@ -86,6 +87,11 @@ class Route:
         total: np.ndarray = np.sum(travels, axis=0)
         return total
 
+    @property
+    def points(self) -> list[str]:
+        """The names of the singular points on the way, in order."""
+        return [leg.at for leg in self.legs[:-1]]
+
     def __repr__(self) -> str:
         head = (
             f"Route({len(self.legs)} legs, length {self.length:.6g}, "
@@ -116,8 +122,10 @@ def find_route(
     *,
     count: int = 400,
     problem: Problem | None = None,
+    wishes: Wishes = NONE,
 ) -> Route:
-    """The shortest way from ``start`` to ``goal`` along forms and over surfaces.
+    """The best way from ``start`` to ``goal`` along forms and over surfaces: the
+    shortest one, or the best by other ``wishes``.
 
     Either is a configuration (n,) on a form or a surface, or the name of one: it stands
     for the middle of a form's longest arc, or for the chart of a surface farthest from
@@ -129,25 +137,57 @@ def find_route(
     form or surface, a component that is only sampled, or where no route exists, and
     `ProblemError` for anything but an atlas, a problem and a count of at least 2.
     """
+    routes = find_routes(
+        atlas, start, goal, 1, count=count, problem=problem, wishes=wishes
+    )
+    return routes[0]
+
+
+def find_routes(
+    atlas: Atlas,
+    start: str | np.ndarray,
+    goal: str | np.ndarray,
+    best: int,
+    *,
+    count: int = 400,
+    problem: Problem | None = None,
+    wishes: Wishes = NONE,
+) -> list[Route]:
+    """Up to ``best`` ways, the best first, all else as in `find_route`; they differ in
+    the arcs that they take."""
     check_type("atlas", atlas, Atlas)
     if problem is not None:
         check_type("problem", problem, Problem)
     check_whole("count", count, 2)
+    check_whole("best", best, 1)
+    wishes = wishes.resolved(atlas)
     search = begin_search(atlas, problem)
     places = {START: place_of(search, start), GOAL: place_of(search, goal)}
     ways = WayGraph(search)
     for node, place in places.items():
         ways.add_place(node, place)
     ways.add_crossings()
-    chain = ways.shortest_chain()
-    if chain is None:
-        raise RouteError(_no_route(atlas, ways, start, goal))
+    chains = ways.best_chains(best, wishes)
+    if not chains:
+        raise RouteError(_no_route(atlas, ways, start, goal, wishes))
+    return [_route(search, chain, start, count) for chain in chains]
+
+
+def _route(
+    search: RouteSearch, chain: Sequence[Stage], start: str | np.ndarray, count: int
+) -> Route:
+    """The route along a chain of ways."""
+    periods = search.atlas.periods
     length = max(sum(stage.length for stage in chain), NO_WAY)
-    legs = [_make_leg(search, stage, count / length) for stage in chain]
+    legs: list[Leg] = []
+    for stage in chain:
+        leg = _make_leg(search, stage, count / length)
+        passes_start = bool(legs) and not legs[-1].at
+        legs = [*legs[:-1], _joined(legs[-1], leg)] if passes_start else [*legs, leg]
     origin = start
     if isinstance(origin, str):
-        origin = wrap(legs[0].path[0], atlas.periods)
-    return _join(legs, np.asarray(origin, dtype=float), atlas.periods)
+        origin = wrap(legs[0].path[0], periods)
+    return _join(legs, np.asarray(origin, dtype=float), periods)
 
 
 # --- legs -----------------------------------------------------------------------------
@@ -165,6 +205,14 @@ def _make_leg(search: RouteSearch, stage: Stage, density: float) -> Leg:
         return _leg_over_surface(search, stage.way, forwards, at, intervals)
     forwards = stage.way["first"] == stage.origin
     return _leg_along_form(search.atlas, stage.way, forwards, at, intervals)
+
+
+def _joined(first: Leg, last: Leg) -> Leg:
+    """One leg of two along one form, between which the route comes past its start."""
+    end = first.end + last.end - last.start
+    travel = first.travel + last.travel
+    path = np.concatenate([first.path, last.path[1:]])
+    return replace(first, end=end, at=last.at, travel=travel, path=path)
 
 
 def _leg_along_form(
@@ -220,9 +268,20 @@ def _join(legs: Sequence[Leg], start: np.ndarray, periods: np.ndarray) -> Route:
 
 
 def _no_route(
-    atlas: Atlas, ways: WayGraph, start: str | np.ndarray, goal: str | np.ndarray
+    atlas: Atlas,
+    ways: WayGraph,
+    start: str | np.ndarray,
+    goal: str | np.ndarray,
+    wishes: Wishes,
 ) -> str:
     """What is said where there is no route: what can be reached, and the obstacles."""
+    if wishes.avoid or wishes.through:
+        words = f"there is no route from {_describe(start)} to {_describe(goal)}"
+        if wishes.avoid:
+            words += f" that avoids {', '.join(map(repr, wishes.avoid))}"
+        if wishes.through:
+            words += f" through {', '.join(map(repr, wishes.through))}"
+        return words
     names = ", ".join(repr(name) for name in ways.names_in_reach())
     sentence = (
         f"there is no route from {_describe(start)} to {_describe(goal)}: only {names} "

@@ -144,12 +144,19 @@ def cover_components(
     charts walk over the surface to find out which they belong to.
     """
     samples = components.samples(points, 2)
-    if not len(samples) or charts <= 0 or deadline.passed:
+    if not len(samples) or charts <= 0:
+        return []
+    # what assembles the charts at the end is imported before: an import is not cut off
+    import scipy.sparse.csgraph
+    import scipy.spatial  # noqa: F401
+
+    seconds = deadline.left
+    if not seconds:
         return []
     if components.deflated is not None:
         problem = components.deflated
     covering = cover_surface(
-        problem, samples, radius=RADIUS, charts=charts, seconds=deadline.left
+        problem, samples, radius=RADIUS, charts=charts, seconds=seconds
     )
     if len(covering):
         components.charts = covering

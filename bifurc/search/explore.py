@@ -12,10 +12,19 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Provenance
 from bifurc.checks import check_callable, check_type
+from bifurc.diagrams.diagram import Diagram
 from bifurc.diagrams.events import EventRequests, events_of
 from bifurc.diagrams.make_diagram import diagram_of, parameter_index
 from bifurc.errors import ProblemError
-from bifurc.limits import Deadline, one_thread, until
+from bifurc.limits import (
+    CutOff,
+    Deadline,
+    HeldInterrupt,
+    current_deadline,
+    cut_off_after,
+    one_thread,
+    until,
+)
 from bifurc.problem import Problem
 from bifurc.search.answer.assemble import assemble_atlas
 from bifurc.search.own_units.restated import restated
@@ -48,7 +57,8 @@ def explore(
     Seeds come from `Problem.seeds` (complete slices where the problem has them, and
     random starts drawn with ``seed``) unless given. Every branch is traced whole and
     monitored; from every singular point the directions in which other branches leave
-    become further starts. ``progress`` is called with what was found and how many.
+    become further starts. ``progress`` is called with what was found and in which
+    step, and how many.
     Ctrl-C ends the search early, once it has begun: the atlas holds what was found,
     and its provenance says so. When the budget of time is used up, the completeness and the provenance say
     so. With a ``parameter``, the name of an unknown, or ``events``, functions of the
@@ -57,30 +67,60 @@ def explore(
     """
     check_type("problem", problem, Problem)
     check_type("settings", settings, SearchSettings)
+    if progress is not None:
+        check_callable("progress", progress)
+    _check_seeds(problem, seed, seeds)
+    if parameter is not None:
+        parameter_index(problem.domain.names, parameter)
+    events_of({} if events is None else events, problem.domain.names)
+    request = _Request(settings, int(seed), seeds, progress)
+    interrupt = HeldInterrupt()
+    # beside a rim of where equations are defined there are values that are no numbers
+    quiet = np.errstate(all="ignore")
+    with one_thread(problem.n), quiet, interrupt:
+        with until(Deadline(settings.budget, interrupt=interrupt)):
+            atlas = _explored_in_any_units(problem, request)
+            if parameter is not None or events:
+                diagram = _diagram_in_time(problem, atlas, parameter, events, is_flow)
+                atlas = replace(atlas, diagram=diagram)
+        if interrupt.was_pressed:
+            provenance = replace(atlas.provenance, interrupted=True, out_of_time=False)
+            atlas = replace(atlas, provenance=provenance)
+            interrupt.settle()
+    if atlas.provenance.interrupted:
+        log.warning("interrupted: the atlas holds what was found so far")
+    return atlas
+
+
+def _check_seeds(problem: Problem, seed: int, seeds: Seeds | None) -> None:
+    """Raise `ProblemError` for a seed or seeds that cannot be used."""
+    if not isinstance(seed, int | np.integer) or not 0 <= seed <= LARGEST_SEED:
+        raise ProblemError(
+            "seed", repr(seed), f"a whole number from 0 to {LARGEST_SEED}"
+        )
     if seeds is not None:
         check_type("seeds", seeds, Seeds)
         if seeds.points.ndim != 2 or seeds.points.shape[1] != problem.n:
             shape = f"(k, {problem.n})"
             raise ProblemError("shape of the seeds", seeds.points.shape, shape)
-    if progress is not None:
-        check_callable("progress", progress)
-    if not isinstance(seed, int | np.integer) or not 0 <= seed <= LARGEST_SEED:
-        raise ProblemError(
-            "seed", repr(seed), f"a whole number from 0 to {LARGEST_SEED}"
+
+
+def _diagram_in_time(
+    problem: Problem,
+    atlas: Atlas,
+    parameter: str | None,
+    events: EventRequests | None,
+    is_flow: bool,
+) -> Diagram:
+    """The diagram of an atlas; one that says so where there is no time for it."""
+    try:
+        with cut_off_after(current_deadline()):
+            return diagram_of(problem, atlas, parameter, events, is_flow=is_flow)
+    except CutOff:
+        remark = (
+            "the time ended before folds, events, stability and Hopf points were known"
         )
-    if parameter is not None:
-        parameter_index(problem.domain.names, parameter)
-    events_of({} if events is None else events, problem.domain.names)
-    request = _Request(settings, int(seed), seeds, progress)
-    deadline = Deadline(settings.budget)
-    # beside a rim of where equations are defined there are values that are no numbers
-    quiet = np.errstate(all="ignore")
-    with one_thread(problem.n), until(deadline), quiet:
-        atlas = _explored_in_any_units(problem, request)
-        if parameter is None and not events:
-            return atlas
-        diagram = diagram_of(problem, atlas, parameter, events, is_flow=is_flow)
-        return replace(atlas, diagram=diagram)
+        return Diagram(parameter or "", (), (), (), (remark,))
 
 
 class _Request(NamedTuple):
@@ -94,20 +134,16 @@ class _Request(NamedTuple):
 
 def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
     """The atlas, found in units of the search's own where the problem lets it."""
-    began = time.perf_counter()
-    own = in_own_units(problem, Deadline(request.settings.budget, began))
+    own = in_own_units(problem)
     if own is None:
-        return _explored(problem, request, began)
-    atlas = _explored_in_units(own, request, began)
+        return _explored(problem, request)
+    atlas = _explored_in_units(own, request)
     has_lengths = bool(atlas.surfaces or atlas.near_motions)
     if has_lengths and not own.own_units.is_uniform:
-        # areas and lengths are those of the user only where all sizes are one:
-        # the search is made again, with a budget of its own
-        first = time.perf_counter() - began
+        # areas and lengths are those of the user only where all sizes are one: where
+        # there is no time for these they are left out
         own = in_one_size(own)
-        atlas = _explored_in_units(own, request, time.perf_counter())
-        whole = first + atlas.provenance.seconds
-        atlas = replace(atlas, provenance=replace(atlas.provenance, seconds=whole))
+        atlas = _explored_in_units(own, request)
     forms = [
         replace(
             form,
@@ -119,11 +155,11 @@ def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
     return restated(replace(atlas, forms=tuple(forms)), problem, own.own_units)
 
 
-def _explored_in_units(own: UnitProblem, request: _Request, began: float) -> Atlas:
+def _explored_in_units(own: UnitProblem, request: _Request) -> Atlas:
     """The atlas of a problem in units of its own, in these units."""
     if request.seeds is not None:
         request = request._replace(seeds=own.seeds_inwards(request.seeds))
-    return _explored(own, request, began)
+    return _explored(own, request, ends_at_surfaces=not own.own_units.is_uniform)
 
 
 def _in_noise(problem: Problem, request: _Request) -> _Request:
@@ -136,24 +172,25 @@ def _in_noise(problem: Problem, request: _Request) -> _Request:
     return request._replace(settings=replace(request.settings, tracing=coarser))
 
 
-def _explored(problem: Problem, request: _Request, began: float) -> Atlas:
+def _explored(
+    problem: Problem, request: _Request, ends_at_surfaces: bool = False
+) -> Atlas:
     """The atlas of a problem, in the units in which it stands."""
     request = _in_noise(problem, request)
-    deadline = Deadline(request.settings.budget, began)
-    search = Search(problem, *request, deadline)
-    interrupted = False
+    deadline = current_deadline()
+    search = Search(problem, *request, deadline, ends_at_surfaces)
     try:
         search.take_steps()
-    except KeyboardInterrupt:
+        interrupted = deadline.is_interrupted
+    except KeyboardInterrupt:  # the second one, or that of the function of a user
         interrupted = True
-        log.warning("interrupted: the atlas holds what was found so far")
     provenance = Provenance(
         seed=request.seed,
         settings=request.settings,
         interrupted=interrupted,
-        out_of_time=search.run.is_over and not interrupted,
+        out_of_time=deadline.passed and not interrupted,
         derivatives=problem.accuracy.derivatives,
         equations=problem.accuracy.equations,
-        seconds=time.perf_counter() - began,
+        seconds=time.perf_counter() - deadline.began,
     )
-    return assemble_atlas(problem, search.findings, provenance, search.run.deadline)
+    return assemble_atlas(problem, search.findings, provenance, deadline)

@@ -18,7 +18,7 @@ from bifurc.decisions import (
     is_weakly_isolated,
     may_be_known,
 )
-from bifurc.limits import Deadline, HeldInterrupt
+from bifurc.limits import Deadline, whole
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.records import Components, PointSighting, RigidAssembly, TracedBranch
@@ -44,6 +44,7 @@ class Numbered(dict[int, Item], Generic[Item]):
 
     _count = 0
 
+    @whole
     def add(self, item: Item) -> int:
         """The number of a thing just recorded."""
         self[self._count] = item
@@ -89,6 +90,7 @@ class Findings:
         """The traced branches, in the order in which they were found."""
         return [traced.branch for traced in self.traced.values()]
 
+    @whole
     def set_components(self, components: Components) -> None:
         """Record the components of higher dimension, and the seeds that lie on them."""
         self.components = components
@@ -96,6 +98,7 @@ class Findings:
             self.book.settle(numbers, SeedFate(Fate.ON_COMPONENT, dimension))
         self.book.settle(components.on_shaky, SeedFate(Fate.ON_COMPONENT, 2))
 
+    @whole
     def set_audit(self, audit: Audit) -> None:
         """Record what the problem says of the branches known now."""
         self.audit = audit
@@ -103,6 +106,7 @@ class Findings:
 
     # --- branches ---------------------------------------------------------------------
 
+    @whole
     def add_branch(self, traced: TracedBranch) -> SeedFate:
         """That of seeds on a branch just recorded, which no audit has seen."""
         self.awaits_audit = True
@@ -122,6 +126,7 @@ class Findings:
         self.book.settle(matching, SeedFate(Fate.ON_FORM, branch))
         return list(compress(numbers, ~is_on))
 
+    @whole
     def replace_branches(self, one: int, other: int, traced: TracedBranch) -> None:
         """Put a branch in the place of number ``one``, which it is together with number
         ``other``."""
@@ -132,6 +137,7 @@ class Findings:
             one_fate = SeedFate(Fate.ON_FORM, one)
             self.book.move(SeedFate(Fate.ON_FORM, other), one_fate)
 
+    @whole
     def forget_branch(self, number: int) -> None:
         """Forget a branch, and which seeds lie on it."""
         del self.traced[number]
@@ -245,6 +251,7 @@ class Findings:
 
     # --- points -----------------------------------------------------------------------
 
+    @whole
     def add_point(
         self, point: SingularPoint, germ: Germ | None = None
     ) -> PointSighting:
@@ -273,12 +280,14 @@ class Findings:
             self.book.move(SeedFate(Fate.RIGID, number), sighting.fate)
         return sighting
 
+    @whole
     def forget_point(self, number: int, fate: SeedFate) -> None:
         """Forget a singular point, given by its number; the seeds there have another
         ``fate``."""
         del self.points[number]
         self.book.move(SeedFate(Fate.AT_SINGULAR_POINT, number), fate)
 
+    @whole
     def merge_points(self, pairs: Sequence[tuple[int, int]]) -> None:
         """Take each of the ``pairs`` of singular points, by their numbers, for one: that
         which is confirmed, or else which doubles know less well, for they say so only
@@ -379,6 +388,7 @@ class Findings:
                 return SeedFate(Fate.RIGID, number)
         return None
 
+    @whole
     def add_assembly(
         self, u: np.ndarray, stiffness: float = np.inf, hidden: float = 0.0
     ) -> SeedFate:
@@ -418,23 +428,15 @@ def _are_on(branches: Sequence[Branch], points: np.ndarray, within: np.ndarray) 
 class Run:
     """A search under way: what is searched, how, until when, and what is known so far.
 
-    It stops at the ``deadline``. A Ctrl-C that ``interrupt`` holds makes the deadline
-    pass, so that every step soon ends, and is raised between two of them.
+    It stops at the ``deadline``, which a Ctrl-C makes pass.
     """
 
     problem: Problem
     settings: SearchSettings
     deadline: Deadline
-    interrupt: HeldInterrupt
     findings: Findings
 
     @property
     def is_over(self) -> bool:
         """Whether the budget is used up."""
         return self.deadline.passed
-
-    def is_over_now(self) -> bool:
-        """The same, asked between two steps of something long: a Ctrl-C that was held
-        is raised."""
-        self.interrupt.check()
-        return self.is_over

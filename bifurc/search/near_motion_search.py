@@ -37,11 +37,11 @@ def closure_gap(
     nearly solved; 0 where every start solves it.
 
     It is taken over the random starts that missed, as many as there is time for before
-    the ``deadline``, a few in any case, and over the ``gaps`` of starts that could not be
-    corrected.
+    the ``deadline``, and over the ``gaps`` of starts that could not be corrected; after
+    the deadline it is what the starts themselves leave.
     """
     residuals = seeds.gaps
-    if len(seeds.missed):
+    if len(seeds.missed) and not deadline.passed:
         lowest = valley_points(problem, seeds.missed, deadline)
         residuals = np.maximum(
             relative_gaps(problem, lowest), seeds.gaps[: len(lowest)]
@@ -186,7 +186,6 @@ class NearMotionSearch:
             apart = np.linalg.norm(offsets, axis=1)
             waiting = waiting[~is_same_point(apart, self.problem.domain.scale)]
             waiting = self._not_on_known(waiting)
-            self.run.interrupt.check()
 
     def _not_on_known(self, points: np.ndarray) -> np.ndarray:
         """Those of the points (k, n) that lie on no known near motion or short

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TypeAlias
@@ -16,7 +17,7 @@ from bifurc.decisions import (
     may_be_crossed,
     stops_short,
 )
-from bifurc.limits import Deadline, HeldInterrupt, until
+from bifurc.limits import CutOff, Deadline, cut_off_after, ending_in_time
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.answer.completeness import asks_for_more_starts
@@ -37,7 +38,11 @@ from bifurc.search.point_search import BRANCH_REACH, SEED_REACH, PointSearch
 from bifurc.search.records import Start, half_branch_starts
 from bifurc.search.seed_book import Fate, SeedFate
 from bifurc.search.seed_fates import SeedJudge
-from bifurc.search.solutions import sharpened, with_weak_solutions
+from bifurc.search.solutions import (
+    sharpened,
+    solutions_in_bounds,
+    with_weak_solutions,
+)
 from bifurc.search.subdivision import (
     Subdivision,
     audit_of,
@@ -51,10 +56,13 @@ from bifurc.settings import SearchSettings
 from bifurc.singular.classify import classify_from_nearby
 from bifurc.singular.point import Kind
 
+log = logging.getLogger(__name__)
+
 TINY = 1e-300  # keeps a slope of zero from being divided by
 LOOKS_WHERE_STOPPED = 6  # at ends of starts that reached no solution
 LOOKS_WHERE_SLOW = 4  # at ends of starts where |F| still falls
 SLOW_REACH = 0.5  # how far from these, over the scale, a singular point may lie
+SORTING = 0.3  # of the time that is left, to tell on what seeds lie
 ROUNDS_IN_BOXES = 3  # each of them followed up
 MOST_TIMES = 16  # as many random starts as are asked for are drawn
 
@@ -69,9 +77,10 @@ class Search:
     ``seeds`` given, or else from its own.
 
     Each of the `STEPS` adds to the findings of the ``run`` until nothing new comes of
-    it. From the end of the budget on a step does nothing. A Ctrl-C ends the budget, and
-    then raises `KeyboardInterrupt` between two starts or at the end of the block; the
-    findings hold what is known then.
+    it. From the end of the budget on a step does nothing, and a step that does not end
+    soon is cut off. Where it ``ends_at_surfaces`` it does as soon as there are some. A
+    Ctrl-C that the ``deadline`` holds ends the budget. The findings hold
+    what is known then.
     """
 
     def __init__(
@@ -82,19 +91,20 @@ class Search:
         seeds: Seeds | None,
         progress: Callable[[str, int], None] | None,
         deadline: Deadline,
+        ends_at_surfaces: bool = False,
     ):
         self.problem = problem
+        self.ends_at_surfaces = ends_at_surfaces
         self.settings = settings
         self.seeds = seeds
         self.random_seed = random_seed
         self.progress = progress
+        self.step = ""
         self.findings = Findings(problem)
-        interrupt = HeldInterrupt()
         self.run = Run(
             problem=problem,
             settings=settings,
-            deadline=deadline.or_at(interrupt),
-            interrupt=interrupt,
+            deadline=deadline,
             findings=self.findings,
         )
         self.points = PointSearch(self.run)
@@ -105,13 +115,26 @@ class Search:
 
     def take_steps(self) -> None:
         """Take all steps, each until it leads to nothing new."""
-        with self.run.interrupt, until(self.run.deadline):
-            for step in STEPS:
-                for starts in step(self):
-                    self.tracer.branch_off(starts)
-                    self.trace_seeds()
-                    self.run.interrupt.check()
-            self.near_motions.look()
+        deadline = self.run.deadline
+        try:
+            with cut_off_after(deadline), ending_in_time(deadline):
+                for step in STEPS:
+                    self.step = step.__name__.replace("_", " ")
+                    self._tell()
+                    for starts in step(self):
+                        if self.ends_at_surfaces and self.findings.components.seeds:
+                            return
+                        self.tracer.branch_off(starts)
+                        self.trace_seeds()
+                self.near_motions.look()
+        except CutOff:
+            log.info("a step was cut off at the end of the time")
+
+    def _tell(self) -> None:
+        """Say how many forms there are, and which step is taken."""
+        if self.progress is not None:
+            what = f"forms so far; step: {self.step}"
+            self.progress(what, len(self.findings.traced))
 
     # --- seeds ------------------------------------------------------------------------
 
@@ -160,8 +183,9 @@ class Search:
         """Find the seeds that lie on components of dimension 2 and more."""
         book = self.findings.book
         if len(book.seeds.points):
+            share = self.run.deadline.share(SORTING)
             components = components_of_seeds(
-                self.problem, book.seeds.points, book.values, self.run.deadline
+                self.problem, book.seeds.points, book.values, share
             )
             self.findings.set_components(components)
 
@@ -175,12 +199,10 @@ class Search:
             for branch in list(findings.traced)[matched:]:
                 waiting = findings.match_seeds(waiting, branch)
             matched = len(findings.traced)
-            if self.progress is not None:
-                self.progress("forms", matched)
+            self._tell()
             if waiting:
                 number = waiting.pop(0)
                 findings.book.fates[number] = self.judge.fate_of(number)
-            self.run.interrupt.check()
 
     # --- surfaces ---------------------------------------------------------------------
 
@@ -272,6 +294,19 @@ class Search:
         slopes: np.ndarray = np.linalg.norm(products, axis=1) / (sizes + TINY)
         return slopes
 
+    def look_at_bounds(self) -> Starts:
+        """Take solutions in single bounds for seeds, where nothing is known: of a curve
+        that only touches the region, as in a corner of it, random starts end outside."""
+        findings, problem = self.findings, self.problem
+        if findings.components.seeds or self.run.is_over:
+            return
+        points = solutions_in_bounds(problem, np.random.default_rng(0))
+        if len(points):
+            points = points[~findings.are_on_branches(points)]
+        if len(points):
+            self._add_seeds(findings.book.seeds.with_constructed(points))
+            yield []
+
     # --- what doubles mistake ---------------------------------------------------------
 
     def separate_points(self) -> Starts:
@@ -339,7 +374,6 @@ class Search:
             seconds = self.run.deadline.left if self.settings.prove else 0.0
             audit = judge(findings.branches, seconds)
             findings.set_audit(audit)
-            self.run.interrupt.check()
             solutions, gaps = self.problem.project(audit.starts)
             solutions = solutions[is_start_solved(gaps)]
             self._add_seeds(findings.book.seeds.with_constructed(solutions))
@@ -379,8 +413,7 @@ class Search:
     def _divided(self, boxes: int) -> Subdivision:
         """The bounds divided into so many ``boxes`` at most, with what is known now."""
         branches, points = self.findings.branches, self.findings.points.values()
-        is_over = self.run.is_over_now
-        division = subdivide(self.problem, branches, list(points), boxes, is_over)
+        division = subdivide(self.problem, branches, list(points), boxes)
         numbers = list(self.findings.traced)
         refuted = [(numbers[index], s) for index, s in division.refuted]
         return replace(division, refuted=tuple(refuted))
@@ -406,6 +439,7 @@ STEPS: tuple[Callable[[Search], Starts], ...] = (
     Search.gather_seeds,
     Search.draw_more_starts,
     Search.look_where_starts_stop,
+    Search.look_at_bounds,
     Search.cover_surfaces,
     Search.trace_singular_curves,
     Search.separate_points,

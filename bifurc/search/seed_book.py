@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.decisions import is_same_point, may_be_weak
+from bifurc.limits import whole
 from bifurc.numerics.blur import same_reach
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
@@ -70,6 +71,7 @@ class SeedBook:
         values = self.values[numbers, max(self.problem.n - 2, 0)]
         return [numbers[k] for k in np.argsort(-values, kind="stable")]
 
+    @whole
     def add(self, seeds: Seeds, values: np.ndarray) -> None:
         """Replace the seeds by ``seeds``, which begin with those known so far;
         ``values`` (k, n) are the singular values at the new ones."""
@@ -79,15 +81,18 @@ class SeedBook:
         reach = reach_of_places(self.problem, new, values)
         self.reach = np.concatenate([self.reach, reach])
 
+    @whole
     def settle(self, numbers: Iterable[int], fate: SeedFate) -> None:
         """Record one fate of some seeds."""
         self.fates.update(dict.fromkeys(numbers, fate))
 
+    @whole
     def reopen(self, numbers: Iterable[int]) -> None:
         """Forget what is known of some seeds."""
         for number in numbers:
             del self.fates[number]
 
+    @whole
     def move(self, fate: SeedFate, other: SeedFate | None) -> None:
         """Give the seeds of one fate another one; None: nothing is known of them."""
         numbers = [number for number, known in self.fates.items() if known == fate]

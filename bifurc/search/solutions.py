@@ -27,11 +27,14 @@ from bifurc.decisions import (
     is_without_equation,
     may_be_crossed,
 )
+from bifurc.equations.system import ScaledTape
+from bifurc.function_problem import EquationProblem
 from bifurc.numerics.blur import ROUNDING
 from bifurc.numerics.corrector import limited
 from bifurc.numerics.null_spaces import correct_to_valley, decompose, null_spaces
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
+from bifurc.seeding import start_region
 from bifurc.seeds import Seeds
 from bifurc.system import relative_gaps
 
@@ -197,3 +200,34 @@ def _hidden_stretch(problem: Problem, solution: np.ndarray) -> _Stretch:
     beside = solution + offset * weakest
     middle = correct_to_valley(problem, beside[None], CORRECTIONS)[0][0]
     return _Stretch(middle, 0.5 * (reaches[0] + reaches[1]))
+
+
+# --- where the region ends ------------------------------------------------------------
+
+IN_A_BOUND = 8  # starts in each bound, and on each rim, of so many unknowns at most
+MOST_UNKNOWNS = 8
+
+
+def solutions_in_bounds(problem: Problem, rng: np.random.Generator) -> np.ndarray:
+    """Solutions (k, n) within the region that have one unknown in a bound, or lie on a
+    rim, reached from a few starts for each; none of equations that are not recorded."""
+    found = np.empty((0, problem.n))
+    if not isinstance(problem, EquationProblem) or problem.n > MOST_UNKNOWNS:
+        return found
+    compiled = problem.compiled
+    if not isinstance(compiled, ScaledTape):
+        return found
+    low, high = start_region(problem).T
+    ends = []
+    for number, bound in np.argwhere(np.isfinite(problem.domain.bounds)):
+        starts = rng.uniform(low, high, (IN_A_BOUND, problem.n))
+        starts[:, number] = problem.domain.bounds[number, bound]
+        ends.append(compiled.project(starts, np.arange(problem.n) == number))
+    for tape in problem.tapes_on_rims():
+        starts = rng.uniform(low, high, (IN_A_BOUND, problem.n))
+        on_rim = ScaledTape(tape, problem.magnitude, problem.domain)
+        ends.append(on_rim.project(starts))
+    for points, gaps in ends:
+        is_inside = problem.domain.are_inside(points)
+        found = np.concatenate([found, points[is_start_solved(gaps) & is_inside]])
+    return found

@@ -11,7 +11,7 @@ outwards (`bifurc/core/boxes.hpp`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import NamedTuple
@@ -26,6 +26,7 @@ from bifurc.curves.monitor import dead_points
 from bifurc.decisions import closes_to_rounding, is_same_point
 from bifurc.equations.tape import Operation
 from bifurc.function_problem import EquationProblem
+from bifurc.limits import is_time_over
 from bifurc.problem import Problem
 from bifurc.search.answer.completeness import SearchClaim
 from bifurc.search.records import TracedBranch
@@ -109,15 +110,14 @@ def subdivide(
     branches: Sequence[Branch],
     points: Sequence[SingularPoint],
     most: int,
-    is_over: Callable[[], bool] = lambda: False,
 ) -> Subdivision:
     """The bounds divided into boxes, until all are settled, or enough is found to be
-    traced first, or there would be more than ``most``, or the time ``is_over``."""
+    traced first, or there would be more than ``most``, or the time is over."""
     division = _Division(problem, branches, points)
     division.verify_branches()
     boxes = _grid(_box(problem))
     while len(boxes.low) and division.is_worth_while and division.count < most:
-        if is_over():
+        if is_time_over():
             break
         boxes = division.open_boxes(boxes, min(AT_ONCE, most - division.count))
     if division.is_worth_while and division.count:

@@ -25,7 +25,7 @@ from bifurc.decisions import (
     may_be_null,
     may_fill_null_space,
 )
-from bifurc.limits import Deadline
+from bifurc.limits import Deadline, ending_in_time, has_to_end
 from bifurc.numerics.blur import rounding_unit
 from bifurc.numerics.corrector import correct_normal
 from bifurc.numerics.null_spaces import null_spaces
@@ -48,8 +48,9 @@ HIDDEN = 10.0
 # Residual below which what projection leaves is on its way to a solution, and how many
 # times it is projected again at most.
 SLOW, AGAIN = 1e-6, 3
-# Points probed between two looks at the clock.
-CHUNK = 256
+# Points probed between two looks at the clock, and where the time may be over before all
+# are.
+CHUNK, FEW = 256, 4
 
 
 @dataclass(frozen=True)
@@ -93,13 +94,29 @@ def local_dimensions(
         part = slice(begin, begin + CHUNK)
         sigma, right = null_spaces(problem, points[part])
         nullity[part] = np.count_nonzero(may_be_null(sigma), axis=1)
-        for k in np.unique(nullity[part]):
-            rows = begin + np.flatnonzero(nullity[part] == k)
-            basis = right[rows - begin, problem.n - k :]
-            own = _dimensions_of_nullity(problem, points[rows], basis)
-            dimension[rows] = own.dimension
-            regular[rows], shaky[rows] = own.regular, own.shaky
+        for rows in _alike(nullity[part]):
+            k = int(nullity[part][rows[0]])
+            basis = right[rows, problem.n - k :]
+            own = None
+            with ending_in_time(deadline):
+                own = _dimensions_of_nullity(problem, points[part][rows], basis)
+            if own is None:
+                return LocalDimensions(dimension, nullity, regular, shaky)
+            dimension[begin + rows] = own.dimension
+            regular[begin + rows], shaky[begin + rows] = own.regular, own.shaky
     return LocalDimensions(dimension, nullity, regular, shaky)
+
+
+def _alike(nullity: np.ndarray) -> list[np.ndarray]:
+    """The numbers of points that are looked at together: those of one nullity (c,), a few
+    where the time may be over before all are done."""
+    groups = [np.flatnonzero(nullity == k) for k in np.unique(nullity)]
+    at_once = FEW if has_to_end() else CHUNK
+    return [
+        group[first : first + at_once]
+        for group in groups
+        for first in range(0, len(group), at_once)
+    ]
 
 
 def _dimensions_of_nullity(

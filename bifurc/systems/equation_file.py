@@ -32,17 +32,16 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
 
-import sympy
-
 from bifurc.atlas import Atlas
 from bifurc.equations.expression import (
-    CONSTANTS,
     FUNCTION_NAMES,
     ExpressionError,
     Part,
     parse_expression,
 )
-from bifurc.equations.symbolic import SymbolicFunction, SymbolicProblem
+from bifurc.equations.expression_problem import ExpressionProblem, FirstOutput, tape_of
+from bifurc.equations.program import CONSTANTS, Program, Step
+from bifurc.equations.tape import TapeWriter
 from bifurc.errors import PathError, ProblemError
 from bifurc.files.text_file import TextFileError, read_toml
 from bifurc.search.explore import explore
@@ -74,11 +73,11 @@ class EquationSystem:
     """
 
     name: str
-    problem: SymbolicProblem
+    problem: ExpressionProblem
     parameter: str | None
     equations: Mapping[str, str]
     values: Mapping[str, float]
-    events: Mapping[str, SymbolicFunction]
+    events: Mapping[str, FirstOutput]
     is_flow: bool
 
     def explore(
@@ -167,6 +166,7 @@ class _Reading:
     content: Content
     overrides: dict[str, float]
     symbols: dict[str, Part] = field(default_factory=dict)
+    program: Program = field(default_factory=Program)
 
     def system(self) -> EquationSystem:
         """All of it."""
@@ -183,10 +183,10 @@ class _Reading:
         if is_flow:
             order = list(unknowns)
             equations.sort(key=lambda one: order.index(one.rate_of))
-        symbols = [sympy.Symbol(name) for name in unknowns]
-        problem = SymbolicProblem(
-            [equation.part.as_written for equation in equations],
-            symbols,
+        problem = ExpressionProblem(
+            self.program,
+            [equation.part.place for equation in equations],
+            list(unknowns),
             [(one.low, one.high) for one in unknowns.values()],
             periods=[one.period for one in unknowns.values()],
             units=[one.unit for one in unknowns.values()],
@@ -197,7 +197,7 @@ class _Reading:
             parameter=parameter,
             equations={one.label: one.text for one in equations},
             values=values,
-            events=self._events(symbols),
+            events=self._events(list(unknowns)),
             is_flow=is_flow,
         )
 
@@ -235,7 +235,7 @@ class _Reading:
                 f"unknowns: {len(unknowns)} of them; there must be 2 or more"
             )
         for name in unknowns:
-            self.symbols[name] = Part(sympy.Symbol(name))
+            self.symbols[name] = Part(self.program.place(Step(name)))
         return unknowns
 
     def _unknown(self, label: str, given: object) -> _Unknown:
@@ -291,7 +291,23 @@ class _Reading:
             raise _Refusal("equations: neither a table nor a list of texts")
         if not given:
             raise _Refusal("equations: there are none")
-        return [self._equation(name, text, unknowns) for name, text in given.items()]
+        equations = [
+            self._equation(name, text, unknowns) for name, text in given.items()
+        ]
+        self._check_that_unknowns_are_left(equations, unknowns)
+        return equations
+
+    def _check_that_unknowns_are_left(
+        self, equations: Sequence[_Equation], unknowns: Sequence[str]
+    ) -> None:
+        """Refuse equations whose two sides are the same."""
+        writer = TapeWriter(len(unknowns))
+        places = [equation.part.place for equation in equations]
+        slots = self.program.write_on(writer, places, unknowns)
+        for equation, slot in zip(equations, slots, strict=True):
+            if writer.value(slot) is not None:
+                label = f"equations.{equation.label}"
+                raise _Refusal(f"{label}: {equation.text!r} holds no unknown")
 
     def _equation(self, name: str, text: object, unknowns: Sequence[str]) -> _Equation:
         label = f"equations.{name}"
@@ -309,8 +325,6 @@ class _Reading:
             if rate_of not in unknowns:
                 hint = _nearest(rate_of, unknowns)
                 raise _Refusal(f"{label}: {rate_of!r} is no unknown{hint}")
-        if not part.expression.free_symbols:
-            raise _Refusal(f"{label}: {text!r} holds no unknown")
         return _Equation(name, text, part, rate_of)
 
     def _is_flow(
@@ -341,13 +355,13 @@ class _Reading:
             raise _Refusal(f"equations: there is no rate of {', '.join(missing)}")
         return True
 
-    def _events(self, symbols: Sequence[sympy.Symbol]) -> dict[str, SymbolicFunction]:
+    def _events(self, unknowns: Sequence[str]) -> dict[str, FirstOutput]:
         events = {}
         for name, text in self._table("events").items():
             part = self._part(f"events.{name}", text)
-            if not part.expression.free_symbols:
+            if part.value is not None:
                 raise _Refusal(f"events.{name}: {text!r} holds no unknown")
-            events[name] = SymbolicFunction.of(part.as_written, symbols)
+            events[name] = FirstOutput(tape_of(self.program, [part.place], unknowns))
         return events
 
     # --- entries ----------------------------------------------------------------------
@@ -377,13 +391,18 @@ class _Reading:
             return self._side(label, text, 0, len(text))
         left = self._side(label, text, 0, signs[0].start())
         right = self._side(label, text, signs[0].end(), len(text))
-        return left.minus(right)
+        place = self.program.place(Step("-", (left.place, right.place)))
+        value = None
+        if left.value is not None and right.value is not None:
+            value = left.value - right.value
+        return Part(place, value, left.size + right.size)
 
     def _side(self, label: str, text: str, begin: int, end: int) -> Part:
         """The expression from ``begin`` to ``end`` of a text, in the columns of which an
         error counts."""
         try:
-            return parse_expression(" " * begin + text[begin:end], self.symbols)
+            text_of_side = " " * begin + text[begin:end]
+            return parse_expression(text_of_side, self.symbols, self.program)
         except ExpressionError as error:
             raise _Refusal(f"{label}: {text!r}: {error}") from None
 

@@ -6,14 +6,13 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 from mpl_toolkits.mplot3d.proj3d import proj_transform
 
 from bifurc.atlas import Atlas
 from bifurc.figures.plotting import plot_transition_map
-from bifurc.figures.rendering import RC
+from bifurc.figures.rc import drawing_style
 from docs.generator.scene_figure import draw_configuration
 from linkages.labels import loop_of
 from linkages.scene import Scene, breadth, clearance, make_scene
@@ -51,7 +50,7 @@ def draw_no_picture(path: Path) -> None:
 
 def _save(figure: Figure, path: Path, extent: Bbox | Literal["tight"]) -> None:
     """Write the part of a figure within ``extent`` (inches), with a small margin."""
-    with rc_context(RC):
+    with drawing_style():
         figure.savefig(
             path, bbox_inches=extent, pad_inches=MARGIN, metadata={"Date": None}
         )

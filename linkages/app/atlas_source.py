@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
+from bifurc.limits import Deadline
 from linkages.app.answer.verdict import judge
 from linkages.app.choice import choose_held, require_table
 from linkages.app.exit_codes import CommandError, ExitCode
@@ -17,6 +20,7 @@ from linkages.subject import as_subject, subject_at
 
 if TYPE_CHECKING:
     from bifurc.routes.route import Route
+    from bifurc.routes.wishes import Wishes
     from linkages.mechanisms.mechanism import Mechanism
 
 
@@ -31,6 +35,20 @@ def explore_linkage(linkage: Linkage | Mechanism, search: SearchOptions) -> Atla
         return map_linkage(
             linkage, settings=settings, seed=search.seed, progress=status
         )
+
+
+def explore_parts(
+    parts: Sequence[Linkage | Mechanism], search: SearchOptions
+) -> list[Atlas]:
+    """The maps of mechanisms, one after the other, that share one budget."""
+    if len(parts) == 1:
+        return [explore_linkage(parts[0], search)]
+    deadline = Deadline(search.budget)
+    atlases = []
+    for number, part in enumerate(parts):
+        budget = deadline.left / (len(parts) - number)
+        atlases.append(explore_linkage(part, replace(search, budget=budget)))
+    return atlases
 
 
 def require_uninterrupted(atlas: Atlas) -> None:
@@ -92,11 +110,22 @@ def atlas_of(source: str, options: AtlasOptions) -> Atlas:
 def route_between(atlas: Atlas, start: str, goal: str) -> Route:
     """The shortest route between two forms or surfaces by their full names; raises
     `CommandError` where there is none."""
-    from bifurc.errors import RouteError
-    from bifurc.routes.route import find_route
+    from bifurc.routes.wishes import NONE
 
+    return routes_between(atlas, start, goal, 1, NONE)[0]
+
+
+def routes_between(
+    atlas: Atlas, start: str, goal: str, best: int, wishes: Wishes
+) -> list[Route]:
+    """Up to ``best`` routes, the best first by what is wished, between two forms or
+    surfaces by their full names; raises `CommandError` where there is none."""
+    from bifurc.errors import RouteError
+    from bifurc.routes.route import find_routes
+
+    problem = subject_at(atlas).closure
     try:
-        return find_route(atlas, start, goal, problem=subject_at(atlas).closure)
+        return find_routes(atlas, start, goal, best, problem=problem, wishes=wishes)
     except RouteError as error:
         raise CommandError(str(error), ExitCode.NO_ROUTE) from None
 

@@ -20,7 +20,7 @@ from linkages.files.csv_table import from_modified
 from linkages.linkage import is_linkage_file, load
 from linkages.loop import LARGEST, SMALLEST, Loop
 from linkages.networks.entries import NETWORKS, NetworkEntry
-from linkages.values import GeometryError, check_angle, told_apart
+from linkages.values import GeometryError, check_angle, require, told_apart
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
@@ -199,7 +199,10 @@ def hold_joints(text: str, linkage: Linkage | Mechanism, hold: HoldOptions) -> I
         f"{hold.names}: it takes a mechanism with joints by name, and {text} is a "
         "single loop, a table or axes"
     )
-    mechanism = require_kind(linkage, Mechanism, refusal)
+    mechanism = _part(require_kind(linkage, Mechanism, refusal), hold.part)
+    mechanism = replace(mechanism, with_flaps=hold.with_flaps)
+    if hold.free_creases:
+        mechanism = mechanism.with_free_creases()
     values = _read_values(hold.locks, "--lock", mechanism.holds_angle)
     check_limits(mechanism, values)
     locked = mechanism.held(values)
@@ -208,6 +211,21 @@ def hold_joints(text: str, linkage: Linkage | Mechanism, hold: HoldOptions) -> I
         return inputs
     loop = _without_centre(_require_network(text, inputs.mechanism))
     return Inputs(loop.mechanism, inputs.notes + loop.notes)
+
+
+def parts_of(linkage: Linkage | Mechanism) -> tuple[Linkage | Mechanism, ...]:
+    """The mechanisms that do not hang together; itself where it is one."""
+    return (linkage,) if isinstance(linkage, Linkage) else linkage.parts
+
+
+def _part(mechanism: Mechanism, number: int | None) -> Mechanism:
+    """The part of this number, from 1; all of it without one."""
+    if number is None:
+        return mechanism
+    parts = mechanism.parts
+    allowed = f"from 1 to {len(parts)}, as it consists of so many mechanisms"
+    require(number <= len(parts), "--part", number, allowed)
+    return parts[number - 1]
 
 
 def _driven(mechanism: Mechanism, driver: str) -> Inputs:
@@ -239,12 +257,12 @@ def _require_network(text: str, linkage: Linkage | Mechanism) -> NetworkMechanis
 
 def _without_centre(network: NetworkMechanism) -> Inputs:
     """The single loop that is left of a network without the bars inside."""
-    loop = network.without_centre()
+    loop, still = network.without_centre()
     note = (
         "--without-centre: every motion of the network is one of this loop, and the "
         "loop may have more: taking the middle away adds forms and bifurcations"
     )
-    followers = [joint for joint in network.still if joint not in network.kinks]
+    followers = [joint for joint in still if joint not in network.kinks]
     notes: tuple[str, ...] = (note,)
     if followers:
         names = ", ".join(followers)

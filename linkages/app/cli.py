@@ -6,9 +6,13 @@ A command is imported when it is called, with the modules that it needs: ``bifur
 
 from __future__ import annotations
 
+import ast
 import difflib
+import inspect
+import sys
 from importlib import import_module
 from pkgutil import iter_modules
+from types import ModuleType
 
 import click
 
@@ -50,6 +54,8 @@ class Commands(click.Group):
             return None
         module = import_module(f"linkages.app.commands.{cmd_name}_command")
         command: click.Command = getattr(module, f"{cmd_name}_command")
+        if command.help is None:
+            command.help = _help_in_source(module, f"{cmd_name}_command")
         return command
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
@@ -87,6 +93,15 @@ class Commands(click.Group):
         nearest = difflib.get_close_matches(name, names, n=1)
         hint = f"the nearest is {nearest[0]}" if nearest else "see bifurc --help"
         return f"there is no command {name!r}; {hint}"
+
+
+def _help_in_source(module: ModuleType, name: str) -> str:
+    """The text of the help of the command that a function of a module is, as it stands in
+    its source: Python drops texts where it is told to optimize twice."""
+    for node in ast.parse(inspect.getsource(module)).body:
+        if isinstance(node, ast.FunctionDef) and node.name == name:
+            return ast.get_docstring(node) or ""
+    return ""
 
 
 def in_one_line(message: str) -> str:
@@ -143,3 +158,7 @@ def main(ctx: click.Context) -> None:
     """
     if ctx.invoked_subcommand is None:
         click.echo(ctx.get_help())
+
+
+if main.help is None:
+    main.help = _help_in_source(sys.modules[__name__], "main")

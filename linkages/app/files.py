@@ -3,20 +3,25 @@ figures are drawn over: unknowns by the names of their joints, or by their numbe
 
 from __future__ import annotations
 
+import csv
+import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from bifurc.atlas import Atlas
 from bifurc.files.atomic import replace_files
 from linkages.app.exit_codes import CommandError
+from linkages.app.options import FigureOptions
+from linkages.app.texts.form_names import choose_forms
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from bifurc.figures.selection import Selection
     from bifurc.files.table import Variable
     from linkages.entry import Linkage
     from linkages.mechanisms.mechanism import Mechanism
@@ -25,30 +30,73 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class FigureAxes:
     """What figures are drawn over: two or three unknowns for the transition map, one
-    for the singular values, each numbered from 1; the usual ones where nothing is
-    said."""
+    for the singular values, each numbered from 1; the usual ones where nothing is said.
+
+    ``window`` are the first and the last angle, degrees, ``overlay`` points of the
+    user's, as in `bifurc.figures.selection.Selection`.
+    """
 
     transition_map: tuple[int, ...] = ()
     singular_values: int | None = None
+    window: tuple[float, float] | None = None
+    overlay: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
 
 def figure_axes(
     linkage: Linkage | Mechanism,
     axes: Sequence[str] | None,
     against: Sequence[str] | None,
+    window: tuple[float, float] | None,
+    overlay: Path | None,
 ) -> FigureAxes:
     """What the figures of a linkage are drawn over, for the names or numbers of its
     joints; raises `CommandError` for one that it does not have, or that is named
-    twice."""
-    if axes is None and against is None:
-        return FigureAxes()
+    twice, and for a file that holds no points."""
+    if window is not None and not 0 < window[1] - window[0] <= 360:
+        raise CommandError(
+            f"--range {window[0]:g}:{window[1]:g}: it must be a first and a larger last "
+            "angle, degrees, at most a turn"
+        )
+    if axes is None and against is None and overlay is None:
+        return FigureAxes(window=window)
     from linkages.subject import as_subject  # equations have no need of it
 
     names = as_subject(linkage).unknowns
     numbers = read_numbers("--against", against or (), names)
     return FigureAxes(
-        read_numbers("--axes", axes or (), names), numbers[0] if numbers else None
+        read_numbers("--axes", axes or (), names),
+        numbers[0] if numbers else None,
+        window,
+        read_points(overlay, names) if overlay else {},
     )
+
+
+def read_points(path: Path, names: Sequence[str]) -> dict[str, list[float]]:
+    """Points in a CSV file: the values of some unknowns, one column each, with their
+    names in the first line; raises `CommandError`."""
+    option = f"--overlay {path}"
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise CommandError(f"{option}: it cannot be read ({error})") from None
+    rows = [row for row in csv.reader(lines) if row]
+    heads = [head.strip() for head in rows[0]] if rows else []
+    if len(heads) < 2 or len(set(heads)) < len(heads) or not set(heads) <= set(names):
+        raise CommandError(
+            f"{option}: its first line must name two or more of {', '.join(names)}, "
+            "with commas between them"
+        )
+    columns: dict[str, list[float]] = {head: [] for head in heads}
+    for number, row in enumerate(rows[1:], 2):
+        try:
+            values = [float(cell) for cell in row]
+        except ValueError:
+            values = []
+        if len(values) != len(heads) or not all(map(math.isfinite, values)):
+            raise CommandError(f"{option}: row {number} is not {len(heads)} numbers")
+        for head, value in zip(heads, values, strict=True):
+            columns[head].append(value)
+    return columns
 
 
 def read_numbers(
@@ -103,40 +151,64 @@ def write_data(
 
 
 USUAL_AXES = FigureAxes()
+USUAL_LOOK = FigureOptions()
 
 
 def write_figures(
-    atlas: Atlas, folder: Path, over: FigureAxes = USUAL_AXES
+    atlas: Atlas,
+    folder: Path,
+    over: FigureAxes = USUAL_AXES,
+    options: FigureOptions = USUAL_LOOK,
 ) -> list[Path]:
     """The paths of the figures, just written to ``folder``, all or none; raises
-    `OSError`."""
+    `OSError`, and `CommandError` for a form that is not there."""
+    from matplotlib import rc_context
+
     from bifurc.figures import plotting
+    from bifurc.figures.rc import SIZE
+    from bifurc.figures.selection import Selection
 
-    others = _figures_over(over)
-    return replace_files(
-        folder, lambda stage: plotting.save_figures(atlas, stage, others)
-    )
+    forms = [form.name for form in choose_forms(atlas, options.forms)]
+    selection = Selection(forms if options.forms else (), over.window, over.overlay)
+    others = _figures_over(over, selection)
+    if atlas.subject.get("kind") != "system":
+        from linkages.pictures.plot_linkage import plot_linkage
+
+        form = selection.forms[0] if selection.forms else None
+        others["linkage"] = partial(plot_linkage, form=form)
+    size: dict[Any, Any] = {SIZE: options.size} if options.size else {}
+    with rc_context(size):
+        return replace_files(
+            folder,
+            lambda stage: plotting.save_figures(
+                atlas, stage, others, options.formats, selection
+            ),
+        )
 
 
-def _figures_over(over: FigureAxes) -> dict[str, Callable[[Atlas], Figure]]:
+def _figures_over(
+    over: FigureAxes, selection: Selection
+) -> dict[str, Callable[[Atlas], Figure]]:
     """The figures that are drawn over other unknowns than usual."""
     others: dict[str, Callable[[Atlas], Figure]] = {}
     if len(over.transition_map) == 2:
         from bifurc.figures.plotting import plot_transition_map
 
         others["transition_map"] = partial(
-            plot_transition_map, joints=over.transition_map
+            plot_transition_map, joints=over.transition_map, selection=selection
         )
     if len(over.transition_map) == 3:
         from bifurc.figures.space import plot_map_in_space
 
         others["transition_map"] = partial(
-            plot_map_in_space, unknowns=over.transition_map
+            plot_map_in_space, unknowns=over.transition_map, selection=selection
         )
     if over.singular_values is not None:
         from bifurc.figures.singular_values import plot_singular_values_against
 
         others["singular_values"] = partial(
-            plot_singular_values_against, unknown=over.singular_values
+            plot_singular_values_against,
+            unknown=over.singular_values,
+            selection=selection,
         )
     return others

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
@@ -214,12 +214,18 @@ class HoldOptions:
 
     ``locks`` are "J=40" each, ``driver`` is the joint that has to move all others.
     ``is_without_centre``: of a network only the loop that its outer bars leave.
+    ``with_flaps``: what hangs on joints in no closed loop is free. ``part`` is the number
+    of one of several mechanisms of a file. ``free_creases``: those of a pattern fold
+    either way, however they are assigned.
     ``is_modified``: in the rows of a table stand the links before the joints.
     """
 
     locks: tuple[str, ...] = ()
     driver: str | None = None
     is_without_centre: bool = False
+    with_flaps: bool = False
+    part: int | None = None
+    free_creases: bool = False
     is_modified: bool = False
 
     @property
@@ -229,6 +235,9 @@ class HoldOptions:
             "--lock": bool(self.locks),
             "--drive": self.driver is not None,
             "--without-centre": self.is_without_centre,
+            "--with-flaps": self.with_flaps,
+            "--part": self.part is not None,
+            "--free-creases": self.free_creases,
             "--modified-dh": self.is_modified,
         }
         return ", ".join(name for name, is_given in given.items() if is_given)
@@ -260,6 +269,25 @@ HOLD_OPTIONS: dict[str, Option] = {
         "is_without_centre",
         is_flag=True,
         help="Of a network with locks, take the single loop that its outer bars leave.",
+    ),
+    "with_flaps": click.option(
+        "--with-flaps",
+        "with_flaps",
+        is_flag=True,
+        help="Let what hangs on joints in no closed loop move: it is held else.",
+    ),
+    "part": click.option(
+        "--part",
+        "part",
+        type=click.IntRange(min=1),
+        metavar="NUMBER",
+        help="Of a file with several mechanisms, take this one, from 1.",
+    ),
+    "free_creases": click.option(
+        "--free-creases",
+        "free_creases",
+        is_flag=True,
+        help="Let mountains and valleys of a crease pattern fold either way.",
     ),
     "is_modified": click.option(
         "--modified-dh",
@@ -424,3 +452,121 @@ PRINT_OPTIONS: dict[str, Option] = {
     ),
 }
 print_options = record_options("printing", PrintOptions, PRINT_OPTIONS)
+
+
+class Words(click.ParamType[tuple[str, ...]]):
+    """Some of the words of a list, separated by commas, as a tuple."""
+
+    name = "words"
+
+    def __init__(self, allowed: Sequence[str]):
+        self.allowed = tuple(allowed)
+
+    def convert(
+        self,
+        value: str | tuple[str, ...],
+        param: click.Parameter | None,
+        ctx: click.Context | None,
+    ) -> tuple[str, ...]:
+        """The words that a text lists, each once; raises `click.BadParameter`."""
+        if isinstance(value, tuple):
+            return value
+        words = tuple(dict.fromkeys(word.strip() for word in value.split(",")))
+        if not set(words) <= set(self.allowed):
+            allowed = ", ".join(self.allowed)
+            self.fail(f"{value!r} must be some of {allowed}.", param, ctx)
+        return words
+
+
+class Pair(click.ParamType[tuple[float, float]]):
+    """Two finite numbers with a mark between them."""
+
+    name = "pair"
+
+    def __init__(self, mark: str, example: str):
+        self.mark = mark
+        self.example = example
+
+    def convert(
+        self,
+        value: str | tuple[float, float],
+        param: click.Parameter | None,
+        ctx: click.Context | None,
+    ) -> tuple[float, float]:
+        """The two numbers of a text; raises `click.BadParameter`."""
+        if isinstance(value, tuple):
+            return value
+        try:
+            first, second = map(float, value.split(self.mark))
+        except ValueError:
+            self.fail(f"{value!r} is not like {self.example}.", param, ctx)
+        if not (math.isfinite(first) and math.isfinite(second)):
+            self.fail(f"{value!r} is not like {self.example}.", param, ctx)
+        return first, second
+
+
+FIGURE_FORMATS = ("png", "svg", "pdf")
+SMALLEST_FIGURE, LARGEST_FIGURE = 1.5, 100.0  # inches
+
+
+@dataclass(frozen=True)
+class FigureOptions:
+    """How figures look that are written to files: what stands on the command line.
+
+    ``formats`` of files, ``size`` in inches, None for the usual one; ``forms`` that are
+    drawn, all where there are none.
+    """
+
+    formats: tuple[str, ...] = ("png", "svg")
+    size: tuple[float, float] | None = None
+    forms: tuple[str, ...] = ()
+
+
+def check_size(
+    ctx: click.Context, param: click.Parameter, size: tuple[float, float] | None
+) -> tuple[float, float] | None:
+    """The size of a figure, inches; raises `click.BadParameter`."""
+    if size is not None and not all(
+        SMALLEST_FIGURE <= side <= LARGEST_FIGURE for side in size
+    ):
+        raise click.BadParameter(
+            f"{size[0]:g}x{size[1]:g}: both must be between {SMALLEST_FIGURE:g} and "
+            f"{LARGEST_FIGURE:g} inches."
+        )
+    return size
+
+
+FIGURE_OPTIONS: dict[str, Option] = {
+    "formats": click.option(
+        "--format",
+        "formats",
+        type=Words(FIGURE_FORMATS),
+        default="png,svg",
+        show_default=True,
+        metavar="FORMAT,...",
+        help=f"Formats of the figures: {', '.join(FIGURE_FORMATS)}.",
+    ),
+    "size": click.option(
+        "--size",
+        type=Pair("x", "3.4x2.6"),
+        callback=check_size,
+        metavar="WxH",
+        help=(
+            "Width and height of the figures, inches; they are higher where panels "
+            "would be flat.  [default: as large as they need]"
+        ),
+    ),
+    "forms": click.option(
+        "--form",
+        "forms",
+        multiple=True,
+        metavar="FORM",
+        help=(
+            "Draw this form, by its name or its number in the summary; may be given "
+            "several times.  [default: every form]"
+        ),
+    ),
+}
+
+
+figure_options = record_options("figures", FigureOptions, FIGURE_OPTIONS)

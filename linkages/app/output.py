@@ -9,12 +9,14 @@ import logging
 import os
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 import click
+from click.core import ParameterSource
 
 from linkages.app.exit_codes import CommandError
 
@@ -132,31 +134,48 @@ def writing_to(out: Path, option: str = "--out") -> Iterator[None]:
         raise CommandError(message) from None
 
 
+EVERY = 10.0  # s between two lines on what a search does
 LIBRARIES = ("bifurc", "linkages")
 
 
 class StatusLine:
-    """A line on a terminal that says what was found so far; it appears after a second
-    and is wiped at the end of its block."""
+    """What a search does and has found so far, on standard error: a line on a terminal
+    that appears after a second and is wiped at the end of its block, and a new line
+    every `EVERY` seconds where standard error goes elsewhere."""
 
-    def __init__(self, patience: float = 1.0):
+    def __init__(self, patience: float = 1.0, every: float = EVERY):
         self._start = time.monotonic()
         self._patience = patience
+        self._every = every
         self._width = 0
+        self._found = "nothing"
+        self._is_over = threading.Event()
 
     def __call__(self, what: str, count: int) -> None:
         """Show progress: the `progress` callback of `bifurc.search.explore.explore`."""
+        self._found = f"{count} {what}"
         seconds = time.monotonic() - self._start
         if seconds <= self._patience or not sys.stderr.isatty():
             return
-        text = f"exploring: {count} {what} so far, {seconds:.0f} s"
+        text = self._text()
         click.echo("\r" + text.ljust(self._width), nl=False, err=True)
         self._width = len(text)
 
+    def _text(self) -> str:
+        seconds = time.monotonic() - self._start
+        return f"exploring, {seconds:.0f} s: {self._found}"
+
+    def _say_again(self) -> None:
+        while not self._is_over.wait(self._every):
+            click.echo(self._text(), err=True)
+
     def __enter__(self) -> StatusLine:
+        if not sys.stderr.isatty():
+            threading.Thread(target=self._say_again, daemon=True).start()
         return self
 
     def __exit__(self, *error: object) -> None:
+        self._is_over.set()
         if self._width:
             click.echo("\r" + " " * self._width + "\r", nl=False, err=True)
             self._width = 0
@@ -191,3 +210,21 @@ def say_more() -> None:
     """Let the library say all it has to say, inside a block of `library_messages`."""
     for name in LIBRARIES:
         logging.getLogger(name).setLevel(logging.INFO)
+
+
+FIGURE_OPTIONS = ("axes", "against", "window", "overlay", "formats", "size", "forms")
+
+
+def require_out(out: Path | None) -> None:
+    """Raise `CommandError` for options of figures on the command line where no figure
+    is written."""
+    if out is not None:
+        return
+    context = click.get_current_context()
+    for option in context.command.params:
+        name = option.name or ""
+        source = context.get_parameter_source(name)
+        if name in FIGURE_OPTIONS and source is ParameterSource.COMMANDLINE:
+            raise CommandError(
+                f"{option.opts[0]}: figures are only drawn with --out DIR"
+            )

@@ -12,7 +12,7 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.decisions import is_start_solved
 from bifurc.equations.system import ScaledTape
-from bifurc.limits import Deadline
+from bifurc.limits import Deadline, current_deadline, until
 from bifurc.problem import Problem
 from bifurc.seeding import random_seeds, start_region
 from bifurc.seeds import Audit, Seeds
@@ -24,6 +24,7 @@ from linkages.structure.structure import Structure
 from linkages.turns import whole_turns
 from linkages.turns.whole_turns import TurnedEnds
 
+DRAWING, BRINGING = 0.25, 0.1  # of the time that is left, for random starts
 MOST_BEYOND = 60  # solutions beyond the limits that are brought back to them
 
 
@@ -62,8 +63,14 @@ def mechanism_seeds(
 ) -> Seeds:
     """The closed configuration of a mechanism nearest to the reference, what the starts
     of a source lead to and what ``count`` random starts do or, where these lead beyond
-    given limits, others within, and those that the mechanism knows itself."""
-    drawn = _drawn(problem, rng, count, deadline)
+    given limits, others within, and those that the mechanism knows itself.
+
+    Before a ``deadline`` a share of the time is left for what is traced from there.
+    """
+    deadline = deadline or current_deadline()
+    share = deadline.share(DRAWING)
+    with until(share):
+        drawn = _drawn(problem, rng, count, share)
     lattice = problem.lattice
     judge = _judge(problem, rng, count)
     starts = problem.reference[None]
@@ -71,7 +78,8 @@ def mechanism_seeds(
         starts = np.concatenate([starts, judge.starts])
     points, gaps = problem.project(starts)
     solutions = points[is_start_solved(gaps)]
-    brought = _from_beyond_limits(problem, solutions, drawn, rng)
+    with until(deadline.share(BRINGING)):
+        brought = _from_beyond_limits(problem, solutions, drawn, rng)
     solutions = np.concatenate([solutions, brought])
     if lattice:
         # what is outside the limits may have a translate inside

@@ -16,6 +16,7 @@ from typing import TypeAlias
 import numpy as np
 
 from bifurc.decisions import is_start_solved
+from bifurc.limits import is_time_over
 from bifurc.problem import Problem
 
 TIMES_BACK = 4  # that each is brought back, where closure leads beyond other limits
@@ -35,7 +36,7 @@ def brought_within_limits(
     inside = [_led_within(problem, beyond)]
     kept = np.zeros(beyond.shape, dtype=bool)
     for _ in range(TIMES_BACK):
-        if not len(beyond):
+        if not len(beyond) or is_time_over():
             break
         points, held = _held_within(problem, hold, beyond, kept, rng)
         is_inside = problem.domain.are_inside(points)
@@ -54,7 +55,7 @@ def _led_within(problem: Problem, beyond: np.ndarray) -> np.ndarray:
     """
     inside = [np.empty((0, problem.n))]
     for _ in range(STEPS):
-        if not len(beyond):
+        if not len(beyond) or is_time_over():
             break
         points = _nearer(problem, beyond)
         is_nearer = _distances(problem, points) < _distances(problem, beyond)
@@ -146,10 +147,12 @@ def _project(
     hold: Holding, starts: np.ndarray, is_held: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """What is reached from starts (k, n), each with unknowns of its own held (k, n),
-    and the residuals (k,)."""
-    points, gaps = starts.copy(), np.empty(len(starts))
+    and the residuals (k,), infinite where the time was over before."""
+    points, gaps = starts.copy(), np.full(len(starts), np.inf)
     patterns, of_start = np.unique(is_held, axis=0, return_inverse=True)
     for number, pattern in enumerate(patterns):
+        if is_time_over():
+            break
         own = of_start.reshape(-1) == number
         points[own], gaps[own] = hold(starts[own], pattern)
     return points, gaps

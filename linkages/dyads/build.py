@@ -7,7 +7,9 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from linkages.dyads.geometry import PlaneGeometry
+from linkages.dyads.geometry import Pivot, PlaneGeometry
+from linkages.dyads.group import UnfollowedError
+from linkages.dyads.pinned import GenericCount, PinnedGroup, generic_count
 from linkages.dyads.plan import Contact, Plan, Step
 from linkages.dyads.space import SpaceGeometry
 from linkages.mechanisms.joint import Motion
@@ -39,8 +41,9 @@ class Builder:
         """The poses of all bodies in every configuration in which the known variables
         have these ``values`` (those of others are not read), rad and the user's unit.
 
-        Raises `DegenerateDyadError` where a dyad closes in a whole curve of them, and
-        `TooManyError`.
+        Raises `DegenerateDyadError` where a dyad closes in a whole curve of them,
+        `UnfollowedError` where it is not known that all of a larger group were found,
+        and `TooManyError`.
         """
         inner = self._inner_poses(values)
         states: list[dict[int, Any]] = [{self.plan.start: self.geometry.rest}]
@@ -69,6 +72,8 @@ class Builder:
         inner = self._inner_poses(values)
         standing = dict.fromkeys(self.plan.part, self.geometry.rest)
         for step in self.plan.steps:
+            if step.is_group:
+                return False
             if len(step.parts) == 1:
                 if not any(contact.is_turn for contact in step.contacts):
                     return False
@@ -105,10 +110,37 @@ class Builder:
         self, step: Step, state: dict[int, Any], inner: dict[int, Any]
     ) -> Sequence[tuple[Any, ...]]:
         """The poses of the parts of a step, in every way in which it closes."""
+        if step.is_group:
+            return self._closed_group(step, state, inner)
         if len(step.parts) == 1:
             ends = [self._end(contact, state, inner) for contact in step.contacts]
             return [(pose,) for pose in self.geometry.close_monad(*ends)]
         return self.geometry.close_dyad(*self._dyad(step, state, inner))
+
+    def _closed_group(
+        self, step: Step, state: dict[int, Any], inner: dict[int, Any]
+    ) -> Sequence[tuple[Any, ...]]:
+        """The same for a larger group, in the plane. Raises `UnfollowedError`."""
+        geometry = self.geometry
+        if not isinstance(geometry, PlaneGeometry):
+            raise UnfollowedError("it does not move in a plane")
+        group = PinnedGroup(self.plan.part, step)
+        own: dict[tuple[int, str], complex] = {}  # places of pins in parts
+        for contact in step.contacts:
+            for body in (contact.first, contact.second):
+                pivot = geometry.joint(
+                    inner[body], geometry.rest, self._motion(contact)
+                )
+                assert isinstance(pivot, Pivot)
+                own[self.plan.part[body], contact.joint] = pivot.first
+        standing = [
+            state[part](own[part, joint]) for joint, part in group.standing.items()
+        ]
+        return group.poses(own, standing, geometry.size)
+
+    def generic_counts(self) -> list[GenericCount]:
+        """In how many complex ways each step closes, for generic lengths."""
+        return [generic_count(self.plan.part, step) for step in self.plan.steps]
 
     def _dyad(
         self, step: Step, state: dict[int, Any], inner: dict[int, Any]

@@ -1,9 +1,10 @@
-"""In which order the bodies of a mechanism are placed, one dyad after the other.
+"""In which order the bodies of a mechanism are placed, one group after the other.
 
 With one variable known, the driver, bodies that are joined by known variables are one
 part. From one of the largest parts on two parts at a time are placed, which close a
 chain of three joints, or one part that two joints hold already (Assur's decomposition
-into groups of the second class).
+into groups of the second class). Where nothing more is placed so, what is left is one
+larger group, but for the dyads that stand on it.
 """
 
 from __future__ import annotations
@@ -36,12 +37,18 @@ class Contact(NamedTuple):
 
 
 class Step(NamedTuple):
-    """One ``part`` or two that are placed next, and the ``contacts`` for it: those of
+    """One ``part`` or more that are placed next, and the ``contacts`` for it: those of
     one part lead from what stands to it; of two parts, from what stands to the first
-    one, on to the second one, and from what stands to that."""
+    one, on to the second one, and from what stands to that; of a larger group they are
+    all contacts of its parts, also with what stands."""
 
     parts: tuple[int, ...]
     contacts: tuple[Contact, ...]
+
+    @property
+    def is_group(self) -> bool:
+        """Whether the parts are more than a dyad."""
+        return len(self.parts) > 2
 
 
 @dataclass(frozen=True)
@@ -54,10 +61,23 @@ class Plan:
     known: tuple[int, ...]
     steps: tuple[Step, ...]
 
+    @property
+    def largest_group(self) -> int:
+        """The number of parts of the largest group."""
+        return max((len(step.parts) for step in self.steps), default=0)
 
-def make_plan(mechanism: Mechanism, driver: int | None) -> Plan | None:
+    @property
+    def has_groups(self) -> bool:
+        """Whether it takes more than dyads."""
+        return any(step.is_group for step in self.steps)
+
+
+def make_plan(
+    mechanism: Mechanism, driver: int | None, with_groups: bool = False
+) -> Plan | None:
     """How a ``mechanism`` is built where the variable of this number has a given
-    value, or, without, where only locked ones have; None where dyads do not do."""
+    value, or, without, where only locked ones have; None where dyads, and, if it is
+    ``with_groups``, larger groups do not do."""
     known = _known_pairs(mechanism, driver)
     if known is None:
         return None
@@ -73,11 +93,13 @@ def make_plan(mechanism: Mechanism, driver: int | None) -> Plan | None:
         if part[contact.first] != part[contact.second]
     ]
     sizes = Counter(part)
-    for start in sorted(sizes, key=lambda one: (-sizes[one], one))[:MOST_BEGUN]:
-        steps = _steps(start, part, contacts)
+    starts = sorted(sizes, key=lambda one: (-sizes[one], one))
+    plans = []
+    for start in starts if with_groups else starts[:MOST_BEGUN]:
+        steps = _steps(start, part, contacts, with_groups)
         if steps is not None:
-            return Plan(start, part, tuple(known), steps)
-    return None
+            plans.append(Plan(start, part, tuple(known), steps))
+    return min(plans, key=lambda plan: plan.largest_group, default=None)
 
 
 def _known_pairs(mechanism: Mechanism, driver: int | None) -> list[int] | None:
@@ -123,7 +145,7 @@ def _contacts(
 
 
 def _steps(
-    start: int, part: tuple[int, ...], contacts: list[Contact]
+    start: int, part: tuple[int, ...], contacts: list[Contact], with_groups: bool
 ) -> tuple[Step, ...] | None:
     """The steps that place all parts after one; None where they do not."""
     both = contacts + [contact.reversed() for contact in contacts]
@@ -132,6 +154,8 @@ def _steps(
     steps = []
     while waiting:
         step = _next_step(part, both, placed)
+        if step is None and with_groups:
+            step = _group_left(part, contacts, placed)
         if step is None:
             return None
         steps.append(step)
@@ -168,3 +192,48 @@ def _next_step(
                 if len(joints) == 3 and any(each.is_turn for each in three):
                     return Step((first, second), three)
     return None
+
+
+def _group_left(
+    part: tuple[int, ...], contacts: list[Contact], placed: set[int]
+) -> Step | None:
+    """All parts that wait, but for the dyads that stand on the others."""
+    group = set(part) - placed
+    while dyad := _dyad_on_top(part, contacts, group, placed):
+        group -= dyad
+    own = []
+    for contact in contacts:
+        both = {part[contact.first], part[contact.second]}
+        if both <= group | placed and not both <= placed:
+            own.append(contact)
+    return Step(tuple(sorted(group)), tuple(own)) if len(group) > 2 else None
+
+
+def _dyad_on_top(
+    part: tuple[int, ...], contacts: list[Contact], group: set[int], placed: set[int]
+) -> set[int]:
+    """Two parts of a ``group`` on which no other one stands; nothing where there are
+    none."""
+    joints = _joints_of(part, contacts, group | placed)
+    for contact in contacts:
+        both = {part[contact.first], part[contact.second]}
+        if not both <= group or any(len(joints[one]) != 2 for one in both):
+            continue
+        first, second = (joints[one] for one in sorted(both))
+        is_between_them = sum(contact.joint in own for own in joints.values()) == 2
+        if is_between_them and len(first | second) == 3:
+            return both
+    return set()
+
+
+def _joints_of(
+    part: tuple[int, ...], contacts: list[Contact], present: set[int]
+) -> dict[int, set[str]]:
+    """The joints of every one of some parts with another of them."""
+    joints: dict[int, set[str]] = {one: set() for one in present}
+    for contact in contacts:
+        both = {part[contact.first], part[contact.second]}
+        if both <= present:
+            for one in both:
+                joints[one].add(contact.joint)
+    return joints

@@ -18,11 +18,12 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.completeness import Level, Scope
+from bifurc.completeness import Claim, Level, Scope
 from bifurc.problem import Problem
 from bifurc.seeds import Audit
 from linkages.dyads.build import Builder, Geometry, TooManyError
 from linkages.dyads.geometry import DegenerateDyadError, PlaneGeometry
+from linkages.dyads.group import UnfollowedError
 from linkages.dyads.plan import make_plan
 from linkages.dyads.space import SpaceGeometry
 from linkages.statements import LinkageClaim, random_assemblies
@@ -51,7 +52,9 @@ class DyadSlices:
     """Configurations ``starts`` (k, n) of a ``structure``, all that there are at the
     values of some ``drivers``, numbers of unknowns, ``step`` apart.
 
-    ``misses_none``: a motion that is not among them is a small one.
+    ``misses_none``: a motion that is not among them is a small one. ``complex_count``:
+    how many complex assemblies there are where these were followed along paths, with
+    the ``trace`` test of them; None where dyads do.
     """
 
     structure: Structure
@@ -59,19 +62,33 @@ class DyadSlices:
     drivers: tuple[int, ...]
     steps: tuple[float, ...]
     misses_none: bool
+    complex_count: int | None = None
+    trace: float = 0.0
 
     def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
         """How sure it is that no motion is missing: the search has traced one through
         every configuration in the slices."""
         nowhere = np.empty((0, len(self.structure.unknowns)))
         if not self.drivers:
-            kind = LinkageClaim.ALL_BUILT
-            return Audit((kind.claim(Scope.MOTIONS, Level.CERTIFIED),), nowhere)
+            has_all = self.complex_count is not None
+            return Audit((self._claim_of_assemblies(),), nowhere, has_all)
         kind, level = LinkageClaim.DYADS, Level.CERTIFIED
         if not self.misses_none:
             kind, level = LinkageClaim.DYADS_MISSING, Level.ESTIMATED
         claim = kind.claim(Scope.MOTIONS, level, moves=self._moves())
         return Audit((claim, random_assemblies()), nowhere)
+
+    def _claim_of_assemblies(self) -> Claim:
+        """That all assemblies of what nothing moves are here."""
+        if self.complex_count is None:
+            return LinkageClaim.ALL_BUILT.claim(Scope.MOTIONS, Level.CERTIFIED)
+        return LinkageClaim.ALL_OF_GROUPS.claim(
+            Scope.MOTIONS,
+            Level.CERTIFIED,
+            real=len(self.starts),
+            complex=self.complex_count,
+            trace=self.trace,
+        )
 
     def _moves(self) -> str:
         """On which motions a driver passes a slice, as text."""
@@ -105,13 +122,11 @@ def _slice_by_dyads(
     geometry = _geometry(structure)
     if geometry is None or _follows_many_turns(structure):
         return None
-    still = make_plan(structure.mechanism, None)
+    still = make_plan(structure.mechanism, None, with_groups=True)
     if still is not None:
-        builder = Builder(structure, geometry, still)
-        points = _points_at(builder, None, (0.0,))
-        if points is None:
-            return None
-        return DyadSlices(structure, points, (), (), misses_none=True)
+        built = _built_at_once(Builder(structure, geometry, still))
+        if built is not None or not still.has_groups:
+            return built
     slices: dict[int, _Slice] = {}
     always_moves = False
     for number, one in _slices(structure, geometry, rng):
@@ -127,6 +142,27 @@ def _slice_by_dyads(
         tuple(slices),
         tuple(one.step for one in slices.values()),
         misses_none=always_moves or len(slices) == len(structure.unknowns),
+    )
+
+
+def _built_at_once(builder: Builder) -> DyadSlices | None:
+    """The assemblies of what nothing moves; None where it is not known that they are
+    all."""
+    try:
+        points = _points_at(builder, None, (0.0,))
+    except UnfollowedError:
+        return None
+    if points is None:
+        return None
+    counts = builder.generic_counts() if builder.plan.has_groups else []
+    return DyadSlices(
+        builder.structure,
+        points,
+        (),
+        (),
+        misses_none=True,
+        complex_count=math.prod(one.ways for one in counts) if counts else None,
+        trace=max((one.trace for one in counts), default=0.0),
     )
 
 

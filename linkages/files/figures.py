@@ -14,8 +14,17 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
+from bifurc.equations.expression import ExpressionError, parse_expression
+from bifurc.equations.program import Program
 from linkages.mechanisms.joint import Joint, JointKind, Vector
-from linkages.values import SOME, checked_list, checked_table, quoted, require
+from linkages.values import (
+    SOME,
+    GeometryError,
+    checked_list,
+    checked_table,
+    quoted,
+    require,
+)
 
 FRAME = "frame"
 Place = TypeVar("Place")  # of a point: a complex number or a direction (3,)
@@ -95,12 +104,28 @@ class Figure(Generic[Place, Numbers]):
 
 
 def table_of_points(content: Mapping[str, Any], row: str) -> Mapping[str, object]:
-    """The table ``[points]`` of a file, whose rows look like ``row``; raises
-    `GeometryError`."""
+    """The table ``[points]`` of a file, whose rows look like ``row``, with texts of
+    numbers as these; raises `GeometryError`."""
     given = content.get("points")
     table = checked_table("points", given, f"a table of points {row}")
     require(bool(table), "points", quoted(given), f"a table of points {row}")
-    return table
+    return {name: _numbers(f"point {name}", row) for name, row in table.items()}
+
+
+def _numbers(what: str, given: Any) -> Any:
+    """What is given for a number, or for a list of numbers, with constant expressions, such
+    as "sqrt(3)/2", as the numbers that they are; raises `GeometryError`."""
+    if isinstance(given, list):
+        return [_numbers(what, one) for one in given]
+    if not isinstance(given, str):
+        return given
+    try:
+        value = parse_expression(given, {}, Program()).value
+    except ExpressionError as error:
+        allowed = f'a number, or a text such as "sqrt(3)/2"; {error}'
+        raise GeometryError(what, quoted(given), allowed) from None
+    assert value is not None  # without symbols everything is constant
+    return value
 
 
 def read_figure(
@@ -133,7 +158,7 @@ def _read_points_on(
         for end in row[:2]:
             is_known = end in points or end in on_pieces
             require(is_known, what, quoted(end), "a point that stands before it")
-        numbers = kind.read_numbers(what, row[2])
+        numbers = kind.read_numbers(what, _numbers(what, row[2]))
         on_pieces[name] = PointOnPiece(row[0], row[1], numbers)
     return on_pieces
 
@@ -155,7 +180,8 @@ def _read_pieces(
         require(is_new, what, row[:2], f"{kind.piece} that stands there once")
         measure = None
         if len(row) == 3:
-            measure = kind.read_measure(f"{kind.measure} of {what}", row[2])
+            of_piece = f"{kind.measure} of {what}"
+            measure = kind.read_measure(of_piece, _numbers(of_piece, row[2]))
         pieces.append(Piece(row[0], row[1], measure))
     check_joined_names(kind.noun, [piece.ends for piece in pieces])
     return tuple(pieces)

@@ -9,6 +9,8 @@ together there, or at heights that the file gives (Chen, Peng and You 2015).
 from __future__ import annotations
 
 import json
+import logging
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, TypeAlias
@@ -17,10 +19,11 @@ import numpy as np
 from networkx.utils import UnionFind
 
 from linkages.closure.system import ClosureSystem
-from linkages.decisions import is_parallel_axis
+from linkages.decisions import is_parallel_axis, keeps_angle
+from linkages.files.faces import faces_of_edges
 from linkages.files.misfits import closed_near
 from linkages.mechanisms.joint import Joint, JointKind
-from linkages.mechanisms.mechanism import Mechanism, Panel
+from linkages.mechanisms.mechanism import Crease, Mechanism, Panel
 from linkages.mechanisms.origin import Coordinates, WrittenNumber, counted_from_near
 from linkages.readout.poses import Poses
 from linkages.values import (
@@ -37,6 +40,8 @@ from linkages.values import (
 
 Frame: TypeAlias = Mapping[str, Any]
 Side: TypeAlias = tuple[int, int]
+
+log = logging.getLogger(__name__)
 
 FOLDED = "foldedForm"
 # what the letters of edges_assignment make of a side between two faces
@@ -93,7 +98,10 @@ def read_fold(text: str, name: str) -> Mechanism:
     title = content.get("file_title", content.get("frame_title", name))
     checked_text("file_title", title)
     points, near = _points(frame)
-    faces = _faces(frame, len(points))
+    if "faces_vertices" in frame:
+        faces = _faces(frame, len(points))
+    else:
+        faces = faces_of_edges(points, _ends(frame, len(points)))
     edges = _edges(frame, len(points))
     creases = _creases(faces, edges)
     is_folded = FOLDED in frame.get("frame_classes", [])
@@ -103,62 +111,106 @@ def read_fold(text: str, name: str) -> Mechanism:
         allowed = "left out, or given with the flat crease pattern and its fold angles"
         require(is_flat, key, "given with folded coordinates,", allowed)
     bodies = _bodies(len(faces), creases)
-    angles: dict[str, float] = {}
-    joints: list[Joint] = []
-    for crease in creases:
-        if crease.edge.letter in HINGES:
-            upwards = _normal(points[faces[crease.left]])
-            joint = _joint(crease, points, bodies, upwards)
-            if not any(_is_same_hinge(joint, other) for other in joints):
-                joints.append(joint)
-                angles[joint.name] = np.radians(crease.edge.angle)
-    origin = near.origin or (0.0, 0.0, 0.0)
+    hinges = _hinges(creases, faces, points, bodies, is_folded)
+    joints = [hinge.joint for hinge in hinges]
     mechanism = Mechanism(
         tuple(joints),
         title or name,
-        origin=origin,
+        origin=near.origin or (0.0, 0.0, 0.0),
         rounding=near.rounding,
         panels=_panels(faces, bodies, points, joints),
     )
-    if is_folded or not any(angles.values()):
-        return mechanism
-    heights = np.ptp(points[:, 2])
-    allowed = (
-        "the same for all vertices where edges_foldAngle is given; a state that is "
-        f'folded has "{FOLDED}" in its frame_classes'
-    )
-    is_flat = not heights > 0.0
-    require(is_flat, "vertices_coords", f"heights {heights:.6g} apart", allowed)
-    return _folded(mechanism, angles)
+    letters = {hinge.joint.name: hinge.letter for hinge in hinges}
+    angles = {hinge.joint.name: hinge.angle for hinge in hinges}
+    if not is_folded and any(angles.values()):
+        heights = np.ptp(points[:, 2])
+        allowed = (
+            "the same for all vertices where edges_foldAngle is given; a state that is "
+            f'folded has "{FOLDED}" in its frame_classes'
+        )
+        is_flat = not heights > 0.0
+        require(is_flat, "vertices_coords", f"heights {heights:.6g} apart", allowed)
+        mechanism, angles = _folded(mechanism, angles)
+    return _assigned(mechanism, letters, angles)
+
+
+def _folded(
+    mechanism: Mechanism, angles: Mapping[str, float]
+) -> tuple[Mechanism, dict[str, float]]:
+    """The mechanism in the closed state nearest to fold ``angles`` (rad), by joint, from
+    the flat one, each of its parts by itself, and the angles of this state."""
+    joints: list[Joint] = []
+    panels: list[Panel] = []
+    reached: dict[str, float] = {}
+    for part in mechanism.parts:
+        folded, of_part = _folded_part(part, angles)
+        joints += folded.joints
+        panels += folded.panels
+        reached |= of_part
+    whole = replace(mechanism, joints=tuple(joints), panels=tuple(panels))
+    return whole, reached
+
+
+def _assigned(
+    mechanism: Mechanism, letters: Mapping[str, str], angles: Mapping[str, float]
+) -> Mechanism:
+    """The mechanism whose creases fold as their ``letters`` say, those at ``angles``
+    (rad), by joint. One that is folded the other way is free, with a warning."""
+    creases = []
+    for name, letter in letters.items():
+        if letter not in SIDES:
+            continue
+        crease = Crease(name, letter, angles[name])
+        if math.isclose(abs(crease.angle), math.pi):
+            crease = crease._replace(angle=crease.sign * math.pi)
+        low, high = crease.limits
+        if keeps_angle(max(low, -high, 0.0)):
+            creases.append(crease)
+        else:
+            log.warning(
+                "crease %s is %s and folded by %.4g degrees: it may fold either way",
+                name,
+                letter,
+                math.degrees(crease.angle),
+            )
+    whole = replace(mechanism, creases=tuple(creases))
+    return whole.with_creases_as_assigned()
 
 
 # --- the state that is given ----------------------------------------------------------
 
 
-def _folded(mechanism: Mechanism, angles: Mapping[str, float]) -> Mechanism:
-    """The mechanism in the closed state nearest to fold ``angles`` (rad), by joint,
-    from the flat one."""
-    problem = ClosureSystem(mechanism)
+def _folded_part(
+    mechanism: Mechanism, angles: Mapping[str, float]
+) -> tuple[Mechanism, dict[str, float]]:
+    """The same of a mechanism that is one part."""
+    problem = ClosureSystem(replace(mechanism, with_flaps=True))
     start = np.array([angles[name] for name in problem.domain.names])
     far = "folded such that a gap of {:.3g} is left; near a closed state"
     point = closed_near(problem, "edges_foldAngle", start, problem.domain.names, far)
     poses = Poses(problem.structure).at(point[None])[0]
+    folded = _posed(mechanism, dict(zip(mechanism.bodies, poses, strict=True)))
+    return folded, dict(zip(problem.domain.names, point.tolist(), strict=True))
+
+
+def _posed(mechanism: Mechanism, poses: Mapping[str, np.ndarray]) -> Mechanism:
+    """The mechanism with its bodies moved by ``poses`` (4, 4)."""
     joints = []
     for joint in mechanism.joints:
-        pose = poses[mechanism.bodies.index(joint.bodies[0])]
+        pose = poses[joint.bodies[0]]
         point = pose[:3, :3] @ joint.place + pose[:3, 3]
         direction = pose[:3, :3] @ np.array(joint.direction)
         joints.append(replace(joint, point=tuple(point), direction=tuple(direction)))
     panels = []
     for panel in mechanism.panels:
-        pose = poses[mechanism.bodies.index(panel.body)]
+        pose = poses[panel.body]
         corners = np.array(panel.corners) @ pose[:3, :3].T + pose[:3, 3]
         panels.append(Panel(panel.body, tuple(map(tuple, corners.tolist()))))
     return replace(mechanism, joints=tuple(joints), panels=tuple(panels))
 
 
 def _frame(content: Mapping[str, Any]) -> Frame:
-    """The first frame that is folded in space, else the first one."""
+    """The first frame that is folded in space, else the first one with vertices."""
     given = content.get("file_frames", [])
     frames = checked_list("file_frames", given, "a list of frames")
     merged: list[Frame] = [content]
@@ -183,7 +235,7 @@ def _frame(content: Mapping[str, Any]) -> Frame:
         )
         if FOLDED in classes and in_space:
             return frame
-    return content
+    return next((frame for frame in merged if "vertices_coords" in frame), content)
 
 
 # --- lists of the file ----------------------------------------------------------------
@@ -236,7 +288,7 @@ def _edges(frame: Frame, vertices: int) -> dict[Side, _Edge]:
             allowed = f"given together with {key}"
             require(key not in frame, "edges_vertices", "a missing key", allowed)
         return {}
-    ends = _list(frame, "edges_vertices")
+    ends = _ends(frame, vertices)
     letters = _of_edges(frame, "edges_assignment", len(ends))
     angles = _of_edges(frame, "edges_foldAngle", len(ends))
     heights = _of_edges(frame, HEIGHTS, len(ends))
@@ -245,10 +297,6 @@ def _edges(frame: Frame, vertices: int) -> dict[Side, _Edge]:
     require(thickness >= 0, THICKNESS, given, "0 or more")
     edges = {}
     for number, pair in enumerate(ends):
-        what = f"edges_vertices[{number}]"
-        checked_list(what, pair, "two vertices", (2,))
-        for vertex in pair:
-            _check_vertex(what, vertex, vertices)
         letter = letters[number] or "U"
         allowed = f"one of {', '.join(LETTERS)}"
         what = f"edges_assignment[{number}]"
@@ -265,6 +313,17 @@ def _edges(frame: Frame, vertices: int) -> dict[Side, _Edge]:
         height = checked_number(f"{HEIGHTS}[{number}]", height)
         edges[min(pair), max(pair)] = _Edge(name, letter, float(angle), height)
     return edges
+
+
+def _ends(frame: Frame, vertices: int) -> list[Any]:
+    """The pairs of vertices that edges are between."""
+    ends = _list(frame, "edges_vertices")
+    for number, pair in enumerate(ends):
+        what = f"edges_vertices[{number}]"
+        checked_list(what, pair, "two vertices", (2,))
+        for vertex in pair:
+            _check_vertex(what, vertex, vertices)
+    return ends
 
 
 def _of_edges(frame: Frame, key: str, count: int) -> list[Any]:
@@ -306,6 +365,40 @@ def _creases(faces: Sequence[list[int]], edges: Mapping[Side, _Edge]) -> list[_C
     return creases
 
 
+class _Hinge(NamedTuple):
+    """The ``joint`` of a crease, its ``letter``, and the fold ``angle`` (rad) that the
+    file gives."""
+
+    joint: Joint
+    letter: str
+    angle: float
+
+
+def _hinges(
+    creases: Sequence[_Crease],
+    faces: Sequence[list[int]],
+    points: np.ndarray,
+    bodies: Sequence[str],
+    is_folded: bool,
+) -> list[_Hinge]:
+    """The hinges between bodies, those in one line once; of what ``is_folded`` in space
+    the angles are seen there."""
+    hinges: list[_Hinge] = []
+    for crease in creases:
+        if crease.edge.letter not in HINGES:
+            continue
+        left = _normal(points[faces[crease.left]])
+        right = _normal(points[faces[crease.right]])
+        joint = _joint(crease, points, bodies, left)
+        if any(_is_same_hinge(joint, other.joint) for other in hinges):
+            continue
+        angle = math.radians(crease.edge.angle)
+        if is_folded:
+            angle = _dihedral(left, right, np.array(joint.direction))
+        hinges.append(_Hinge(joint, crease.edge.letter, angle))
+    return hinges
+
+
 def _bodies(faces: int, creases: Sequence[_Crease]) -> list[str]:
     """What the body of every face is called: after the first of the faces that flat
     edges and joins make one."""
@@ -343,6 +436,12 @@ def _normal(corners: np.ndarray) -> np.ndarray:
     double_area = np.cross(spokes[:-1], spokes[1:]).sum(axis=0)
     length = float(np.linalg.norm(double_area))
     return double_area / length if length > 0.0 else np.zeros(3)
+
+
+def _dihedral(left: np.ndarray, right: np.ndarray, along: np.ndarray) -> float:
+    """The fold angle (rad, valleys positive) between faces with unit normals (3,), by
+    which the right one turns about the direction ``along`` (3,) of the hinge."""
+    return math.atan2(float(np.cross(left, right) @ along), float(left @ right))
 
 
 def _joint(

@@ -1,4 +1,4 @@
-"""From an assembly to a mechanism: a closed configuration, and what lies in a loop."""
+"""From an assembly to a mechanism: a closed configuration, and which bodies are one."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from dataclasses import replace
 import networkx as nx
 import numpy as np
 
-from bifurc.tables import count_of
 from linkages.decisions import (
     is_closed_as_it_stands,
     is_file_closed,
@@ -36,12 +35,10 @@ def mechanism_of_assembly(assembly: Assembly) -> Mechanism:
     """The mechanism of an ``assembly``, in a closed configuration: the one that the
     file gives, the nearest to it, or where it gives none, one from random starts.
 
-    Bodies that are rigid with each other become one, and so do those whose joint lies
-    in no closed loop: it is held. What was left out or moved is said in the log. Raises
-    `GeometryError` where there is no loop, or where the joints do not fit.
+    Bodies that are rigid with each other become one. What was left out or moved is said
+    in the log. Raises `GeometryError` where no joint is left, or where they do not fit.
     """
     notes = list(assembly.notes)
-    assembly = _without_branches(assembly, notes)
     closed = _closed(assembly)
     if not is_file_closed(closed.gap):
         notes.append(
@@ -58,11 +55,8 @@ def mechanism_of_assembly(assembly: Assembly) -> Mechanism:
         frames = assembly.placed(joint, closed.poses)
         joints.append(_placed(joint, bodies, *frames))
         values |= zip(joint.labels, _values(joint, *frames), strict=False)
-    value, allowed = (
-        "rigid: no joint is left in a loop",
-        "one with a joint that can move",
-    )
-    require(len(joints) > 0, "mechanism", value, allowed)
+    allowed = "one with a joint that can move"
+    require(len(joints) > 0, "mechanism", "rigid: no joint is left", allowed)
     joints = _coupled(joints, assembly, values, notes)
     for note in notes:
         log.warning("%s: %s", assembly.name, note)
@@ -74,29 +68,7 @@ def mechanism_of_assembly(assembly: Assembly) -> Mechanism:
     )
 
 
-# --- what lies in a loop --------------------------------------------------------------
-
-
-def _without_branches(assembly: Assembly, notes: list[str]) -> Assembly:
-    """The assembly without bodies that hang on one joint, and without those that then
-    do."""
-    graph = nx.MultiGraph()
-    graph.add_nodes_from(assembly.bodies)
-    for joint in assembly.joints:
-        graph.add_edge(*joint.bodies, key=joint.name)
-    ends = [body for body in graph if graph.degree(body) < 2]
-    while ends:
-        graph.remove_nodes_from(ends)
-        ends = [body for body in graph if graph.degree(body) < 2]
-    value = f"{count_of(len(assembly.bodies), 'body')} without a closed loop"
-    allowed = "a mechanism with a closed loop at least"
-    require(len(graph) > 0, "mechanism", value, allowed)
-    bodies = tuple(body for body in assembly.bodies if body in graph)
-    joints = tuple(j for j in assembly.joints if set(j.bodies) <= set(bodies))
-    left_out = [joint.name for joint in assembly.joints if joint not in joints]
-    if left_out:
-        notes.append(f"left out, as they lie in no loop: joints {listed(left_out)}")
-    return replace(assembly, bodies=bodies, joints=joints)
+# --- bodies that are one --------------------------------------------------------------
 
 
 def _merged_bodies(assembly: Assembly, notes: list[str]) -> dict[str, str]:
@@ -107,23 +79,10 @@ def _merged_bodies(assembly: Assembly, notes: list[str]) -> dict[str, str]:
     graph.add_nodes_from(assembly.bodies)
     graph.add_edges_from(joint.bodies for joint in rigid)
     names = _names_of_parts(graph, assembly.bodies)
-    loops = nx.MultiGraph()
-    loops.add_nodes_from(set(names.values()))
-    for joint in between:
-        first, second = (names[body] for body in joint.bodies)
-        loops.add_edge(first, second, key=joint.name)
-    bridges = {frozenset(edge) for edge in nx.bridges(nx.MultiGraph(loops))}
-    held = []
-    for joint in between:
-        if frozenset(names[body] for body in joint.bodies) in bridges:
-            graph.add_edge(*joint.bodies)
-            held.append(joint.name)
     inside = [j.name for j in between if names[j.bodies[0]] == names[j.bodies[1]]]
-    if held:
-        notes.append(f"held, as they lie in no loop: joints {listed(held)}")
     if inside:
         notes.append(f"left out, as their bodies are one: joints {listed(inside)}")
-    return _names_of_parts(graph, assembly.bodies)
+    return names
 
 
 def _names_of_parts(graph: nx.MultiGraph, order: Iterable[str]) -> dict[str, str]:
@@ -142,7 +101,47 @@ def _names_of_parts(graph: nx.MultiGraph, order: Iterable[str]) -> dict[str, str
 
 
 def _closed(assembly: Assembly) -> ClosedPoses:
-    """Poses in which the joints fit; raises `GeometryError` where there are none."""
+    """Poses in which the joints fit; raises `GeometryError` where there are none.
+
+    The bodies in loops are closed by themselves, and what hangs on them follows.
+    """
+    graph = nx.MultiGraph()
+    graph.add_nodes_from(assembly.bodies)
+    for joint in assembly.joints:
+        graph.add_edge(*joint.bodies, key=joint.name)
+    core = {body for pair in _doubled(graph) for body in pair}
+    core |= set(nx.k_core(nx.Graph(graph), 2))
+    if not assembly.poses or not core:
+        return _closed_at_once(assembly)
+    bodies = tuple(body for body in assembly.bodies if body in core)
+    joints = tuple(one for one in assembly.joints if core.issuperset(one.bodies))
+    closed = _closed_at_once(replace(assembly, bodies=bodies, joints=joints))
+    poses = dict(zip(bodies, closed.poses, strict=True))
+    every = _with_branches(assembly, poses, nx.Graph(graph))
+    return replace(closed, poses=every)
+
+
+def _with_branches(
+    assembly: Assembly, poses: dict[str, np.ndarray], graph: nx.Graph
+) -> np.ndarray:
+    """The poses (b, 4, 4) of all bodies, where those in loops have ``poses`` and the
+    others stand as they are given with respect to those on which they hang."""
+    ways = nx.multi_source_dijkstra_path(graph, set(poses))
+    for body in sorted(ways, key=lambda one: len(ways[one])):
+        if body not in poses:
+            before = ways[body][-2]
+            moved = poses[before] @ np.linalg.inv(assembly.poses[before])
+            poses[body] = moved @ assembly.poses[body]
+    return np.array([poses.get(b, assembly.poses[b]) for b in assembly.bodies])
+
+
+def _doubled(graph: nx.MultiGraph) -> list[tuple[str, str]]:
+    """The pairs of bodies that several joints join."""
+    return [(a, b) for a, b in nx.Graph(graph).edges if graph.number_of_edges(a, b) > 1]
+
+
+def _closed_at_once(assembly: Assembly) -> ClosedPoses:
+    """The same, all joints together."""
     closing = Closing(assembly)
     if assembly.poses:
         given = np.array([assembly.poses[body] for body in assembly.bodies])
@@ -216,12 +215,12 @@ def _coupled(
     result: dict[str, Coupling] = {}
     for label in couplings:
         if label not in kept:
-            notes.append(f"left out: the coupling of {label}, which lies in no loop")
+            notes.append(f"left out: the coupling of {label}, whose bodies are one")
             continue
         own = found[label]
         to = first_of.setdefault(own.number, label)
         if to == label:
-            notes.append(f"left out: the coupling of {label} to what lies in no loop")
+            notes.append(f"left out: the coupling of {label} to what is left out")
             continue
         ratio = own.ratio / found[to].ratio
         offset = own.offset - ratio * found[to].offset

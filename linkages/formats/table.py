@@ -94,6 +94,35 @@ def _content(path: Path) -> bytes:
     return content
 
 
+CLOSURES = "robot.yaml"  # beside a robot, where no file is called as it is
+
+
+def _read_robot(path: Path) -> Mechanism:
+    """A robot in URDF, with the loops that a YAML file beside it closes: one of the same
+    name, or `CLOSURES`."""
+    from linkages.formats.mechanism_of import mechanism_of_assembly
+    from linkages.formats.urdf_reading import read_urdf
+    from linkages.formats.xml_tree import parse_xml
+
+    root = parse_xml(_content(path))
+    require(root.tag == "robot", f"line {root.line}", f"<{root.tag}>", "<robot>")
+    beside = (path.with_suffix(".yaml"), path.with_name(CLOSURES))
+    file = next((one for one in beside if one.is_file()), None)
+    closures = None if file is None else _read_yaml(file)
+    return mechanism_of_assembly(read_urdf(root, path.stem, closures))
+
+
+def _read_yaml(path: Path) -> object:
+    """The content of a YAML file; raises `GeometryError` with the line."""
+    import yaml
+
+    try:
+        return yaml.safe_load(read_text(path))
+    except yaml.YAMLError as error:
+        reason = " ".join(str(error).split())
+        raise GeometryError(path.name, reason, "a YAML file") from None
+
+
 def _read_fold(path: Path) -> Mechanism:
     from linkages.files.fold import read_fold
 
@@ -126,6 +155,13 @@ FORMATS = (
         write="linkages.formats.sdf_writing:mechanism_sdf",
         root="sdf",
         read_root="linkages.formats.sdf_reading:read_sdf",
+    ),
+    FileFormat(
+        (".urdf",),
+        ".urdf",
+        read=_read_robot,
+        root="robot",
+        read_root="linkages.formats.urdf_reading:read_urdf",
     ),
     FileFormat((".world",), ".world (CUIK)", read=_read_world),
     FileFormat((".fold",), read=_read_fold),

@@ -20,7 +20,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from linkages.catalogue import distinct_entries
+from linkages.catalogue import catalogue, distinct_entries
 from linkages.entry import Entry, Guesses, Parameter, ParameterKind
 from linkages.geometry_table import link_name
 from linkages.identification.equivalence import normal_form, table
@@ -179,13 +179,14 @@ def _rearranged(
                 yield found
 
 
-def _order(correction: Correction) -> tuple[int, int, int, int]:
+def _order(correction: Correction) -> tuple[int, int, int, int, int]:
     """The simplest mistakes come first, then what rounding accounts for, the most special
-    first."""
+    first, in the order of the catalogue."""
     match = correction.match
     decade = math.floor(math.log10(max(match.distance, 1e-12)))
     rounded = -100 if correction.is_rounding else decade
-    return correction.depth, rounded, match.freedom, len(match.parameters)
+    position = list(catalogue()).index(match.entry.name)
+    return correction.depth, rounded, match.freedom, len(match.parameters), position
 
 
 def _corrected(

@@ -14,6 +14,7 @@ import numpy as np
 from bifurc.atlas import Form
 from bifurc.branch import Branch
 from bifurc.isometry import Isometry
+from linkages.decisions import is_parallel_axis
 from linkages.geometry_table import link_name
 from linkages.links.distances import MARGIN, largest_rates, places_along
 from linkages.links.mechanism_drawing import (
@@ -22,18 +23,18 @@ from linkages.links.mechanism_drawing import (
     breadths_of_mechanism,
     draw_bodies,
     draw_symbols,
+    held_body,
 )
 from linkages.links.motion_document import describe_motion, has_tape
 from linkages.links.rods import link_corners, seat_heights
 from linkages.loop import Loop
 from linkages.mechanisms.joint import JointKind, Shape
 from linkages.readout.poses import Poses
-from linkages.scene import View, best_view, make_scene, view_of_plane
+from linkages.scene import View, best_view, breadth, make_scene, view_of_plane
 from linkages.structure.plane import normal_of_plane
 from linkages.structure.structure import Structure
 
 STEP = 1e-5  # rad, along a branch: of the differences that are taken for speeds
-ALIKE = 1e-3  # of a breadth: configurations that differ by less show as much
 UPWARD = np.array([0.0, 0.0, 1.0])
 UPRIGHT = np.eye(3)
 FLAT = 1e-9  # sine of a twist of a planar loop
@@ -43,12 +44,17 @@ Pair: TypeAlias = tuple[int, int]  # of bodies, by their numbers
 
 class Symbol(NamedTuple):
     """A joint on a body: its ``place`` (3,), and its ``direction`` (3,), a unit
-    vector."""
+    vector; ``bodies`` are the two that it joins."""
 
     name: str
     shape: Shape
     place: np.ndarray
     direction: np.ndarray
+    bodies: Pair
+
+    def is_on(self, body: int) -> bool:
+        """Whether it joins this body."""
+        return body in self.bodies
 
 
 class Parts(ABC):
@@ -63,6 +69,26 @@ class Parts(ABC):
     full_names: Sequence[str]
     size: float
     frame: int
+
+    @property
+    def held(self) -> int:
+        """The body that is drawn at rest."""
+        return self.frame
+
+    @property
+    @abstractmethod
+    def normal(self) -> np.ndarray | None:
+        """The unit normal (3,) of the plane in which all move, where there is one, in
+        the frame of the body that is drawn at rest."""
+
+    def panels(self, body: int) -> list[np.ndarray]:
+        """The panels of a body by their corners (k, 3)."""
+        return []
+
+    @abstractmethod
+    def breadths(self, points: np.ndarray) -> np.ndarray:
+        """The lesser extents (k,) of where joints are at configurations (k, n): small
+        where they are nearly on one line."""
 
     @abstractmethod
     def lines(self, points: np.ndarray) -> list[np.ndarray]:
@@ -96,9 +122,8 @@ class Parts(ABC):
     def page(self, points: np.ndarray) -> dict[str, Any]:
         """What a page has to know of them, ``points`` (k, n) being on the map."""
 
-    def form_on_page(self, form: Form, places: np.ndarray) -> dict[str, Any]:
-        """What it has to know of a form besides, which may first be shown at one of the
-        ``places`` (k,)."""
+    def form_on_page(self, form: Form, start: float) -> dict[str, Any]:
+        """What it has to know of a form besides, which is first shown at a place."""
         return {}
 
     def pairs_apart(self, lines: list[np.ndarray]) -> list[Pair]:
@@ -145,7 +170,20 @@ class Links(Parts):
         """The joint behind a link, whose axis is the z axis of the link."""
         joint = (body + 1) % self.loop.n
         seat = float(seat_heights(self.loop)[joint]) * UPWARD
-        return [Symbol(f"joint {joint + 1}", Shape.CYLINDER, seat, UPWARD)]
+        name = f"joint {joint + 1}"
+        return [Symbol(name, Shape.CYLINDER, seat, UPWARD, (body, joint))]
+
+    @property
+    def normal(self) -> np.ndarray | None:
+        """That of parallel axes."""
+        sines = np.abs(np.sin(self.loop.arrays.twists))
+        return UPWARD if all(map(is_parallel_axis, sines.tolist())) else None
+
+    def breadths(self, points: np.ndarray) -> np.ndarray:
+        """Those of the joints in the middle of their offsets."""
+        angles = self.to_angles.points(points)
+        scenes = [make_scene(self.loop, theta) for theta in angles]
+        return np.array([breadth(scene.joints) for scene in scenes])
 
     def are_joined(self, pair: Pair) -> bool:
         """Whether one follows the other."""
@@ -249,8 +287,28 @@ class Bodies(Parts):
             for holder, direction in zip(holders, directions, strict=False):
                 if holder == body:
                     along = np.array(direction)
-                    symbols.append(Symbol(name, kind.facets.shape, place, along))
+                    shape = kind.facets.shape
+                    symbols.append(Symbol(name, shape, place, along, holders))
         return symbols
+
+    @property
+    def held(self) -> int:
+        """The frame, or the middle one of a sheet of panels."""
+        return self.names.index(held_body(self.structure.mechanism))
+
+    @property
+    def normal(self) -> np.ndarray | None:
+        return normal_of_plane(self.structure.mechanism)
+
+    def panels(self, body: int) -> list[np.ndarray]:
+        return [
+            np.array(panel.corners)
+            for panel in self.structure.mechanism.panels
+            if panel.body == self.names[body]
+        ]
+
+    def breadths(self, points: np.ndarray) -> np.ndarray:
+        return breadths_of_mechanism(self.structure, points)
 
     @cached_property
     def _drawn_symbols(self) -> list[Drawing]:
@@ -293,13 +351,10 @@ class Bodies(Parts):
         """How bodies move, and what is drawn of them."""
         return {"mechanism": describe_motion(self.structure, points)}
 
-    def form_on_page(self, form: Form, places: np.ndarray) -> dict[str, Any]:
-        """Where joints are farthest from one line, and the smallest regular singular
-        value where the page has no equations."""
-        breadths = breadths_of_mechanism(self.structure, form.branch(places))
-        # the first of those that are alike, whatever rounding makes of them
-        first = np.argmax(breadths > (1 - ALIKE) * breadths.max())
-        on_page: dict[str, Any] = {"start": float(places[first])}
+    def form_on_page(self, form: Form, start: float) -> dict[str, Any]:
+        """Where it is first shown, and the smallest regular singular value where the
+        page has no equations."""
+        on_page: dict[str, Any] = {"start": start}
         if not has_tape(self.structure):
             on_page["smallest"] = _smallest(form)
         return on_page

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
@@ -86,6 +87,26 @@ class Panel(NamedTuple):
     corners: tuple[Vector, ...]
 
 
+class Crease(NamedTuple):
+    """A crease that is assigned: its ``joint``, "M" for a mountain or "V" for a valley,
+    and the fold ``angle`` (rad, valleys positive) in the reference configuration."""
+
+    joint: str
+    letter: str
+    angle: float
+
+    @property
+    def sign(self) -> int:
+        """That of the fold angle where it is folded as assigned."""
+        return 1 if self.letter == "V" else -1
+
+    @property
+    def limits(self) -> Limits:
+        """The values of the variable at which it is folded as assigned."""
+        ends = sorted((-self.angle, self.sign * math.pi - self.angle))
+        return ends[0], ends[1]
+
+
 @dataclass(frozen=True)
 class Mechanism:
     """Bodies, joined by ``joints`` that are given in one closed configuration.
@@ -94,9 +115,11 @@ class Mechanism:
     Grübler's count. ``origin`` is where a file that counts them from elsewhere has the
     origin of the points; nothing that is computed hangs on it. ``rounding``: how far off
     they may be, where that is more than they are as doubles. ``panels`` are drawn of
-    bodies that are sheets.
-    Raises `GeometryError` where a joint is named twice, a body hangs on one joint only,
-    the bodies do not hang together, or joints are coupled in a circle.
+    bodies that are sheets, with ``creases`` that are assigned. What hangs on joints in no
+    closed loop is held where it is given, but ``with_flaps``. Bodies that do not hang
+    together are mechanisms of their own, its `parts`.
+    Raises `GeometryError` where a joint is named twice, or joints are coupled in a
+    circle.
     """
 
     joints: tuple[Joint, ...]
@@ -105,12 +128,13 @@ class Mechanism:
     origin: Vector = field(default=(0.0, 0.0, 0.0), compare=False)
     rounding: float = field(default=0.0, compare=False)
     panels: tuple[Panel, ...] = field(default=(), compare=False)
+    with_flaps: bool = False
+    creases: tuple[Crease, ...] = field(default=(), compare=False)
     # what to do where a single loop is asked for, unless there is nothing to do
     way_to_loop: ClassVar[str] = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "joints", _checked_joints(self.joints))
-        _check_graph(self)
         _check_followers(self)
 
     # --- bodies -----------------------------------------------------------------------
@@ -297,6 +321,52 @@ class Mechanism:
 
     # --- other mechanisms -------------------------------------------------------------
 
+    @property
+    def parts(self) -> tuple[Mechanism, ...]:
+        """The mechanisms that it consists of, each of bodies that hang together; itself
+        where it is one. Raises `GeometryError` where a joint is coupled to one of another
+        part."""
+        import networkx as nx
+
+        sets = list(nx.connected_components(self.graph()))
+        if len(sets) == 1:
+            return (self,)
+        return tuple(
+            self._part(number, sets[number - 1]) for number in range(1, len(sets) + 1)
+        )
+
+    def _part(self, number: int, bodies: Collection[str]) -> Mechanism:
+        """What is left of it with some ``bodies`` only."""
+        joints = tuple(joint for joint in self.joints if joint.bodies[0] in bodies)
+        labels = {label for joint in joints for label in joint.labels}
+        for joint in joints:
+            for coupling in joint.coupled:
+                is_inside = coupling is None or coupling.to in labels
+                to = "" if coupling is None else coupling.to
+                allowed = "coupled to what a chain of joints joins to it"
+                require(is_inside, f"joint {joint.name}", f"coupled to {to}", allowed)
+        panels = tuple(panel for panel in self.panels if panel.body in bodies)
+        creases = tuple(one for one in self.creases if one.joint in labels)
+        name = f"{self.name}, part {number}"
+        return replace(self, joints=joints, panels=panels, creases=creases, name=name)
+
+    def with_creases_as_assigned(self) -> Mechanism:
+        """The sheet whose assigned creases fold their way only: valleys from 0 to 180
+        degrees, mountains from -180 to 0."""
+        limits = {one.joint: (one.limits,) for one in self.creases}
+        return self._with_limits(limits)
+
+    def with_free_creases(self) -> Mechanism:
+        """The sheet whose assigned creases fold either way."""
+        return self._with_limits({one.joint: () for one in self.creases})
+
+    def _with_limits(self, limits: Mapping[str, tuple[Limits, ...]]) -> Mechanism:
+        joints = tuple(
+            replace(joint, limits=limits.get(joint.name, joint.limits))
+            for joint in self.joints
+        )
+        return replace(self, joints=joints)
+
     def with_locks(self, values: Mapping[str, float]) -> Mechanism:
         """The mechanism with variables, by label, locked at ``values`` (rad and unit of
         length), or those that they follow at what that takes; raises `GeometryError`
@@ -344,7 +414,16 @@ class Mechanism:
             image = _image(joint, MIRROR, MIRROR if slides else -MIRROR, -1.0)
             signs |= zip(joint.labels, _signs_in_mirror(joint, image), strict=True)
             joints.append(image)
-        return self._image(joints, signs, MIRROR)
+        mirrored = self._image(joints, signs, MIRROR)
+        # seen from the other side, valleys and mountains are exchanged and angles change
+        # their signs with the variables
+        creases = [
+            Crease(one.joint, one.letter, one.angle)
+            if signs[one.joint] > 0
+            else Crease(one.joint, "MV"[one.letter == "M"], -one.angle)
+            for one in self.creases
+        ]
+        return replace(mirrored, creases=tuple(creases))
 
     def _image(
         self, joints: Iterable[Joint], factors: Mapping[str, float], sizes: np.ndarray
@@ -450,25 +529,6 @@ def _checked_joints(joints: object) -> tuple[Joint, ...]:
             allowed = "such that every joint and every variable has its own"
             require(other is joint, what, f"{quoted(name)} in both", allowed)
     return checked
-
-
-def _check_graph(mechanism: Mechanism) -> None:
-    import networkx as nx
-
-    parts = [sorted(part) for part in nx.connected_components(mechanism.graph())]
-    if len(parts) > 1:
-        order = mechanism.bodies.index
-        frame = mechanism.frame
-        parts.sort(key=lambda part: (frame not in part, min(map(order, part))))
-        far = ", ".join(parts[1])
-        allowed = f"joined to {frame} by a chain of joints"
-        raise GeometryError("bodies", far, allowed)
-    for body in mechanism.bodies:
-        # a joint of several bodies is one, from whichever its angles are measured
-        joints = [joint.name for joint in mechanism.joints if body in joint.bodies]
-        value = f"one joint only, {joints[0]},"
-        allowed = "two joints or more on every body"
-        require(len(joints) >= 2, f"body {body}", value, allowed)
 
 
 def _check_followers(mechanism: Mechanism) -> None:

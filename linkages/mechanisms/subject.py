@@ -11,7 +11,7 @@ from bifurc.atlas import Atlas
 from linkages.labels import NoLinkageError
 from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
-from linkages.mechanisms.mechanism import Mechanism, Panel
+from linkages.mechanisms.mechanism import Crease, Mechanism, Panel
 from linkages.mechanisms.origin import origin_of
 from linkages.values import GeometryError, require
 
@@ -29,6 +29,10 @@ def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
             {"body": panel.body, "corners": [list(corner) for corner in panel.corners]}
             for panel in mechanism.panels
         ]
+    if mechanism.creases:
+        values["creases"] = [one._asdict() for one in mechanism.creases]
+    if mechanism.with_flaps:
+        values["with_flaps"] = True
     return {
         "name": mechanism.name,
         "mechanism": values,
@@ -100,7 +104,11 @@ def mechanism_from(given: object, name: str) -> Mechanism:
     require(is_list, "panels", repr(outlines), "a list of panels")
     bodies = {body for joint in joints for body in joint.bodies}
     panels = tuple(_panel(value, bodies) for value in outlines)
-    return Mechanism(tuple(joints), name, is_planar, origin, rounding, panels)
+    with_flaps = bool(given.get("with_flaps", False))
+    creases = tuple(Crease(**value) for value in given.get("creases", []))
+    return Mechanism(
+        tuple(joints), name, is_planar, origin, rounding, panels, with_flaps, creases
+    )
 
 
 def _panel(value: Any, bodies: Collection[str]) -> Panel:

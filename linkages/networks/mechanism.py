@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import degrees
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,12 +18,20 @@ from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.entries import NETWORKS
 from linkages.networks.network import Network, wrap_angles
 from linkages.networks.placement import PlacedNetwork
-from linkages.values import require
+from linkages.values import GeometryError, require
 
 # What every cell turns by at its second axis in the reference configuration, rad, where
 # nothing is locked: in no special place.
 PRESET = 0.9, -1.3, 2.1, -1.7
 MOST_CONSTRUCTED = 48  # configurations from which a search of a network starts
+
+
+class OuterLoop(NamedTuple):
+    """The single ``loop`` that the outer bars of a network leave, and the outer joints
+    that are ``still``, which were replaced."""
+
+    loop: Loop
+    still: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -72,9 +80,7 @@ class NetworkMechanism(Mechanism):
     @property
     def still(self) -> tuple[str, ...]:
         """The outer joints that do not move, locked ones among them."""
-        placed = self.placed
-        motion = motion_at(placed.network, placed.locks, placed.reference)
-        return motion.still(placed.network.plan.ring)
+        return _still_joints(self.placed)
 
     def assemblies(self) -> np.ndarray:
         """Configurations (k, v) on every motion of one freedom, by the closed form; none
@@ -101,13 +107,22 @@ class NetworkMechanism(Mechanism):
         del values["network"]["reference"]
         return values
 
-    def without_centre(self) -> Loop:
+    def without_centre(self) -> OuterLoop:
         """The single loop that is left where the bars inside are taken away, and every
         joint that does not move is replaced together with its two links by one link.
 
-        Raises `GeometryError` where fewer than four joints are left.
+        That is done in the reference configuration; where two of the links lie on each
+        other there, in the next one in which they do not. Raises `GeometryError` where
+        there is none, and where fewer than four joints are left.
         """
-        return replaced_ring(self.placed, self.still)
+        failures = []
+        for placed in (self.placed, *_placements(self.placed.network, self.kinks)):
+            still = _still_joints(placed)
+            try:
+                return OuterLoop(replaced_ring(placed, still), still)
+            except GeometryError as error:
+                failures.append(error)
+        raise failures[0]
 
 
 def replaced_ring(placed: PlacedNetwork, joints: Sequence[str]) -> Loop:
@@ -138,16 +153,30 @@ def lock_network(network: Network, kinks: Mapping[str, float]) -> NetworkMechani
     `GeometryError` for what is no outer joint, and where the network cannot be
     assembled.
     """
-    states = assemble(network, kinks)
+    placements = _placements(network, kinks)
     shown = ", ".join(f"{axis}={degrees(kink):g}" for axis, kink in kinks.items())
     allowed = "kinks at which the network can be assembled"
-    require(len(states) > 0, f"locks of {network.name}", shown, allowed)
+    require(len(placements) > 0, f"locks of {network.name}", shown, allowed)
+    placed = placements[0]
+    plain = placed.mechanism
+    return NetworkMechanism(plain.joints, plain.name, placed=placed)
+
+
+def _still_joints(placed: PlacedNetwork) -> tuple[str, ...]:
+    """The outer joints that do not move from the reference configuration on."""
+    motion = motion_at(placed.network, placed.locks, placed.reference)
+    return motion.still(placed.network.plan.ring)
+
+
+def _placements(network: Network, kinks: Mapping[str, float]) -> list[PlacedNetwork]:
+    """The network in all its configurations that are known in closed form with joints
+    locked, those nearest to the one without locks first."""
+    states = assemble(network, kinks)
     gaps = wrap_angles(states - np.array(PRESET[: states.shape[1]]))
     # rounded, so that of those as near as each other the first one is taken
     distances = np.round(np.linalg.norm(gaps, axis=1), 9)
-    placed = PlacedNetwork(network, states[np.argmin(distances)], kinks)
-    plain = placed.mechanism
-    return NetworkMechanism(plain.joints, plain.name, placed=placed)
+    order = np.argsort(distances, kind="stable")
+    return [PlacedNetwork(network, states[k], kinks) for k in order]
 
 
 # --- what an atlas keeps --------------------------------------------------------------

@@ -22,7 +22,8 @@ def dataset_variables(atlas: Atlas, readout: Readout) -> dict[str, Variable]:
     """What the file of an atlas of a mechanism holds besides its unknowns, by name.
 
     ``joint_variable`` (form, sample, joint_variable_name) are all joint variables along
-    the forms, as they stand, in the units of ``joint_variable_unit``;
+    the forms, as they stand, in the units of ``joint_variable_unit``, and which of them
+    move but what hangs, ``joint_variable_hangs``;
     ``rotation_vector`` (form, sample, rotation_name, coordinate) those of spherical
     joints, rad, from the reference configuration. Those with ``point_`` and
     ``assembly_`` before the name are at singular points and in rigid assemblies, angles
@@ -35,6 +36,9 @@ def dataset_variables(atlas: Atlas, readout: Readout) -> dict[str, Variable]:
             VARIABLES: make_variable((VARIABLES,), np.array(names), "joint variables"),
             "joint_variable_unit": make_variable(
                 (VARIABLES,), np.array(_units(readout)), "units of joint variables"
+            ),
+            "joint_variable_hangs": make_variable(
+                (VARIABLES,), _hang(readout), "whether nothing closes over it"
             ),
         }
         result |= {
@@ -72,6 +76,12 @@ def _units(readout: Readout) -> list[str]:
     """The unit of every joint variable, as JSON has it."""
     turns = [variable.motion.is_turn for variable in readout.mechanism.variables]
     return ["rad" if is_turn else "length" for is_turn in turns]
+
+
+def _hang(readout: Readout) -> np.ndarray:
+    """1 for every joint variable that moves nothing but what hangs, else 0 (v,)."""
+    labels = readout.structure.hanging.labels
+    return np.array([label in labels for label in readout.labels()], dtype=np.int8)
 
 
 def _points(atlas: Atlas) -> np.ndarray:

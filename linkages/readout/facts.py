@@ -118,11 +118,14 @@ def _groups(
     readout: Readout, samples: np.ndarray, unit: float
 ) -> tuple[tuple[str, ...], ...]:
     """Bodies whose displacement with respect to each other is the same at all samples,
-    in groups of two and more."""
+    in groups of two and more; those that hang on others by free joints left out."""
     poses = readout.poses(samples)
     length = readout.structure.unit
     bodies = readout.mechanism.bodies
-    left = list(range(len(bodies)))
+    structure = readout.structure
+    joints = structure.hanging.joints if structure.holds_flaps else ()
+    hanging = {joint.bodies[0] for joint in joints}
+    left = [number for number, body in enumerate(bodies) if body not in hanging]
     groups = []
     while left:
         first = left.pop(0)

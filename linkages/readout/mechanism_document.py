@@ -19,9 +19,10 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
     """The mechanism of an atlas; what is redundant holds where the first form or
     surface is regular, or else at the first assembly.
 
-    The map leaves ``idle_bodies`` and ``idle_turns`` out, and counts the freedoms of
-    ``loose_chains``. Points are counted from the ``origin``, in the coordinates of the
-    file. ``translates`` is None where nothing is left out that differs by whole turns.
+    The map leaves ``idle_bodies`` and ``idle_turns`` out, holds what is ``hanging``, if it
+    ``holds_flaps``, and counts the freedoms of ``loose_chains``. Points are counted from
+    the ``origin``, in the coordinates of the file. ``translates`` is None where nothing is
+    left out that differs by whole turns.
     """
     mechanism = readout.mechanism
     place = _regular_place(atlas)
@@ -43,6 +44,8 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
         ],
         "idle_bodies": list(readout.structure.idle_bodies),
         "idle_turns": list(readout.structure.idle_turns),
+        "hanging": [asdict(joint) for joint in readout.structure.hanging.joints],
+        "holds_flaps": readout.structure.holds_flaps,
         "loose_chains": [asdict(chain) for chain in loose_chains(readout.structure)],
         "characteristic_length": readout.structure.unit,
         "origin": list(mechanism.origin),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -42,9 +44,26 @@ def loop_of_content(content: Content) -> Loop:
 
 
 def atlas_of(content: Content) -> Atlas:
-    """The transition map of the linkage that a figure names, without certificates."""
+    """The transition map of the linkage that a figure names, without certificates; its
+    bifurcations are called as in the source, where the figure says which forms meet at
+    ``points`` of these numbers."""
     parameters = tuple(sorted(content.get("parameters", {}).items()))
-    return _atlas(content["linkage"], parameters)
+    atlas = _atlas(content["linkage"], parameters)
+    points = content.get("points")
+    return atlas if points is None else _with_names(atlas, points)
+
+
+def _with_names(atlas: Atlas, meetings: Mapping[str, Sequence[str]]) -> Atlas:
+    """The atlas with a number for each bifurcation, by the forms that meet there."""
+    names = {}
+    for number, forms in meetings.items():
+        meeting = {atlas.forms.index(form_named(atlas, form)) for form in forms}
+        names[frozenset(meeting)] = f"B$_{{{number}}}$"
+    points = []
+    for point in atlas.points:
+        members = frozenset(form for form, _ in point.passes)
+        points.append(replace(point, name=names[members]))
+    return replace(atlas, points=tuple(points))
 
 
 @cache

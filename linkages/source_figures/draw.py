@@ -9,7 +9,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from bifurc.figures.rendering import RC
+from bifurc.figures.rc import RC
 from linkages.source_figures import (
     assembly_figure,
     curves_figure,

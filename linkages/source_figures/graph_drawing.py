@@ -11,13 +11,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.textpath import TextPath
 
-from linkages.source_figures.assembly import Assembly, Role, Seat
+from linkages.source_figures.assembly import Assembly, Bar, Role, Seat
 from linkages.source_figures.drawing import LINK_COLORS, LINK_DASHES, write_at
 
 SHORTEST = 0.2  # of a drawn link: the least distance of a joint on it from its ends
 SEPARATION = 0.55  # joints inside the ring, at least, where the ring has radius 1
 PUSHES = 20
-FRACTIONS = np.array([0.5, 0.4, 0.6, 0.3, 0.7])  # of a link, where its name may stand
+# of a link, where its name may stand
+FRACTIONS = np.array([0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74, 0.18])
+LETTER = 0.07  # the width of a letter of a name, where the ring has radius 1
 BESIDE = 0.13  # from a link of the ring to its name
 ENOUGH = 0.35  # room for a name, where the ring has radius 1
 FURTHEST = 1.45  # of a drawn link: how far beyond it a joint is drawn
@@ -104,7 +106,7 @@ def draw_graph(
     of its joints, as "1 2 X"."""
     places = places_of(assembly, ring)
     taken = list(places.values())  # joints, and names that stand already
-    outside: list[np.ndarray] = []
+    inner: list[tuple[np.ndarray, str]] = []  # links whose names stand on them
     half = max(1.5, float(np.abs(taken).max()) + 0.2)
     for bar in assembly.bars:
         ends = np.array([places[bar.first], places[bar.last]])
@@ -117,22 +119,30 @@ def draw_graph(
         )
         if not bar.label:
             continue
-        if bar.first in ring and bar.last in ring and bar.role is not Role.REMOVED:
+        if bar.role is not Role.REMOVED and _are_neighbours(ring, bar):
             name = _name_outside(axes, ends, bar.label, half)
             half = max(half, name.half)
-            outside.append(name.place)
+            taken += _letters_at(name.place, bar.label, name.side)
         else:
-            taken.append(_name_link(axes, ends, bar.label, np.array(taken)))
+            inner.append((ends, bar.label))
+    for ends, label in inner:
+        taken += _name_link(axes, ends, label, np.array(taken))
     for joint, place in places.items():
         text = "" if joint in unnumbered else joint
         _draw_joint(axes, place, text, joint in filled)
     for letter, joints in letters.items():
         middle = np.mean([places[name] for name in joints.split()], axis=0)
-        place = _place_of_letter(middle, np.array([*taken, *outside]))
+        place = _place_of_letter(middle, np.array(taken))
         write_at(axes, place, letter, fontsize=11, zorder=4)
     axes.set_aspect("equal")
     axes.set(xlim=(-half, half), ylim=(-half, half))
     axes.set_axis_off()
+
+
+def _are_neighbours(ring: Sequence[str], bar: Bar) -> bool:
+    """Whether a bar is a side of the ring."""
+    sides = zip(ring, [*ring[1:], ring[0]], strict=True)
+    return {bar.first, bar.last} in [set(side) for side in sides]
 
 
 def _draw_joint(axes: Axes, place: np.ndarray, text: str, is_filled: bool) -> None:
@@ -162,11 +172,20 @@ def _place_of_letter(middle: np.ndarray, taken: np.ndarray) -> np.ndarray:
 
 
 class _Name(NamedTuple):
-    """Where a name stands (2,), and half the width that its panel must have for it,
-    where the ring has radius 1."""
+    """Where a name stands (2,), to which ``side`` of the place, and half the width that
+    its panel must have for it, where the ring has radius 1."""
 
     place: np.ndarray
+    side: str
     half: float
+
+
+def _letters_at(place: np.ndarray, label: str, side: str) -> list[np.ndarray]:
+    """Where the letters of a name are, each (2,)."""
+    width = LETTER * len(label)
+    begin = {"left": 0.0, "center": -0.5 * width, "right": -width}[side]
+    steps = np.linspace(begin, begin + width, len(label))
+    return [place + np.array([step, 0.0]) for step in steps]
 
 
 def _name_outside(axes: Axes, ends: np.ndarray, label: str, half: float) -> _Name:
@@ -181,7 +200,7 @@ def _name_outside(axes: Axes, ends: np.ndarray, label: str, half: float) -> _Nam
     if _half_width(axes, place, [label], side) > half:
         text = label.replace("/", "/\n", 1)
     write_at(axes, place, text, ha=side, fontsize=NAME_SIZE)
-    return _Name(place, _half_width(axes, place, text.split("\n"), side))
+    return _Name(place, side, _half_width(axes, place, text.split("\n"), side))
 
 
 def _half_width(axes: Axes, place: np.ndarray, lines: list[str], side: str) -> float:
@@ -198,12 +217,13 @@ def _half_width(axes: Axes, place: np.ndarray, lines: list[str], side: str) -> f
 
 def _name_link(
     axes: Axes, ends: np.ndarray, label: str, taken: np.ndarray
-) -> np.ndarray:
-    """Where on its line (2,) the name of a link has just been written: where it is
-    furthest from what is ``taken`` (k, 2)."""
+) -> list[np.ndarray]:
+    """Where the letters (2,) are of the name of a link that has just been written on its
+    line: where it is furthest from what is ``taken`` (k, 2)."""
     places = ends[0] + FRACTIONS[:, None] * (ends[1] - ends[0])
-    room = np.linalg.norm(places[:, None] - taken, axis=2).min(axis=1)
-    place = places[int(np.argmax(np.round(np.minimum(room, ENOUGH), 6)))]
+    names = [np.array(_letters_at(place, label, "center")) for place in places]
+    rooms = [np.linalg.norm(name[:, None] - taken, axis=2).min() for name in names]
+    best = int(np.argmax(np.round(np.minimum(rooms, ENOUGH), 6)))
     box = {"boxstyle": "square,pad=0.12", "facecolor": "white", "linewidth": 0}
-    write_at(axes, place, label, fontsize=NAME_SIZE, zorder=2, bbox=box)
-    return np.asarray(place)
+    write_at(axes, places[best], label, fontsize=NAME_SIZE, zorder=2, bbox=box)
+    return list(names[best])

@@ -15,7 +15,6 @@ from bifurc.atlas import Atlas, Form, MeetingPoint
 from bifurc.figures.drawing import draw_forms, draw_marks
 from bifurc.figures.planes import Plane, plane_of
 from bifurc.figures.plotting import plot_transition_map
-from bifurc.figures.style import form_style
 from linkages.source_figures.assembly import loop_assembly
 from linkages.source_figures.configurations import (
     atlas_of,
@@ -62,7 +61,7 @@ def draw(source: SourceFigure) -> Figure:
     left = 5.0 / (5.2 + COLUMNS * SNAPSHOT)
     axes = figure.add_axes((0.055, 0.3, left - 0.075, 0.66))
     _draw_map(axes, atlas, plane, stops)
-    _draw_form_names(axes, atlas)
+    _draw_form_names(axes)
     grid = figure.subplots(
         rows,
         COLUMNS,
@@ -77,10 +76,8 @@ def draw(source: SourceFigure) -> Figure:
     return figure
 
 
-def _draw_form_names(axes: Axes, atlas: Atlas) -> None:
+def _draw_form_names(axes: Axes) -> None:
     """The names of the forms below the map, by the lines that it has for them."""
-    for index, form in enumerate(atlas.forms):
-        axes.plot([], [], label=form.name, **form_style(index).line)
     axes.legend(
         loc="upper left", bbox_to_anchor=(-0.05, -0.14), frameon=False, handlelength=3.2
     )

@@ -76,7 +76,7 @@ def turns_as_loop(structure: Structure) -> SingleLoop | None:
     mechanism = structure.mechanism
     if mechanism.independent_loops != 1 or mechanism.is_coupled:
         return None
-    if not _has_plain_turns_only(mechanism):
+    if not _has_plain_turns_only(structure):
         return None
     (closure,) = structure.closures
     if closure.kind is not ClosureKind.CYCLE:
@@ -100,12 +100,15 @@ def turns_as_loop(structure: Structure) -> SingleLoop | None:
     return SingleLoop(loop, reference, np.array(variables), np.array(signs))
 
 
-def _has_plain_turns_only(mechanism: Mechanism) -> bool:
-    """Whether every variable is a turn without advance or limits, free or locked at
-    0."""
-    if any(pair.center is not None for pair in mechanism.pairs):
+def _has_plain_turns_only(structure: Structure) -> bool:
+    """Whether every variable in the loop is a turn without advance or limits, free or
+    locked at 0."""
+    mechanism = structure.mechanism
+    hanging = structure.hanging.pairs if structure.holds_flaps else ()
+    pairs = [pair for k, pair in enumerate(mechanism.pairs) if k not in hanging]
+    if any(pair.center is not None for pair in pairs):
         return False
-    for variable in mechanism.variables:
+    for variable in (mechanism.variables[k] for pair in pairs for k in pair.variables):
         motion = variable.motion
         if not motion.is_turn or motion.advance or variable.limits is not None:
             return False

@@ -33,9 +33,10 @@ from linkages.structure.cycles import (
 )
 from linkages.structure.free_points import FreePoint, free_points
 from linkages.structure.groups import SPHERICAL, Groups, JointPoint, find_idle_turn
+from linkages.structure.hanging import Hanging
 from linkages.structure.placement import Placement
 from linkages.structure.rods import Rod, RodNet, find_rods
-from linkages.values import require
+from linkages.values import GeometryError, require
 
 SLIDE_REACH = 2.0  # limits of a slide, over the lengths of the bodies around its cycle
 # limits, rad, of a turn that its coupling to others brings never back to where it was
@@ -121,18 +122,23 @@ class Unknown:
 
 
 class Structure:
-    """The unknowns and the closures of a ``mechanism``; raises `GeometryError` where
-    nothing is left that could move.
+    """The unknowns and the closures of a ``mechanism``, of which what is ``hanging`` is
+    held, if it ``holds_flaps``; raises `GeometryError` where bodies do not hang together, and where nothing is
+    left that could move.
 
     ``unit`` is the characteristic length, in which slides are counted.
     """
 
     def __init__(self, mechanism: Mechanism):
-        self.mechanism = mechanism
-        self.size = Size(mechanism)
+        _check_graph(mechanism)
+        self.hanging = Hanging(mechanism)
+        # where there are no loops, what hangs is all that there is
+        self.holds_flaps = not mechanism.with_flaps and mechanism.independent_loops > 0
+        self.mechanism = self.hanging.held if self.holds_flaps else mechanism
+        self.size = Size(self.mechanism)
         self.unit = self.size.characteristic_length
         self.idle_turns: tuple[str, ...] = ()
-        self.groups = Groups(mechanism, self.unit)
+        self.groups = Groups(self.mechanism, self.unit)
         # the turns that move nothing else are locked at 0, one after the other
         while (label := find_idle_turn(self.groups)) is not None:
             self.idle_turns += (label,)
@@ -564,6 +570,16 @@ class Structure:
                 sums.append(sum(lengths[body] for body in sorted(bodies)))
         total = min(sums, default=sum(lengths.values()))
         return SLIDE_REACH * (total or sum(lengths.values()))
+
+
+def _check_graph(mechanism: Mechanism) -> None:
+    """Bodies hang together."""
+    parts = mechanism.parts
+    if len(parts) > 1:
+        frames = ", ".join(part.frame for part in parts)
+        value = f"{len(parts)} mechanisms apart, of {frames},"
+        allowed = "one of them: --part NUMBER, or `Mechanism.parts`"
+        raise GeometryError(mechanism.name or "mechanism", value, allowed)
 
 
 def _each_called_once(unknowns: Sequence[Unknown]) -> tuple[Unknown, ...]:

@@ -63,11 +63,10 @@ from linkages.mechanisms.mechanism import Lock
 from linkages.readout.dead_points import driven_dead_points
 from linkages.readout.drawn import drawn_place
 from linkages.subject import subject_at
+from linkages.viewing.start import configurations, start_of
 
 Document: TypeAlias = dict[str, Any]  # values that JSON can hold
 
-SAMPLES = 72  # places on each form by which the principal plane is found
-BESIDE_A_POINT = 2  # of the spacing of these: a form is first shown farther from points
 MOST_SAMPLES = 600  # configurations shown of a surface
 MOST_LOCKS = 6  # that a title lists
 DIGITS = 6  # after the point, of places in the graph (inches)
@@ -82,7 +81,7 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> Document:
     parts = subject_at(atlas).parts
     completeness = atlas.completeness
     forms = [
-        {**_form(form, number), **parts.form_on_page(form, _free_places(atlas, number))}
+        {**_form(form, number), **parts.form_on_page(form, start_of(atlas, number))}
         for number, form in enumerate(atlas.forms)
     ]
     view = parts.best_view(_first(atlas, forms))
@@ -92,7 +91,7 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> Document:
         "completeness": f"Completeness ({completeness.level}): "
         f"{completeness.statement}.",
         "note": _note(atlas),
-        **parts.page(np.concatenate(_configurations(atlas))),
+        **parts.page(np.concatenate(configurations(atlas))),
         "forms": forms,
         "points": [_point(point) for point in atlas.points],
         **_places_on_forms(atlas),
@@ -249,7 +248,7 @@ def _graph(atlas: Atlas) -> Document:
 
 def _principal(atlas: Atlas) -> Document:
     """The first principal plane of all that is on the map."""
-    theta = np.concatenate(_configurations(atlas))
+    theta = np.concatenate(configurations(atlas))
     is_periodic = np.isfinite(atlas.periods)
     angles = theta * (2 * np.pi / atlas.periods)  # 0 where there is no period
     cosines = np.where(is_periodic, np.cos(angles), theta)
@@ -263,17 +262,6 @@ def _principal(atlas: Atlas) -> Document:
     return {"mean": mean.tolist(), "axes": (signs[:, None] * axes).tolist()}
 
 
-def _configurations(atlas: Atlas) -> Sequence[np.ndarray]:
-    """Configurations (k, n) of everything that is on the map, zeros where that is
-    nothing."""
-    parts = [branch.sample(SAMPLES) for branch in shown_branches(atlas)]
-    parts += [surface.samples for surface in atlas.surfaces]
-    parts += [motion.sample[None] for motion in atlas.near_motions]
-    if len(atlas.rigid):
-        parts.append(atlas.rigid)
-    return parts or [np.zeros((1, len(atlas.names)))]
-
-
 def _first(atlas: Atlas, forms: Sequence[Document]) -> np.ndarray:
     """The configuration (n,) that is shown first: as drawn, or of what stands first on
     the map."""
@@ -281,29 +269,9 @@ def _first(atlas: Atlas, forms: Sequence[Document]) -> np.ndarray:
         return atlas.drawn
     if forms and "start" in forms[0]:
         return atlas.forms[0].branch(forms[0]["start"])
-    first = _configurations(atlas)[0]
+    first = configurations(atlas)[0]
     configuration: np.ndarray = first[len(first) // 2]
     return configuration
-
-
-def _free_places(atlas: Atlas, number: int) -> np.ndarray:
-    """Places (k,) on a form, by its number, that are not next to a singular point or an
-    end; all where none is free."""
-    branch = atlas.forms[number].branch
-    spacing = branch.length / SAMPLES
-    places = spacing * np.arange(SAMPLES)
-    is_free = np.ones(SAMPLES, dtype=bool)
-    if not branch.closed:
-        is_free[[0, 1, -1]] = False
-    for point in atlas.points:
-        for form, s in point.passes:
-            if form != number:
-                continue
-            gaps = np.abs(places - s)
-            if branch.closed:
-                gaps = np.minimum(gaps, branch.length - gaps)
-            is_free &= gaps > BESIDE_A_POINT * spacing
-    return places[is_free] if is_free.any() else places
 
 
 # --- the title ------------------------------------------------------------------------

@@ -95,6 +95,10 @@ def _begins_with(full_name: str, name: str) -> bool:
 
 def _start_of(document: Document, names: Iterable[str]) -> tuple[str, float]:
     """What is shown at first, and where on it."""
+    drawn = document["drawn"]
+    if drawn and drawn["place"]:
+        form, s = drawn["place"]
+        return document["forms"][form]["name"], s
     if not document["forms"]:
         return next(iter(names)), 0.0
     first = min(document["forms"], key=lambda form: form["name"])
@@ -103,16 +107,18 @@ def _start_of(document: Document, names: Iterable[str]) -> tuple[str, float]:
 
 def _tracks_of(document: Document) -> dict[str, Track]:
     """What the viewer can show, by the names that viewer/tracks.js gives it."""
+    near_motions = document["near_motions"]
+    curves = [near["curve"] for near in near_motions if near["curve"]]
     tracks = {
-        form["name"]: Track(form["length"], form["closed"])
-        for form in document["forms"]
+        curve["name"]: Track(curve["length"], curve["closed"])
+        for curve in [*document["forms"], *curves]
     }
     lists = {
         surface["name"]: surface["samples"]["shape"][0]
         for surface in document["surfaces"]
     }
     lists["rigid assemblies"] = len(document["assemblies"])
-    lists["near motions"] = len(document["near_motions"])
+    lists |= {near["name"]: 1 for near in near_motions if not near["curve"]}
     alone = [point for point in document["points"] if not point["passes"]]
     lists["singular points"] = len(alone)
     for name, count in lists.items():

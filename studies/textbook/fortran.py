@@ -1,10 +1,10 @@
-"""A symbolic problem as a Fortran subroutine, for AUTO-07p."""
+"""A problem of expressions as a Fortran subroutine, for AUTO-07p."""
 
 from __future__ import annotations
 
 import sympy
 
-from bifurc import SymbolicProblem
+from bifurc.equations.expression_problem import ExpressionProblem
 
 HEAD = """\
 subroutine other_equations(x, f, jacobian)
@@ -14,14 +14,13 @@ subroutine other_equations(x, f, jacobian)
 """
 
 
-def fortran_of(problem: SymbolicProblem) -> str:
+def fortran_of(problem: ExpressionProblem) -> str:
     """The subroutine `other_equations` with F (m,) and F' (m, n) at x (n,), common
     parts computed once."""
-    expressions = [_in_numbers(one) for one in problem.expressions]
-    unknowns = list(problem.unknowns)
-    places = [sympy.Symbol(f"v{k}") for k in range(1, len(unknowns) + 1)]
-    renamed = dict(zip(unknowns, places, strict=True))
-    values = [one.xreplace(renamed) for one in expressions]
+    places = [sympy.Symbol(f"v{k}") for k in range(1, problem.n + 1)]
+    symbols = dict(zip(problem.domain.names, places, strict=True))
+    expressions = problem.program.over(problem.places, symbols, sympy, sympy.Rational)
+    values = [_in_numbers(one) for one in expressions]
     rows = [[value.diff(place) for place in places] for value in values]
     flat = [*values, *(entry for row in rows for entry in row)]
     parts, results = sympy.cse(flat, symbols=sympy.numbered_symbols("t"))

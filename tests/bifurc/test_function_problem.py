@@ -1,6 +1,7 @@
 """Problems from plain functions: derivatives, checks, magnitudes."""
 
 import copy
+import math
 import pickle
 
 import mpmath
@@ -199,3 +200,29 @@ def test_nothing_is_made_of_no_points(is_recorded):
     )
     assert problem.residuals(np.empty((0, 2))).shape == (0, 1)
     assert problem.jacobians(np.empty((0, 2))).shape == (0, 1, 2)
+
+
+def test_an_error_of_the_function_is_one_line_that_says_where():
+    def logarithm(u):
+        return [math.log(float(u[0]) + 1.5) - u[1]]
+
+    with pytest.raises(ProblemError, match=r"ValueError \(math domain error\) at \(-1"):
+        explore(FunctionProblem(logarithm, BOX))
+
+
+@pytest.mark.parametrize("is_recorded", [True, False])
+def test_a_function_may_change_its_argument(is_recorded):
+    def spoiled(u):
+        x, y = u[0] * 1.0, u[1] * 1.0
+        u[0] = 7.0
+        return np.array([x**2 + y**2 - 1.0])
+
+    def gradient(u):
+        row = 2.0 * u[None].copy()
+        u[:] = 0.0
+        return row
+
+    given = None if is_recorded else gradient
+    problem = FunctionProblem(spoiled, BOX, jacobian=given, is_recorded=is_recorded)
+    (form,) = explore(problem).forms
+    assert form.branch.length == pytest.approx(2 * math.pi)

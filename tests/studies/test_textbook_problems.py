@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bifurc import SymbolicProblem
 from bifurc.completeness import Doubt
+from bifurc.equations.expression_problem import ExpressionProblem
 from studies.textbook.comparison import Verdict, compare
 from studies.textbook.discretised import DISCRETISED
 from studies.textbook.fortran import fortran_of
@@ -149,7 +149,7 @@ def test_digits_are_counted_in_units_of_the_last_one_printed():
 
 def test_a_problem_as_fortran_has_every_derivative():
     problem = PROBLEMS["Boggs from (1, 0, 0)"].problem
-    assert isinstance(problem, SymbolicProblem)
+    assert isinstance(problem, ExpressionProblem)
     text = fortran_of(problem)
     assert "pi" not in text
     for row in (1, 2):

@@ -16,6 +16,7 @@ from bifurc.decisions import (
     is_faint,
     is_known_assembly,
     is_known_curve,
+    is_multiple_curve,
     is_same_line,
     is_same_point,
     is_stub,
@@ -34,6 +35,7 @@ from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.search.answer.completeness import SearchDoubt
 from bifurc.search.findings import Findings
+from bifurc.search.own_units.unit_problem import UnitProblem
 from bifurc.search.records import RigidAssembly, TracedBranch
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
@@ -140,7 +142,8 @@ def doubts_of_findings(
     for kind, count in counts.items():
         if count:
             yield kind.doubt(amount=is_faint.threshold, count=int(count))
-    if traces or findings.near_surfaces:
+    knows_all = findings.audit is not None and findings.audit.has_all_isolated
+    if (traces or findings.near_surfaces) and not knows_all:
         yield SearchDoubt.NEAR_ASSEMBLIES.doubt()
     hidden = np.array([assembly.hidden for assembly in findings.rigid.values()])
     hidden = hidden[~is_known_assembly(hidden, problem.domain.scale)]
@@ -217,6 +220,10 @@ def _doubts_of_form(
     problem: Problem, index: int, traced: TracedBranch, points: Sequence[MeetingPoint]
 ) -> Iterator[Doubt]:
     """Whether a form is a curve, as far as doubles tell, and has no loose end."""
+    if isinstance(problem, UnitProblem):
+        apart = problem.sheets_beside(traced.branch)
+        if not is_multiple_curve(apart):
+            yield SearchDoubt.SEVERAL_CURVES.doubt(_name(index), apart)
     branch, profile = traced.branch, traced.profile
     name = _name(index)
     is_regular = profile.rank == branch.n - 1

@@ -61,6 +61,7 @@ def _meeting_point(
 ) -> MeetingPoint:
     """A singular point with the branches that pass it or end there, and the surfaces on
     which it lies; where the branches and the section disagree, a note."""
+    point = _within_bounds(problem, point)
     through: list[tuple[int, float]] = []
     ending: list[tuple[int, float]] = []
     for index, branch in enumerate(branches):
@@ -68,14 +69,9 @@ def _meeting_point(
         passes = _passes_at(problem, branch, point, ends)
         ending += [(index, s) for s in ends]
         through += [(index, s) for s in passes]
-    traced = 2 * len(through) + len(ending)
-    seen = len(point.half_branches)
-    kind, note = point.kind, ""
-    if traced != seen:
-        kind = Kind.BIFURCATION if traced > 2 else Kind.UNDECIDED
-        if point.dimension > 1:
-            kind = Kind.DIMENSION_CHANGE
-        note = f"{traced} half-branches were traced, the section shows {seen}"
+    at_bounds = [_ends_at_bounds(branches[k], s, point) for k, s in through]
+    traced = 2 * len(through) + len(ending) - sum(at_bounds)
+    kind, note = _kind_of(point, traced, any(at_bounds))
     met: tuple[int, ...] = ()
     if point.dimension > 1:
         met = surfaces_through(problem, surfaces, point.u)
@@ -88,6 +84,41 @@ def _meeting_point(
         note=note,
         surfaces=met,
     )
+
+
+def _kind_of(point: SingularPoint, traced: int, is_at_bounds: bool) -> tuple[Kind, str]:
+    """What a point is of which so many half-branches were ``traced``, and a note where
+    it shows others; branches may end there as they leave the bounds."""
+    seen = len(point.half_branches)
+    if traced != seen:
+        kind = Kind.BIFURCATION if traced > 2 else Kind.UNDECIDED
+        if point.dimension > 1:
+            kind = Kind.DIMENSION_CHANGE
+        return kind, f"{traced} half-branches were traced, the section shows {seen}"
+    if is_at_bounds and point.dimension == 1:
+        return (Kind.BIFURCATION if seen > 1 else Kind.RANK_DROP), ""
+    return point.kind, ""
+
+
+def _within_bounds(problem: Problem, point: SingularPoint) -> SingularPoint:
+    """The point with those of its half-branches only that do not leave the bounds there,
+    where it lies in them."""
+    domain = problem.domain
+    if not len(point.half_branches) or point.dimension > 1:
+        return point
+    reach = domain.slack + point.error
+    low, high = domain.bounds.T
+    is_low, is_high = point.u - low <= reach, high - point.u <= reach
+    steps = point.radius * point.half_branches
+    leaves = (is_low & (steps < -reach)) | (is_high & (steps > reach))
+    inside = point.half_branches[~leaves.any(axis=1)]
+    return replace(point, half_branches=inside) if np.any(leaves) else point
+
+
+def _ends_at_bounds(branch: Branch, s: float, point: SingularPoint) -> bool:
+    """Whether a branch that leaves the bounds ends where it is at a point, at ``s``."""
+    to_end = min(s, branch.length - s)
+    return branch.outcome is Outcome.LEFT_REGION and to_end < point.radius
 
 
 def _tangents(

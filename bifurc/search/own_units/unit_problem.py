@@ -12,7 +12,7 @@ their unknowns counted in one unit, that of their scale.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -31,14 +31,20 @@ from bifurc.equations.differentiation import with_gradients
 from bifurc.equations.factors import Factors, polynomial_factors, written_factors
 from bifurc.equations.rims import NO_RIMS, Rims
 from bifurc.equations.system import LARGEST_DENSE
-from bifurc.equations.tape import Tape
+from bifurc.equations.tape import Tape, TapeWriter, rounding_of_constants
 from bifurc.function_problem import (
     PROBES,
     EquationProblem,
     FunctionProblem,
     accuracy_of,
 )
-from bifurc.limits import Deadline
+from bifurc.limits import (
+    CutOff,
+    Deadline,
+    current_deadline,
+    cut_off_after,
+    is_time_over,
+)
 from bifurc.numerics.singular_values import values_of
 from bifurc.problem import Problem
 from bifurc.search.own_units.restated import restated_branch
@@ -65,6 +71,7 @@ OFF_CENTER = 4.0  # widths from zero from which on an unknown is counted from it
 HIGHEST, MOST_EQUATIONS = 6, 60  # multiplicity that is looked for, and equations
 FEWEST = 5  # ends of starts by which a multiplicity is told
 FEWEST_FLAT = 2  # of them, where F' is flat, for which factors are looked for
+DIGITS = 40
 PLACES = np.linspace(0.05, 0.95, 9)  # shares of a form at which factors are evaluated
 TINY = 1e-300  # keeps a gradient of zero from being divided by
 REGULAR = 1e-6  # smallest regular singular value at an end that is where it belongs
@@ -128,9 +135,10 @@ class UnitProblem(EquationProblem):
         self.accuracy = self._own_accuracy()
         magnitude = size * problem.magnitude
         if region is not None:
-            sizes = [np.linalg.norm(matrix, ord=2) for matrix in self._matrices()]
-            magnitude = float(np.median(sizes)) if sizes else 1.0
-        self._take_magnitude(magnitude or 1.0, self.region)
+            points, matrices = self._matrices()
+            sizes = [float(np.linalg.norm(matrix, ord=2)) for matrix in matrices]
+            magnitude = self.equations.typical_size(points, sizes, scale)
+        self._take_magnitude(magnitude, self.region)
 
     def _own_domain(self, scale: float) -> Domain:
         """The domain of the problem in these units. Curves may go on far beyond the
@@ -162,6 +170,20 @@ class UnitProblem(EquationProblem):
         others."""
         beyond: np.ndarray = -np.fmin.reduce(self._depths(points), axis=1)
         return np.where(np.isnan(beyond), -np.inf, beyond)
+
+    def tapes_on_rims(self) -> Iterator[Tape]:
+        """The equations together with each of the rims, in these units."""
+        tape = self.equations.tape
+        if tape is None or self._rims.tape is None:
+            return
+        units = self.own_units
+        ones = np.ones(self._rims.tape.m)
+        rims = self._rims.tape.in_units(units.origin, units.sizes, ones)
+        writer = TapeWriter(self.n)
+        of_equations, of_rims = tape.write_on(writer), rims.write_on(writer)
+        outputs = [of_equations[slot] for slot in tape.outputs.tolist()]
+        for slot in rims.outputs.tolist():
+            yield writer.tape([*outputs, of_rims[slot]])
 
     def labels_along(self, branch: Branch) -> JsonObject:
         """What is to be said of a ``branch`` in these units besides: the rims on which
@@ -218,13 +240,38 @@ class UnitProblem(EquationProblem):
                 powers[row] = powers.get(row, 0) + factors.powers[number]
         return self.simplified.order * math.prod(powers.values())
 
-    def _matrices(self) -> list[np.ndarray]:
-        """F' (m, n) at random points of the region where it is finite."""
+    def sheets_beside(self, branch: Branch) -> float:
+        """How far from each other, over the scale, several curves would be that were taken
+        for one, a ``branch`` in these units along which derivatives are zero as well; 0
+        where there are none."""
+        if self.simplified is None or self.simplified.order == 1:
+            return 0.0
+        import mpmath  # it takes longer to import than a small problem to solve
+
+        # coefficients of factors are rounded, and so those of the user are taken
+        factors, tape = self.simplified.factors, self.problem.equations.tape
+        if tape is None or not factors.are_plain:
+            tape = factors.radical()
+        anywhere = np.ascontiguousarray(self.own_units.outwards(self._matrices()[0]))
+        slopes = np.linalg.norm(tape.compiled.jacobians(anywhere), axis=(1, 2))
+        unit = float(np.median(slopes)) * self.problem.domain.scale
+        largest = 0.0
+        with mpmath.workdps(DIGITS):
+            for point in self.own_units.outwards(branch(branch.length * PLACES[::4])):
+                values = tape.over([mpmath.mpf(float(x)) for x in point], mpmath)
+                missed = np.array([float(abs(value)) for value in values])
+                missed[missed <= rounding_of_constants(tape, point)] = 0.0
+                largest = max(largest, float(missed.max()))
+        return float((largest / (unit or 1.0)) ** (1.0 / self.simplified.order))
+
+    def _matrices(self) -> tuple[np.ndarray, np.ndarray]:
+        """Random points (k, n) of the region where F' is finite, and F' (k, m, n)."""
         rng = np.random.default_rng(0)
         points = rng.uniform(self.region[:, 0], self.region[:, 1], (PROBES, self.n))
         with np.errstate(all="ignore"):
-            matrices = [self.jacobians(point[None])[0] for point in points]
-        return [matrix for matrix in matrices if np.all(np.isfinite(matrix))]
+            matrices = self.jacobians(points)
+        is_finite = np.isfinite(matrices).all(axis=(1, 2))
+        return points[is_finite], matrices[is_finite]
 
     def precise_residual(self) -> PreciseResidual | None:
         """F over mpmath numbers, from that of the user's problem."""
@@ -318,21 +365,21 @@ class UnitProblem(EquationProblem):
             more=None if seeds.more is None else more,
         )
 
-    def ends(self, count: int, deadline: Deadline | None = None) -> np.ndarray:
+    def ends(self, count: int) -> np.ndarray:
         """Points (k, n), in the user's units, at which ``count`` random starts in the
         region end: solutions, or where most reach none points on the way to them; of
-        fewer starts where the ``deadline`` comes before."""
-        ends = self.all_ends(count, deadline)
+        fewer starts where the time is over before."""
+        ends = self.all_ends(count)
         sharp = self._is_sharp(ends)
         if 2 * np.count_nonzero(sharp) > len(ends):
             ends = ends[sharp]
         return self.own_units.outwards(ends)
 
-    def all_ends(self, count: int, deadline: Deadline | None = None) -> np.ndarray:
+    def all_ends(self, count: int) -> np.ndarray:
         """The same in these units, also those beside others that are far from
         singular."""
         rng = np.random.default_rng(1)
-        seeds = random_seeds(self, rng, count, self.region, deadline)
+        seeds = random_seeds(self, rng, count, self.region)
         near = seeds.missed[is_on_the_way(seeds.gaps)]
         if len(seeds.points) > len(near):
             near = near[:0]
@@ -349,24 +396,23 @@ class UnitProblem(EquationProblem):
         return values[:, self.n - 2] > REGULAR * self.magnitude
 
 
-def in_own_units(
-    problem: Problem, deadline: Deadline | None = None
-) -> UnitProblem | None:
+def in_own_units(problem: Problem) -> UnitProblem | None:
     """The equations of a function in units of their own; None for any other problem,
     and where they are in such units as they stand. What is not known of their solutions
-    at the ``deadline`` does not count."""
+    when the time is over does not count."""
     if not isinstance(problem, FunctionProblem):
         return None
     has_own_equations = any(_has_own(problem, name) for name in OF_EQUATIONS)
     if has_own_equations or problem.domain.rim is not None:
         return None
     has_own_answers = any(_has_own(problem, name) for name in OF_ONE_UNIT)
-    if has_own_answers or problem.n > LARGEST_DENSE:
+    own = None
+    if not has_own_answers and problem.n <= LARGEST_DENSE:
+        own = _in_units_of_solutions(problem)
+    if own is None:
         sizes = np.full(problem.n, _unit_of(problem))
         weights = np.ones(problem.equations.m)
         own = UnitProblem(problem, Units(np.zeros(problem.n), sizes, weights))
-    else:
-        own = _in_units_of_solutions(problem, deadline or Deadline())
     units = own.own_units
     has_gained = np.any(units.origin) or own.simplified is not None
     has_sizes = np.any(units.sizes != 1.0) or np.any(units.weights != 1.0)
@@ -383,17 +429,33 @@ def _unit_of(problem: FunctionProblem) -> float:
     return float(2.0 ** round(math.log2(problem.domain.scale)))
 
 
-def _in_units_of_solutions(problem: FunctionProblem, deadline: Deadline) -> UnitProblem:
+def _in_units_of_solutions(problem: FunctionProblem) -> UnitProblem | None:
     """The equations in units of the region where random starts end, as far as that is
-    known at the ``deadline``."""
+    known when the time is over; None where nothing is known by then."""
+    known: UnitProblem | None = None
+    try:
+        with cut_off_after(current_deadline()):
+            for own in _closer_and_closer(problem):
+                known = own
+                if is_time_over():
+                    break
+    except CutOff:
+        pass
+    return known
+
+
+def _closer_and_closer(problem: FunctionProblem) -> Iterator[UnitProblem]:
+    """The equations in units of the region where random starts end, each time closer to
+    what they are in the end."""
     whole = _first_region(problem)
-    region, is_point = whole, np.zeros(problem.n, dtype=bool)
-    count = STARTS if problem.recording.tape is not None else STARTS_OF_CALLABLE
+    region, is_point = whole, np.zeros(problem.n, bool)
+    count = STARTS if problem.recording.tape else STARTS_OF_CALLABLE
     simplified = _with_written_factors(problem)
     own = _problem_on(problem, region, simplified)
     for _ in range(ROUNDS):
-        closer = _region_of(problem, own.ends(count, deadline), region, is_point)
-        if closer is None or deadline.passed:
+        yield own
+        closer = _region_of(problem, own.ends(count), region, is_point)
+        if closer is None:
             break
         # what shrinks without end is a point, and looked at from where it is
         extents = np.maximum(np.diff(whole, axis=1)[:, 0], np.abs(closer).max(axis=1))
@@ -402,15 +464,14 @@ def _in_units_of_solutions(problem: FunctionProblem, deadline: Deadline) -> Unit
         own = _problem_on(problem, region, simplified)
     else:
         own = _problem_on(problem, whole, simplified)
-    if deadline.passed:
-        return own
     if not np.array_equal(region, whole):
         region = _widened(own, region, is_point)
         own = _problem_on(problem, region, simplified)
+        yield own
     own = _deflated(own)
     if not np.array_equal(region, whole) and not _has_curves(own):
         own = _deflated(_problem_on(problem, whole, simplified))
-    return own
+    yield own
 
 
 def in_one_size(own: UnitProblem) -> UnitProblem:
@@ -551,13 +612,13 @@ def _flatness(own: UnitProblem) -> np.ndarray:
     """Lengths (k, m) of the gradients of the equations where random starts end, over
     those elsewhere; k is 0 where too few end anywhere."""
     ends = own.all_ends(STARTS)
-    typical = own._matrices()
-    if len(ends) < FEWEST or not typical:
+    _, typical = own._matrices()
+    if len(ends) < FEWEST or not len(typical):
         return np.empty((0, own.equations.m))
     usual = np.median(np.linalg.norm(typical, axis=2), axis=0)
     lengths = np.linalg.norm(own.jacobians(ends), axis=2)
-    flatness: np.ndarray = lengths / (usual + TINY)
-    return flatness
+    # an equation that is constant everywhere is not flat at solutions in particular
+    return np.where(usual > 0.0, lengths / (usual + TINY), np.inf)
 
 
 def _has_curves(own: UnitProblem) -> bool:
@@ -604,9 +665,9 @@ def _problem_on(
 def _weights(own: UnitProblem) -> np.ndarray:
     """Powers of 2 (m,) that make the gradients of the equations about as long as each
     other; ones where they are."""
-    matrices = own._matrices()
+    _, matrices = own._matrices()
     ones = np.ones(own.equations.m)
-    if not matrices or own.equations.m == 1:
+    if not len(matrices) or own.equations.m == 1:
         return ones
     lengths = np.median(np.linalg.norm(matrices, axis=2), axis=0)
     is_counted = lengths > 0.0

@@ -49,12 +49,12 @@ def judge(atlas: Atlas) -> Verdict:
     if atlas.provenance.interrupted:
         return Verdict(_interrupted(atlas), ExitCode.INTERRUPTED)
     if atlas.forms or atlas.surfaces:
-        return Verdict(_mobile(atlas) + _remark(atlas), ExitCode.DONE)
+        return Verdict(_mobile(atlas) + _flaps(atlas) + _remark(atlas), ExitCode.DONE)
     if atlas.completeness.level is Level.OUT_OF_TIME:
         return Verdict(_nothing_known(atlas), ExitCode.NOTHING_KNOWN)
     if has_only_open_points(atlas):
         return Verdict(_closed_at_points(atlas), ExitCode.NOTHING_KNOWN)
-    return Verdict(_immobile(atlas), ExitCode.DOES_NOT_MOVE)
+    return Verdict(_immobile(atlas) + _flaps(atlas), ExitCode.DOES_NOT_MOVE)
 
 
 def exit_by(verdict: Verdict) -> NoReturn:
@@ -81,6 +81,15 @@ def _remark(atlas: Atlas) -> str:
     if not atlas.completeness.is_in_doubt:
         return ""
     return " Some of it is in doubt: see its completeness."
+
+
+def _flaps(atlas: Atlas) -> str:
+    """What hangs on the linkage, where that is held."""
+    readout = subject_at(atlas).readout
+    if readout is None or not readout.structure.holds_flaps:
+        return ""
+    freedoms = readout.structure.hanging.freedoms
+    return f" What hangs on it has mobility {freedoms} besides." if freedoms else ""
 
 
 def _mobile(atlas: Atlas) -> str:

@@ -21,6 +21,7 @@ MODEL, TABLE = ".glb", ".csv"
 MOTIONS = (MODEL, TABLE)
 PARTS = (".stl", ".step")
 MECHANISMS = (".mjcf", ".xml", ".sdf")
+PICTURES = (".svg", ".dxf")
 FEWEST, MOST = 2, 100_000
 
 COMMAND_LINE = ParameterSource.COMMANDLINE
@@ -44,7 +45,8 @@ TARGETS = {
     help=(
         "The file: .glb is an animated model, .csv a table of joint angles (rad), .stl "
         "parts for a printer, laid out, .step the same parts assembled, .mjcf (or .xml) "
-        "and .sdf the linkage for simulators, where a form begins."
+        "and .sdf the linkage for simulators, where a form begins, .svg and .dxf a picture of "
+        "it, where the page of bifurc view begins."
     ),
 )
 @options.form_option
@@ -87,12 +89,13 @@ def export_command(
       bifurc export out/atlas.nc --route "Form I" "Bennett 4R" --to route.glb
       bifurc export bennett --to bennett.stl --size 120 --diameter 8
       bifurc export bennett --to bennett.mjcf
+      bifurc export four-bar --to four_bar.dxf
     """
     from linkages.app.answer.verdict import exit_by, judge
     from linkages.app.output import require_ending, require_writable
     from linkages.app.texts.form_names import require_forms
 
-    require_ending(TO, out, *MOTIONS, *PARTS, *MECHANISMS)
+    require_ending(TO, out, *MOTIONS, *PARTS, *MECHANISMS, *PICTURES)
     check_options(out)
     check_count_of_forms(out, forms)
     require_writable(out, TO)
@@ -102,6 +105,8 @@ def export_command(
         export_parts(atlas, forms, printing, choice.search.seed, out)
     elif is_one_of(out, MECHANISMS):
         export_mechanism(atlas, forms, out)
+    elif is_one_of(out, PICTURES):
+        export_picture(atlas, forms, out)
     else:
         export_motions(atlas, forms, routes, count, out)
     exit_by(judge(atlas))
@@ -134,10 +139,9 @@ def check_options(out: Path) -> None:
 
 def check_count_of_forms(out: Path, forms: tuple[str, ...]) -> None:
     """Raise `CommandError` for several forms where the file holds one configuration."""
-    if is_one_of(out, MECHANISMS) and len(forms) > 1:
+    if is_one_of(out, MECHANISMS + PICTURES) and len(forms) > 1:
         raise CommandError(
-            f"--form {forms[1]}: {out.name} holds one configuration, where a form "
-            "begins; name one form"
+            f"--form {forms[1]}: {out.name} holds one configuration; name one form"
         )
 
 
@@ -149,7 +153,7 @@ def choose_atlas(source: str, out: Path, choice: options.AtlasOptions) -> Atlas:
     if is_one_of(out, PARTS) and is_atlas_file(source):
         # it is that of the seats of hinges
         choice = replace(choice, search=replace(choice.search, seed=0))
-    if is_one_of(out, MOTIONS):
+    if is_one_of(out, MOTIONS + PICTURES):
         return atlas_of(source, choice)
     return loop_atlas_of(source, choice)
 
@@ -204,6 +208,27 @@ def export_mechanism(atlas: Atlas, texts: tuple[str, ...], out: Path) -> None:
     click.echo(f"wrote {out}: {form.name}", err=True)
 
 
+def export_picture(atlas: Atlas, forms: tuple[str, ...], out: Path) -> None:
+    """Write the picture of a linkage where a form is first shown."""
+    from linkages.app.output import write_content
+    from linkages.app.texts.form_names import choose_form
+    from linkages.pictures.dxf import make_dxf
+    from linkages.pictures.plot_linkage import painter_of, place_of, plot_linkage
+
+    name = choose_form(atlas, forms[0]).name if forms else None
+    content: str | bytes
+    if is_one_of(out, (".dxf",)):
+        place = place_of(atlas, name, None)
+        content = make_dxf(painter_of(atlas, place).picture(place.point))
+    else:
+        from bifurc.figures.plotting import RESOLUTION
+        from bifurc.figures.rendering import contents_of
+
+        content = contents_of(plot_linkage(atlas, name), RESOLUTION, ["svg"])["svg"]
+    write_content(out, content, TO)
+    click.echo(f"wrote {out}", err=True)
+
+
 def export_motions(
     atlas: Atlas,
     forms: tuple[str, ...],
@@ -212,61 +237,13 @@ def export_motions(
     out: Path,
 ) -> None:
     """Write the motions along forms and routes."""
+    from linkages.app.motions import choose_motions
     from linkages.app.output import write_content
 
     motions = choose_motions(atlas, forms, routes, count)
     write_content(out, make_content(atlas, motions, out), TO)
     names = ", ".join(motion.name for motion in motions)
     click.echo(f"wrote {out}: {names}", err=True)
-
-
-def choose_motions(
-    atlas: Atlas,
-    forms: tuple[str, ...],
-    routes: tuple[tuple[str, str], ...],
-    count: int,
-) -> list[Motion]:
-    """The motions along forms and routes, all forms where neither is named."""
-    from linkages.app.texts.form_names import choose_forms
-    from linkages.export.model import motion_of_form
-
-    chosen = choose_forms(atlas, forms) if forms or not routes else []
-    motions = [motion_of_form(form, count) for form in chosen]
-    for start, goal in routes:
-        motion = make_route_motion(atlas, start, goal, count)
-        if motion.name in [other.name for other in motions]:
-            raise CommandError(
-                f"--route {start!r} {goal!r}: the route from {motion.name} is named "
-                "already, and may be only once"
-            )
-        motions.append(motion)
-    return motions
-
-
-def make_route_motion(atlas: Atlas, start: str, goal: str, count: int) -> Motion:
-    """The motion along the shortest route between two forms.
-
-    Raises `CommandError` for an unknown form, where there is no route, and for one
-    without length.
-    """
-    from bifurc.errors import RouteError
-    from linkages.app.atlas_source import route_between
-    from linkages.export.model import motion_of_route
-    from linkages.subject import subject_at
-
-    option = f"--route {start!r} {goal!r}"
-    try:
-        first, last = atlas.full_name(start), atlas.full_name(goal)
-    except RouteError as error:
-        raise CommandError(f"{option}: {error}") from None
-    route = route_between(atlas, first, last)
-    if not route.legs:
-        raise CommandError(
-            f"{option}: it begins and ends in one configuration of {first!r}; name two "
-            "different forms, or --form for all of one"
-        )
-    problem = subject_at(atlas).closure
-    return motion_of_route(atlas, route, f"{first} to {last}", count, problem)
 
 
 def make_content(atlas: Atlas, motions: list[Motion], out: Path) -> bytes:

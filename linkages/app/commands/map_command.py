@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -57,6 +58,23 @@ EXACT = "exact.toml"  # the table that --nearest maps
     metavar="I",
     help="Draw the singular values against this joint; needs --out.",
 )
+@click.option(
+    "--range",
+    "window",
+    type=options.Pair(":", "0:360"),
+    metavar="LOW:HIGH",
+    help="The first and the last angle in the figures, degrees.  [default: -180:180]",
+)
+@click.option(
+    "--overlay",
+    type=options.FILE,
+    metavar="FILE.csv",
+    help=(
+        "Lay points over the figures: a column of degrees (lengths in the file's unit) "
+        "for each of some joints, with their names in the first line; needs --out."
+    ),
+)
+@options.figure_options
 @options.atlas_options
 def map_command(
     linkage: str,
@@ -67,6 +85,9 @@ def map_command(
     digits: int | None,
     axes: tuple[str, ...] | None,
     against: tuple[str, ...] | None,
+    window: tuple[float, float] | None,
+    overlay: Path | None,
+    figures: options.FigureOptions,
     choice: options.AtlasOptions,
 ) -> None:
     """Map every motion form of a linkage, every bifurcation, and the graph between
@@ -77,6 +98,7 @@ def map_command(
       bifurc map bennett --param alpha=70 --param beta=30
       bifurc map special-double-subtractive-goldberg --out out
       bifurc map bricard-line-symmetric --out out --axes 1,5 --against 1
+      bifurc map bennett --out out --format pdf --size 3.4x2.6 --range 0:360
       bifurc map my_linkage.toml --json > map.json
       bifurc map printed_table.csv --nearest --out out
       bifurc map five_bar.toml --lock J1=40
@@ -84,33 +106,72 @@ def map_command(
       bifurc map four-bennett-network --lock 2=40 --lock 6=-75
       bifurc map special-double-subtractive-goldberg --digits 50
     """
-    from linkages.app.atlas_source import explore_linkage
+    from linkages.app.atlas_source import explore_parts
+    from linkages.app.choice import parts_of
     from linkages.app.files import figure_axes
-    from linkages.app.output import require_folder, say, say_written
+    from linkages.app.output import require_folder, require_out
 
-    require_out(out, axes=axes, against=against)
+    require_out(out)
     if digits:
         allow_digits(as_json, nearest, choice.hold)
-    require_folder(out)
     mechanism, exact = choose_mapped(linkage, choice, nearest)
-    over = figure_axes(mechanism, axes, against)
+    parts = parts_of(mechanism)
+    folders = folders_of(out, len(parts))
+    over = [figure_axes(part, axes, against, window, overlay) for part in parts]
+    for folder in folders:
+        require_folder(folder)
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
-        atlas = explore_linkage(
-            mechanism, replace(choice.search, certify=not no_certify)
-        )
+        atlases = explore_parts(parts, replace(choice.search, certify=not no_certify))
         try:
-            report(atlas, as_json, choice.verbose)
+            report(atlases, as_json, choice.verbose)
         finally:  # where nothing can be shown, there are still the files
-            paths = write_numbers(atlas, out, exact)
+            paths = [
+                write_numbers(atlas, folder, exact)
+                for atlas, folder in zip(atlases, folders, strict=True)
+            ]
     if digits:
-        from linkages.app.reports.confirmation import describe_confirmation
+        confirm(atlases, linkage, choice.parameters, digits)
+    write_all_pictures(atlases, folders, paths, over, figures)
+    has_steps = not as_json and len(atlases) == 1
+    steps = next_steps_of(atlases[0], linkage, choice, out is not None)
+    end(atlases, as_json, steps if has_steps else "")
 
-        say("\n" + describe_confirmation(atlas, linkage, choice.parameters, digits))
-    if out is not None:
-        say_written([*paths, *write_pictures(atlas, out, over)], out)
-    steps = "" if as_json else next_steps_of(atlas, linkage, choice, out is not None)
-    end(atlas, as_json, steps)
+
+def write_all_pictures(
+    atlases: Sequence[Atlas],
+    folders: Sequence[Path | None],
+    written: Sequence[Sequence[Path]],
+    over: Sequence[FigureAxes],
+    look: options.FigureOptions,
+) -> None:
+    """Write the figures and the page of every map into its folder, if there is one, and
+    say what is in it besides the files ``written`` before."""
+    from linkages.app.output import say_written
+
+    for k, folder in enumerate(folders):
+        if folder is not None:
+            pictures = write_pictures(atlases[k], folder, over[k], look)
+            say_written([*written[k], *pictures], folder)
+
+
+def confirm(
+    atlases: Sequence[Atlas], linkage: str, parameters: Sequence[str], digits: int
+) -> None:
+    """Print how many of the maps' digits agree with those of so many."""
+    from linkages.app.output import say
+    from linkages.app.reports.confirmation import describe_confirmation
+
+    for atlas in atlases:
+        say("\n" + describe_confirmation(atlas, linkage, parameters, digits))
+
+
+def folders_of(out: Path | None, count: int) -> list[Path | None]:
+    """The folder for each of the mechanisms of a file: ``out``, or one in it each where
+    they are several."""
+    if out is None or count == 1:
+        return [out] * count
+    return [out / f"part-{number}" for number in range(1, count + 1)]
 
 
 def allow_digits(as_json: bool, nearest: bool, hold: options.HoldOptions) -> None:
@@ -152,29 +213,33 @@ def next_steps_of(
     return next_steps(atlas, linkage, choice, has_files)
 
 
-def end(atlas: Atlas, as_json: bool, steps: str) -> None:
-    """End the command with the exit code of the verdict, after what can be done next,
-    ``steps``, or the verdict where a document does not say it."""
+def end(atlases: Sequence[Atlas], as_json: bool, steps: str) -> None:
+    """End the command with the largest exit code of all verdicts, after what can be done
+    next, ``steps``, or the verdicts where a document does not say them."""
     from linkages.app.answer.verdict import judge
     from linkages.app.output import say_aside
 
-    verdict = judge(atlas)
+    verdicts = [judge(atlas) for atlas in atlases]
     say_aside(steps)
-    if as_json and verdict.code is not ExitCode.DONE:
-        click.echo(verdict.sentence, err=True)
-    click.get_current_context().exit(verdict.code)
+    for verdict in verdicts:
+        if as_json and verdict.code is not ExitCode.DONE:
+            click.echo(verdict.sentence, err=True)
+    click.get_current_context().exit(max(verdict.code for verdict in verdicts))
 
 
-def report(atlas: Atlas, as_json: bool, is_whole: bool) -> None:
-    """Print the map, as tables or as one JSON document."""
+def report(atlases: Sequence[Atlas], as_json: bool, is_whole: bool) -> None:
+    """Print the maps of all mechanisms of a file, as tables or as one JSON document, of
+    several one with "parts"."""
     from linkages.app.answer.document import make_document
     from linkages.app.output import say, say_json
     from linkages.app.texts.summary import make_screen, make_summary
 
-    if as_json:
-        say_json(make_document(atlas))
-    else:
-        say(make_summary(atlas) if is_whole else make_screen(atlas))
+    if not as_json:
+        make = make_summary if is_whole else make_screen
+        say("\n\n\n".join(make(atlas) for atlas in atlases))
+        return
+    documents = [make_document(atlas) for atlas in atlases]
+    say_json(documents[0] if len(documents) == 1 else {"parts": documents})
 
 
 def write_numbers(atlas: Atlas, out: Path | None, exact: str = "") -> list[Path]:
@@ -195,7 +260,9 @@ def write_numbers(atlas: Atlas, out: Path | None, exact: str = "") -> list[Path]
         return write_data(atlas, out, make_summary(atlas), more, others)
 
 
-def write_pictures(atlas: Atlas, out: Path, over: FigureAxes) -> list[Path]:
+def write_pictures(
+    atlas: Atlas, out: Path, over: FigureAxes, look: options.FigureOptions
+) -> list[Path]:
     """The paths of the figures, and of the page that `bifurc view` makes, just written
     to ``out``."""
     from linkages.app.answer.verdict import judge
@@ -205,13 +272,6 @@ def write_pictures(atlas: Atlas, out: Path, over: FigureAxes) -> list[Path]:
     from linkages.viewing.page import write_page
 
     with writing_to(out):
-        figures = write_figures(atlas, out, over)
+        figures = write_figures(atlas, out, over, look)
         document = make_view_document(atlas, judge(atlas).sentence)
         return [*figures, write_page(document, out / "map.html")]
-
-
-def require_out(out: Path | None, **figures: tuple[str, ...] | None) -> None:
-    """Raise `CommandError` for options of figures where no figure is written."""
-    for name, value in figures.items():
-        if value is not None and out is None:
-            raise CommandError(f"--{name}: figures are only drawn with --out DIR")

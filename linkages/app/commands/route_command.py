@@ -6,12 +6,17 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
+from click.core import ParameterSource
 
 from linkages.app import options
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
+
+
+COSTS = ("length", "bifurcations", "travel")
+MOST = 100  # routes that are shown
 
 
 @click.command("route", epilog=exit_code_table())
@@ -30,6 +35,32 @@ if TYPE_CHECKING:
     metavar="LOCKS[@ANGLES]",
     help="The same at the goal.",
 )
+@click.option(
+    "--avoid",
+    multiple=True,
+    metavar="NAME",
+    help="A singular point, form or surface that the way must not pass; several times.",
+)
+@click.option(
+    "--through",
+    multiple=True,
+    metavar="NAME",
+    help="One that it must pass; may be given several times, in any order.",
+)
+@click.option(
+    "--cost",
+    type=click.Choice(COSTS),
+    default=COSTS[0],
+    show_default=True,
+    help=(
+        "What is to be small: the length, the number of singular points on the way, "
+        "or the travel of the joint that travels farthest."
+    ),
+)
+@options.number_option(
+    "--best", click.IntRange(1, MOST), 1, "Show so many ways, the best first."
+)
+@options.json_option("; lengths and travels in radians")
 @options.atlas_options
 def route_command(
     source: str,
@@ -37,6 +68,11 @@ def route_command(
     goal: str | None,
     start_locks: str | None,
     goal_locks: str | None,
+    avoid: tuple[str, ...],
+    through: tuple[str, ...],
+    cost: str,
+    best: int,
+    as_json: bool,
     choice: options.AtlasOptions,
 ) -> None:
     """Show how to take a linkage from one form to another, over surfaces where that is
@@ -49,14 +85,16 @@ def route_command(
     \b
     Examples:
       bifurc route special-double-subtractive-goldberg "Form I" "Bennett 4R"
-      bifurc route out/atlas.nc "Form III" "Form IV"
+      bifurc route out/atlas.nc "Form III" "Form IV" --avoid B2 --best 3
+      bifurc route out/atlas.nc "Form I" "Form IV" --through "Form II" --cost travel
       bifurc route five_bar.toml --lock J1=40 "Form 1" "Form 2"
       bifurc route four-bennett-network --from "2=40,6=-75@p4=90" --to "2=40,4=90"
     """
+    from bifurc.routes.wishes import Cost, Wishes
     from linkages.app.answer.verdict import judge
-    from linkages.app.atlas_source import atlas_of, route_between
-    from linkages.app.output import say
-    from linkages.app.texts.route_text import describe_route
+    from linkages.app.atlas_source import atlas_of, routes_between
+    from linkages.app.output import say, say_json
+    from linkages.app.texts.route_text import describe_routes, document_of_routes
 
     if start_locks is not None or goal_locks is not None:
         if start is not None:
@@ -65,6 +103,7 @@ def route_command(
             raise CommandError(
                 f"{choice.hold.names}: --from and --to say which joints are locked"
             )
+        require_defaults("avoid", "through", "cost", "best", "as_json")
         _route_over_locks(source, start_locks, goal_locks, choice)
         return
     if start is None or goal is None:
@@ -76,8 +115,21 @@ def route_command(
         raise CommandError(verdict.sentence, verdict.code)
     start_name = atlas.full_name(start)
     goal_name = atlas.full_name(goal)
-    route = route_between(atlas, start_name, goal_name)
-    say(describe_route(atlas, route, start_name, goal_name))
+    wishes = Wishes(avoid, through, Cost(cost))
+    routes = routes_between(atlas, start_name, goal_name, best, wishes)
+    if as_json:
+        say_json(document_of_routes(routes))
+    else:
+        say(describe_routes(atlas, routes, start_name, goal_name))
+
+
+def require_defaults(*names: str) -> None:
+    """Raise `CommandError` for options that do not go with locks."""
+    context = click.get_current_context()
+    for option in context.command.params:
+        source = context.get_parameter_source(option.name or "")
+        if option.name in names and source is ParameterSource.COMMANDLINE:
+            raise CommandError(f"{option.opts[0]}: it does not go with --from and --to")
 
 
 def _route_over_locks(

@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     type=click.IntRange(0, 1_000_000),
     help="Cover surfaces of solutions with so many charts at most; 0 for none.",
 )
+@options.figure_options
 @options.search_options
 @options.verbose_option
 def solve_command(
@@ -54,6 +55,7 @@ def solve_command(
     no_certify: bool,
     boxes: int,
     charts: int,
+    figures: options.FigureOptions,
     search: options.SearchOptions,
 ) -> None:
     """Find all solution curves of the equations in a file, their bifurcations, and the
@@ -70,6 +72,7 @@ def solve_command(
     from bifurc.systems.verdict import verdict_of
     from linkages.app.output import (
         require_folder,
+        require_out,
         say,
         say_json,
         say_written,
@@ -77,6 +80,7 @@ def solve_command(
     )
 
     system = read_equations(equations, _values(parameters))
+    require_out(out)
     require_folder(out)
     paths: list[Path] = []
     # Ctrl-C ends the search, but not before what was found is shown and written
@@ -101,7 +105,7 @@ def solve_command(
         from linkages.app.files import write_figures
 
         with writing_to(out):
-            paths += write_figures(atlas, out)
+            paths += write_figures(atlas, out, options=figures)
         say_written(paths, out)
     code = exit_code_of(atlas)
     if as_json and code is not ExitCode.DONE:

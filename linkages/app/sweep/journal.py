@@ -1,10 +1,11 @@
-"""The journal of a sweep: one JSON object a line, appended and forced to disk before
-anything depends on it."""
+"""The journal of a sweep: one JSON object a line, with a checksum of the rest of it,
+appended and forced to disk before anything depends on it."""
 
 from __future__ import annotations
 
 import json
 import os
+import zlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,6 +26,7 @@ Line: TypeAlias = dict[str, Any]  # values of JSON; who writes a line knows whic
 
 NO_JOURNAL = "it is no journal of a sweep; choose another --out or delete it"
 WITHOUT_LINE = "delete this line, and what it held is mapped again"
+CHECK = "crc32"  # the key of the checksum of a line
 CHUNK = 4096  # bytes read at a time on the way back to the last newline
 
 
@@ -67,7 +69,8 @@ class Journal:
 
     def append(self, line: Mapping[str, object]) -> None:
         """Write one line and force it to disk."""
-        rest = (json.dumps(line) + "\n").encode()
+        checked = {**line, CHECK: _checksum(line)}
+        rest = (json.dumps(checked) + "\n").encode()
         while rest:
             count = os.write(self._file, rest)
             rest = rest[count:]
@@ -75,7 +78,7 @@ class Journal:
 
     def lines(self) -> Iterator[Line]:
         """All lines, the header first, read one at a time; raises `JournalError` for a
-        line that is no JSON object."""
+        line that is no JSON object, or not the one that was written."""
         with open(self.path, "rb") as file:
             for number, content in enumerate(file, start=1):
                 line = _parsed(content)
@@ -113,13 +116,24 @@ class Journal:
             raise JournalError(self.path, why)
 
 
+def _checksum(line: Mapping[str, object]) -> int:
+    """The CRC-32 of the values of a line."""
+    return zlib.crc32(json.dumps(line).encode())
+
+
 def _parsed(content: bytes) -> Line | None:
-    """The JSON object that a line holds; None where it holds none."""
+    """The JSON object that a line holds; None where it holds none, or not what its
+    checksum is of."""
     try:
         line = json.loads(content.decode("utf-8"))
+        if not isinstance(line, dict):
+            return None
+        # journals of earlier versions have none
+        checksum = line.pop(CHECK, None)
+        is_whole = checksum is None or checksum == _checksum(line)
     except (ValueError, RecursionError):  # also for numbers of thousands of digits
         return None
-    return line if isinstance(line, dict) else None
+    return line if is_whole else None
 
 
 @dataclass(frozen=True)

@@ -173,9 +173,9 @@ class NetworkFamily(MemberSource):
         mechanism = lock_network(network, self.by_key(LOCK, values))
         if not self.is_without_centre:
             return Member(mechanism)
-        still = mechanism.still
+        loop, still = mechanism.without_centre()
         left = tuple(axis for axis in network.plan.ring if axis not in still)
-        return Member(Linkage(mechanism.without_centre()), left, still)
+        return Member(Linkage(loop), left, still)
 
 
 @dataclass(frozen=True)

@@ -2,31 +2,18 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
 from bifurc.atlas import Atlas, Form
 from bifurc.errors import RouteError
+from bifurc.form_order import listed_numbers
 from linkages.app.answer.verdict import judge
 from linkages.app.exit_codes import CommandError, ExitCode
-
-
-def listed_numbers(atlas: Atlas) -> list[int]:
-    """The numbers of the forms in the order in which the summary lists them: by their
-    names, Form 2 before Form 10."""
-    names = [_words_and_numbers(form.name) for form in atlas.forms]
-    return sorted(range(len(names)), key=lambda number: names[number])
 
 
 def listed_forms(atlas: Atlas) -> list[Form]:
     """The forms in the order in which the summary lists them."""
     return [atlas.forms[number] for number in listed_numbers(atlas)]
-
-
-def _words_and_numbers(name: str) -> list[str | int]:
-    """A name as words and numbers in turn, a word first."""
-    parts = re.split("([0-9]+)", name)
-    return [int(part) if k % 2 else part for k, part in enumerate(parts)]
 
 
 def choose_forms(atlas: Atlas, texts: Sequence[str]) -> list[Form]:

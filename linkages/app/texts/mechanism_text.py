@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.form_order import listed_numbers
 from bifurc.tables import section, section_of
 from bifurc.torus import wrap
 from linkages.app.texts.configurations import SHOWN_SHARE
-from linkages.app.texts.form_names import listed_numbers
+from linkages.app.texts.crease_text import assigned_creases, describe_creases
+from linkages.app.texts.hanging_text import describe_hanging, mobility_with_flaps
 from linkages.app.texts.numbers import in_degrees, in_lengths, known_to
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
@@ -38,10 +40,14 @@ def describe_joints(readout: Readout) -> str:
         variable.label: variable.motion.is_turn
         for variable in readout.mechanism.variables
     }
+    creases = assigned_creases(readout.mechanism)
     limits = [
         f"{label} from {_shown(low, is_turn[label])} to {_shown(high, is_turn[label])}"
         for label, (low, high) in readout.limits().items()
+        if label not in creases
     ]
+    if readout.mechanism.creases:
+        text += f"\n\n{describe_creases(readout.mechanism)}"
     if limits:
         text += f"\n\nFollowed within limits: {', '.join(limits)}."
     coupled = _couplings(readout.mechanism)
@@ -56,7 +62,8 @@ def describe_joints(readout: Readout) -> str:
     turns = readout.structure.idle_turns
     if turns:
         text += f"\n\nLeft out: {', '.join(turns)}, which turns but a body by itself."
-    return text
+    hanging = describe_hanging(readout.structure)
+    return f"{text}\n\n{hanging}" if hanging else text
 
 
 def _coordinates(readout: Readout) -> str:
@@ -137,9 +144,8 @@ def describe_loops(atlas: Atlas, readout: Readout) -> str:
                 "joints that follow from the others": dependent,
             }
         )
-    count = (
-        f"Mobility {atlas.mobility}; Grübler's count is {readout.mechanism.gruebler}"
-    )
+    mobility = mobility_with_flaps(atlas.mobility, readout.structure)
+    count = f"{mobility}; Grübler's count is {readout.mechanism.gruebler}"
     count += f"{_special_count(readout.mechanism)}."
     for chain in document["loose_chains"]:
         count += f"\n{_of_loose_chain(chain)}"
@@ -172,12 +178,16 @@ def _special_count(mechanism: Mechanism) -> str:
 def describe_motions(atlas: Atlas, readout: Readout) -> str:
     """What joints and bodies do along each form."""
     rows: list[tuple[str, ...]] = []
-    is_turn = [v.motion.is_turn for v in readout.mechanism.variables]
+    is_turn = {v.label: v.motion.is_turn for v in readout.mechanism.variables}
+    if readout.structure.holds_flaps:
+        for label in readout.structure.hanging.labels:
+            del is_turn[label]
     for index in listed_numbers(atlas):
         facts = form_facts(atlas, index, readout)
         ranges = [
-            _range(one, turn, readout.structure.unit)
-            for one, turn in zip(facts.ranges, is_turn, strict=True)
+            _range(one, is_turn[one.label], readout.structure.unit)
+            for one in facts.ranges
+            if one.label in is_turn
         ]
         groups = [" = ".join(group) for group in facts.groups]
         columns = [

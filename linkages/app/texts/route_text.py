@@ -3,10 +3,12 @@ over its locks, read from a command line and shown."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from bifurc.atlas import Atlas
-from bifurc.routes.route import Route
+from bifurc.routes.route import Leg, Route
 from bifurc.tables import count_of, table
 from linkages.app.choice import read_kinks
 from linkages.app.exit_codes import CommandError
@@ -29,9 +31,51 @@ from linkages.readout.readout import Readout
 from linkages.subject import subject_at
 
 
-def describe_route(atlas: Atlas, route: Route, start: str, goal: str) -> str:
+def describe_routes(
+    atlas: Atlas, routes: Sequence[Route], start: str, goal: str
+) -> str:
+    """Routes as tables, one below the other."""
+    if len(routes) == 1:
+        return describe_route(atlas, routes[0], start, goal)
+    texts = []
+    for number, route in enumerate(routes, start=1):
+        # forms may have several arcs between two points, which turn joints alike
+        text = describe_route(atlas, route, start, goal, has_arclengths=True)
+        texts.append(f"{number}. {text}")
+    return "\n\n".join(texts)
+
+
+def document_of_routes(routes: Sequence[Route]) -> dict[str, object]:
+    """Routes in values that JSON can hold, the best first."""
+    return {
+        "routes": [
+            {
+                "length": route.length,
+                "bifurcations": route.points,
+                "travel": route.travel.tolist(),
+                "legs": [_leg_values(leg) for leg in route.legs],
+            }
+            for route in routes
+        ]
+    }
+
+
+def _leg_values(leg: Leg) -> dict[str, object]:
+    return {
+        "form": leg.form,
+        "start": leg.start,
+        "end": leg.end,
+        "at": leg.at,
+        "length": leg.length,
+        "travel": leg.travel.tolist(),
+    }
+
+
+def describe_route(
+    atlas: Atlas, route: Route, start: str, goal: str, has_arclengths: bool = False
+) -> str:
     """A route as a table: along which form, to which singular point, how far each joint
-    turns on the way."""
+    turns on the way; with the arclengths on each form, where that is asked for."""
     unit = arclength_unit(atlas)
     length = f"{unit.factor * route.length:.6g} {unit.name}"
     if unit.name != "deg":
@@ -44,13 +88,24 @@ def describe_route(atlas: Atlas, route: Route, start: str, goal: str) -> str:
             "Angles in degrees, slides in the unit of the file; a turn is the sum of a "
             "joint's movements both ways."
         )
+    rows = _rows(atlas, route)
+    if has_arclengths:
+        heads = (*heads[:2], "arclength", *heads[2:])
+        ways = [
+            f"{unit.factor * leg.start:.6g} to {unit.factor * leg.end:.6g}"
+            for leg in route.legs
+        ]
+        rows = [
+            (*row[:2], way, *row[2:])
+            for row, way in zip(rows, [*ways, ""], strict=True)
+        ]
     if any(leg.dimension > 1 for leg in route.legs):
         explanation += " Over a surface the way is a geodesic."
     return (
         f"Route from {start} to {goal}: {count_of(len(route.legs), 'leg')}, "
         f"{length} in joint space\n"
         f"from {show_configuration(atlas, route.path[0])}\n\n"
-        f"{table(heads, _rows(atlas, route))}\n\n{explanation}"
+        f"{table(heads, rows)}\n\n{explanation}"
     )
 
 

@@ -19,8 +19,10 @@ from linkages.app.texts.configurations import (
     show_configuration,
     unit_of_arclengths,
 )
+from linkages.app.texts.crease_text import describe_creases
 from linkages.app.texts.entry_text import describe_geometry
 from linkages.app.texts.form_names import listed_forms
+from linkages.app.texts.hanging_text import describe_hanging
 from linkages.app.texts.numbers import in_degrees
 from linkages.labels import FormLabels, loop_of
 from linkages.readout.drawn import drawn_place
@@ -42,6 +44,7 @@ def make_screen(atlas: Atlas) -> str:
     motions = _tables(atlas)[1]
     parts = [
         _head_of(atlas),
+        _held(atlas),
         section_of("Forms", _shortened(_form_records(atlas))),
         _surfaces(atlas),
         *(
@@ -59,6 +62,16 @@ def make_screen(atlas: Atlas) -> str:
         if len(text.splitlines()) <= SCREEN:
             shown.append(motion)
     return "\n\n".join([*shown, certainty])
+
+
+def _held(atlas: Atlas) -> str:
+    """How creases are assigned, and what is held as it lies in no closed loop."""
+    readout = subject_at(atlas).readout
+    if readout is None:
+        return ""
+    lines = [describe_creases(readout.mechanism)] if readout.mechanism.creases else []
+    lines.append(describe_hanging(readout.structure))
+    return "\n".join(filter(None, lines))
 
 
 def _head_of(atlas: Atlas) -> str:

@@ -6,18 +6,19 @@ import io
 
 import numpy as np
 import pytest
-from matplotlib import rc_context
 from matplotlib.figure import Figure
 from PIL import Image
 
 from bifurc.atlas import Atlas
 from bifurc.figures.plotting import (
+    RESOLUTION,
     plot_form_graph,
     plot_joint_angles,
     plot_singular_values,
     plot_transition_map,
 )
-from bifurc.figures.rendering import RC, render
+from bifurc.figures.rc import drawing_style
+from bifurc.figures.rendering import render
 
 PLOTS = [plot_transition_map, plot_joint_angles, plot_singular_values, plot_form_graph]
 
@@ -36,7 +37,7 @@ def pixels(content: bytes) -> np.ndarray:
 
 @pytest.mark.parametrize("plot", PLOTS)
 def test_the_svg_file_is_that_of_matplotlib(plot, parallelogram: Atlas) -> None:
-    with rc_context(RC):
+    with drawing_style():
         ours = render(plot(parallelogram), 100).svg
         theirs = saved(plot(parallelogram), "svg", 100)
     assert ours == theirs
@@ -48,9 +49,9 @@ def test_the_png_file_differs_from_that_of_matplotlib_by_parts_of_a_pixel(
 ) -> None:
     """Texts stand elsewhere by up to a pixel: few pixels are far off, and coarser ones
     agree."""
-    with rc_context(RC):
-        ours = pixels(render(plot(parallelogram), 100).png)
-        theirs = pixels(saved(plot(parallelogram), "png", 100))
+    with drawing_style():
+        ours = pixels(render(plot(parallelogram), RESOLUTION).png)
+        theirs = pixels(saved(plot(parallelogram), "png", RESOLUTION))
     assert ours.shape == theirs.shape
     assert np.mean(np.abs(ours - theirs) > 0.3) < 0.02
     assert np.abs(coarse(ours) - coarse(theirs)).max() < 0.1

@@ -204,3 +204,45 @@ def test_a_crossing_of_which_bounds_leave_almost_nothing_is_no_missing_solution(
     atlas = explore(problem, seeds=constructed_seeds([[0.6, 0.8]]))
     assert len(atlas.points) == 1
     assert "no solution" not in verdict_of(atlas)
+
+
+# name: equations, bounds, what is touched
+TOUCHED = {
+    "the corners of a square": (
+        lambda u: [u[0] ** 2 + u[1] ** 2 - 2],
+        [(-1, 1)] * 2,
+        [(-1, -1), (-1, 1), (1, -1), (1, 1)],
+    ),
+    "two corners, in other units": (
+        lambda u: [1e6 * (u[0] - 5e-3) * u[1] - 1e-2],
+        [(5e-3 - 1e-4, 5e-3 + 1e-4), (-1e-4, 1e-4)],
+        [(5e-3 - 1e-4, -1e-4), (5e-3 + 1e-4, 1e-4)],
+    ),
+    "a bound": (lambda u: [u[0] ** 2 + u[1] ** 2 - 1], [(1, 2), (-1, 1)], [(1, 0)]),
+    "a corner of a cube": (
+        lambda u: [u[0] + u[1] + u[2] - 3, u[0] - u[1]],
+        [(-1, 1)] * 3,
+        [(1, 1, 1)],
+    ),
+    "a corner of two rims": (
+        lambda u: [np.sqrt(u[0]) + np.sqrt(u[1] - 0.5)],
+        [(-2, 2)] * 2,
+        [(0, 0.5)],
+    ),
+    "a rim and a line": (
+        lambda u: [np.sqrt(1 - u[0] ** 2 - u[1] ** 2) + np.sqrt(u[0] + u[1] - 1)],
+        [(-2, 2)] * 2,
+        [(0, 1), (1, 0)],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", TOUCHED)
+def test_where_curves_only_touch_the_region_there_are_single_solutions(name) -> None:
+    function, bounds, expected = TOUCHED[name]
+    atlas = explore(FunctionProblem(function, bounds))
+    assert not atlas.forms
+    found = sorted(tuple(point.point.u) for point in atlas.points)
+    size = np.diff(bounds).max()
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-6 * size)
+    assert atlas.completeness.doubts

@@ -152,15 +152,38 @@ def test_json_is_one_document_with_the_documented_keys_and_nothing_else():
     assert document["completeness"]["certainty"] == "proved"
 
 
-def test_json_loads_nothing_that_it_does_not_need():
-    script = (
-        "import sys, linkages.app.cli as c; c.main(['map', 'bennett', '--json'], standalone_mode=False)\n"
-        "print([m for m in ('matplotlib', 'xarray', 'sympy', 'mpmath') if m in sys.modules], file=sys.stderr)"
+HEAVY = ("matplotlib", "xarray", "sympy", "mpmath", "scipy")
+
+
+def test_commands_load_nothing_that_they_do_not_need(tmp_path):
+    system = tmp_path / "circle.toml"
+    system.write_text(
+        'equations = ["x^2 + y^2 = 1"]\n[unknowns]\nx = [-2, "sqrt(3)"]\ny = [-2, 2]\n'
     )
-    result = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, check=True
-    )
-    assert result.stderr.splitlines()[-1] == "[]"
+    for words in (["map", "bennett", "--json"], ["solve", str(system)]):
+        script = (
+            f"import sys, linkages.app.cli as c; c.main({words}, standalone_mode=False)\n"
+            f"print([m for m in {HEAVY} if m in sys.modules], file=sys.stderr)"
+        )
+        command = [sys.executable, "-c", script]
+        result = subprocess.run(command, capture_output=True, text=True, check=True)
+        assert result.stderr.splitlines()[-1] == "[]"
+
+
+@pytest.mark.parametrize("words", [[], ["solve", "--help"]])
+def test_the_help_is_there_where_python_drops_texts(words):
+    script = f"import linkages.app.cli as c; c.main({words})"
+    texts = [
+        subprocess.run(
+            [sys.executable, *flags, "-c", script],
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for flags in ([], ["-OO"])
+    ]
+    assert "solution curves" in texts[0]
+    assert texts[0] == texts[1]
 
 
 def test_files_and_figures_load_neither_xarray_nor_scipy_optimize(tmp_path):

@@ -1,6 +1,7 @@
 """What `bifurc map --out` leaves on disk, also when it is interrupted."""
 
 import json
+import time
 
 import pytest
 from click.testing import CliRunner
@@ -8,7 +9,7 @@ from click.testing import CliRunner
 import bifurc.search.tracing
 from linkages.app.cli import main
 from linkages.app.files import write_data
-from linkages.app.output import prepare_folder
+from linkages.app.output import StatusLine, prepare_folder
 from linkages.closure.closure import Closure
 from linkages.linkage import load
 from linkages.mapping import map_linkage
@@ -79,7 +80,7 @@ def test_an_interrupt_while_a_file_is_written_leaves_no_half_of_it(
 ):
     import bifurc.figures.plotting
 
-    def half(atlas, folder, others):
+    def half(atlas, folder, *_):
         (folder / "transition_map.png").write_bytes(b"half")
         raise KeyboardInterrupt
 
@@ -114,3 +115,12 @@ def test_results_replace_older_ones(tmp_path):
     written = write_data(map_linkage(load("bennett")), tmp_path, "new")
     assert (tmp_path / "summary.txt").read_text() == "new\n"
     assert sorted(path.name for path in written) == names(tmp_path)
+
+
+def test_a_search_says_what_it_does_where_no_terminal_is(capsys):
+    with StatusLine(every=0.01) as status:
+        status("forms so far; step: gather seeds", 3)
+        time.sleep(0.2)
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) > 1
+    assert lines[-1] == "exploring, 0 s: 3 forms so far; step: gather seeds"

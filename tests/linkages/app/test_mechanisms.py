@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray
 from click.testing import CliRunner
 
 from bifurc.files.dataset import load_atlas
@@ -262,7 +263,12 @@ def test_the_summary_lists_dead_points_by_variable_and_form(folder):
     rows = rows_of(output, "Dead points (deg, lengths in the unit of the file)")
     document = json.loads(run("map", "slider_crank.toml", "--json").stdout)
     expected = {}
+    # those of the joint that drives, which has none, and of the slide
+    shown = {"J1", "J4"}
+    assert {point["variable"] for point in document["dead_points"]} >= {"J4"}
     for point in document["dead_points"]:
+        if point["variable"] not in shown:
+            continue
         key = (point["variable"], point["form"])
         value = point["variables"][point["variable"]]
         expected.setdefault(key, []).append(value)
@@ -282,8 +288,14 @@ def test_many_dead_points_are_counted(folder, monkeypatch):
     monkeypatch.setattr(mechanism_text, "SHOWN", 1)
     output = run("map", "slider_crank.toml", "--verbose").stdout
     document = json.loads(run("map", "slider_crank.toml", "--json").stdout)
-    count = len(document["dead_points"])
-    assert f"Dead points: {count}, listed with --json." in output
+    shown = [one for one in document["dead_points"] if one["variable"] in ("J1", "J4")]
+    assert f"Dead points: {len(shown)}, listed with --json, with those" in output
+
+
+def test_the_configuration_of_the_file_is_named(folder):
+    output = run("map", "slider_crank.toml").stdout
+    assert re.search(r"^As drawn: Form \d at s = ", output, re.MULTILINE)
+    assert "As drawn" not in run("map", "bennett").stdout
 
 
 def test_a_slide_has_no_winding_and_limits_are_left(folder):
@@ -316,3 +328,52 @@ def test_long_lists_of_motions_are_broken_into_lines():
     assert len(lines) > 1
     assert all(len(line) <= mechanism_text.WIDTH + 1 for line in lines)
     assert ", ".join(items) == " ".join(lines)
+
+
+FLAP = """
+[[joints]]
+name = "F"
+kind = "revolute"
+bodies = ["slider", "flap"]
+point = [9, 0, 0]
+direction = [0, 0, 1]
+"""
+
+
+def test_what_hangs_is_said_in_text_json_and_dataset(folder):
+    Path("flap.toml").write_text(SLIDER_CRANK + FLAP, encoding="utf-8")
+    line = "body flap turns freely about F: mobility + 1; each form times a circle."
+    assert line in run("map", "flap.toml").stdout
+    text = run("map", "flap.toml", "--out", "out", "--verbose").stdout
+    assert line in text
+    assert "Mobility 1, 2 with what hangs; Grübler's count is -1" in text
+    assert "F 0.00" not in text  # it has no range on a form
+    document = json.loads(run("map", "flap.toml", "--json").stdout)["mechanism"]
+    assert [one["bodies"] for one in document["hanging"]] == [["flap"]]
+    assert document["holds_flaps"]
+    with xarray.open_dataset("out/atlas.nc") as dataset:
+        names = dataset.joint_variable_name.values.tolist()
+        hangs = dataset.joint_variable_hangs.values.tolist()
+    assert [name for name, one in zip(names, hangs, strict=True) if one] == ["F"]
+    text = run("map", "flap.toml", "--with-flaps").stdout
+    assert "moves with mobility 2" in text
+    assert line not in text
+
+
+def test_a_file_of_two_mechanisms_is_mapped_one_after_the_other(folder):
+    second = SLIDER_CRANK[SLIDER_CRANK.index("[[joints]]") :]
+    for name in ("frame", "crank", "rod", "slider"):
+        second = second.replace(f'"{name}"', f'"{name}2"')
+    second = re.sub(r'"(J\d)"', r'"\1b"', second)
+    Path("two.toml").write_text(SLIDER_CRANK + second, encoding="utf-8")
+    documents = json.loads(run("map", "two.toml", "--json").stdout)["parts"]
+    alone = json.loads(run("map", "slider_crank.toml", "--json").stdout)
+    for document in documents:
+        lengths = [form["length"] for form in document["forms"]]
+        assert lengths == pytest.approx([form["length"] for form in alone["forms"]])
+    run("map", "two.toml", "--out", "out")
+    assert Path("out/part-2/atlas.nc").is_file()
+    assert "part 2" in run("map", "two.toml", "--part", "2").stdout
+    result = run("view", "two.toml", "--out", "page.html", code=2)
+    assert "2 mechanisms apart, of frame, frame2" in result.stderr
+    assert "from 1 to 2" in run("map", "two.toml", "--part", "3", code=2).stderr

@@ -86,3 +86,20 @@ def test_bars_between_different_points_with_one_name_are_refused():
     bars = [["A", "B-C"], ["A-B", "C"]]
     with pytest.raises(GeometryError, match='"A" to "B-C" and "A-B" to "C": "A-B-C"'):
         read_bars({"bars": bars, "points": points}, "two bars")
+
+
+def test_numbers_may_be_constant_expressions():
+    points = {"A": [0, "0"], "B": ["1/2", "sqrt(3)/2"], "C": [3, 2], "D": ["2^2", 0]}
+    mechanism = four_bar("2*sqrt(2)", points)
+    b, c = (np.array(mechanism.joint(name).point) for name in "BC")
+    np.testing.assert_allclose(np.linalg.norm(b - c), math.sqrt(8), rtol=1e-14)
+    exact = four_bar(math.sqrt(8), {**POINTS, "B": [0.5, math.sqrt(0.75)]})
+    assert mechanism.joints == exact.joints
+
+
+@pytest.mark.parametrize(
+    "text", ["", "x", "sqrt(-1)", "1/0", "2 x", "__import__('os')"]
+)
+def test_what_is_no_constant_is_refused_with_the_point(text):
+    with pytest.raises(GeometryError, match=r'point B: .* or a text such as "sqrt'):
+        four_bar(2.0, {**POINTS, "B": [text, 1]})

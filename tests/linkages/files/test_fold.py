@@ -1,6 +1,7 @@
 """Rigid origami from FOLD files."""
 
 import json
+from itertools import product
 
 import numpy as np
 import pytest
@@ -11,7 +12,9 @@ from bifurc.singular.point import Kind
 from bifurc.system import jacobian_at
 from linkages.closure.closure import Closure
 from linkages.file import LinkageFileError
+from linkages.mechanisms.subject import mechanism_from, mechanism_subject
 from linkages.readout.poses import Poses
+from linkages.structure.structure import Structure
 from studies.miura import SECTOR, miura
 from tests.linkages.mechanisms.test_maps import counts
 from tests.maps import map_of
@@ -27,7 +30,7 @@ def read(tmp_path, content, name="pattern.fold"):
 # Schenk and Guest 2013; Kumar, Feng, Guest 2021: from flat, a vertex of Miura's pattern
 # folds two ways, and one pair of creases folds alone
 def test_a_vertex_folds_two_ways_from_flat(tmp_path):
-    mechanism = read(tmp_path, miura(2, 2))
+    mechanism = read(tmp_path, miura(2, 2)).with_free_creases()
     assert mechanism.name == "Miura-ori 2 x 2"
     assert [joint.name for joint in mechanism.joints] == ["1-4", "3-4", "4-5", "4-7"]
     assert mechanism.bodies == ("f0", "f1", "f2", "f3")
@@ -212,7 +215,8 @@ def heights(signs, ratio=RATIO):
 @pytest.mark.parametrize("signs", [(1, 1, -1, -1), (1, -1, -1, 1)])
 def test_a_thick_vertex_moves_as_a_bennett_linkage(signs, tmp_path):
     content = vertex(**{"bifurc:edges_height": heights(signs)})
-    atlas = map_of(read(tmp_path, content))
+    # heights say which side comes together, whatever the letters say
+    atlas = map_of(read(tmp_path, content).with_free_creases())
     assert len(atlas.forms) == 1
     assert atlas.forms[0].branch.closed
 
@@ -262,7 +266,10 @@ MALFORMED = {
         changed(vertices_coords=[["x", 0], *POINTS[1:]]),
         r'vertices_coords\[0\]: "x"',
     ),
-    "no faces": (changed(faces_vertices=None), "faces_vertices: a missing key"),
+    "no faces and no edges": (
+        changed(faces_vertices=None, edges_vertices=None),
+        "edges_vertices: a missing key",
+    ),
     "a face of two": (
         changed(faces_vertices=[[0, 1], *FACES[1:]]),
         r"faces_vertices\[0\]: \[0, 1\]",
@@ -324,14 +331,6 @@ MALFORMED = {
         changed(file_frames=[{"frame_inherit": True, "frame_parent": 3}]),
         r"frame_parent of file_frames\[1\]: 3",
     ),
-    "a flap": (
-        changed(
-            edges_assignment=[
-                "C" if x == [1, 5] else y for x, y in zip(ENDS, LETTERS, strict=True)
-            ]
-        ),
-        r"body f0: one joint only, 4-5",
-    ),
 }
 
 
@@ -340,3 +339,128 @@ def test_a_malformed_file_is_refused_by_name_and_value(name, tmp_path):
     content, message = MALFORMED[name]
     with pytest.raises(LinkageFileError, match=message):
         read(tmp_path, content)
+
+
+def test_a_flap_is_held_and_said_to_be_free(tmp_path):
+    cut = [1, 5]
+    letters = ["C" if x == cut else y for x, y in zip(ENDS, LETTERS, strict=True)]
+    mechanism = read(tmp_path, changed(edges_assignment=letters))
+    flaps = {one.joint: one for one in Structure(mechanism).hanging.joints}
+    assert flaps["4-5"].bodies == ("f0",)
+    assert flaps["4-5"].spaces == ("an interval",)
+    free = Structure(mechanism.with_free_creases()).hanging.joints
+    assert {one.spaces for one in free if one.joint == "4-5"} == {("a circle",)}
+
+
+# --- assignments ----------------------------------------------------------------------
+
+# a flat vertex whose opposite sectors add up to 180 degrees (Kawasaki), in degrees
+FLAT_SECTORS = 60.0, 80.0, 120.0, 100.0
+
+
+def flat_vertex(letters, **keys):
+    places = np.radians(np.cumsum([0.0, *FLAT_SECTORS[:-1]]))
+    around = [[float(np.cos(place)), float(np.sin(place))] for place in places]
+    after = [2, 3, 4, 1]
+    return {
+        "vertices_coords": [[0.0, 0.0], *around],
+        "edges_vertices": [*([0, k] for k in (1, 2, 3, 4))]
+        + [[k, after[k - 1]] for k in (1, 2, 3, 4)],
+        "edges_assignment": [*letters, *"BBBB"],
+        "faces_vertices": [[0, k, after[k - 1]] for k in (1, 2, 3, 4)],
+        **keys,
+    }
+
+
+# Maekawa: mountains and valleys differ by two; the creases beside the smallest sector
+# differ (Bern and Hayes 1996)
+@pytest.mark.parametrize("letters", list(map("".join, product("MV", repeat=4))))
+def test_a_vertex_folds_as_assigned_where_theorems_say_so(letters, tmp_path):
+    is_foldable = abs(letters.count("M") - 2) == 1 and letters[0] != letters[1]
+    mechanism = read(tmp_path, flat_vertex(letters))
+    atlas = linkages.map_linkage(mechanism)
+    names = [form.name for form in atlas.forms]
+    assert names == ["Form 1 (as assigned)"] * is_foldable
+    free = linkages.map_linkage(mechanism.with_free_creases())
+    assert len(free.forms) == 2
+    named = [form for form in free.forms if form.name.endswith("(as assigned)")]
+    assert len(named) == is_foldable
+
+
+def test_the_flat_state_in_a_corner_of_the_assignment_is_in_no_doubt(tmp_path):
+    atlas = linkages.map_linkage(read(tmp_path, flat_vertex("MVVV")))
+    assert [point.kind for point in atlas.points] == [Kind.RANK_DROP] * 2
+    assert not atlas.completeness.doubts
+    lone = linkages.map_linkage(read(tmp_path, flat_vertex("VVVV")))
+    assert [point.kind for point in lone.points] == [Kind.ISOLATED]
+
+
+def test_faces_come_from_edges_where_they_are_not_given(tmp_path):
+    content = miura(4, 3)
+    given = read(tmp_path, content)
+    del content["faces_vertices"]
+    found = read(tmp_path, content)
+    names = sorted(joint.name for joint in given.joints)
+    assert sorted(joint.name for joint in found.joints) == names
+    outlines = [
+        {tuple(sorted(one.corners)) for one in m.panels} for m in (given, found)
+    ]
+    assert outlines[0] == outlines[1]
+
+
+def test_an_edge_that_ends_inside_a_face_is_named_by_its_vertex(tmp_path):
+    content = flat_vertex("VVVV")
+    del content["faces_vertices"]
+    content["vertices_coords"].append([0.2, 0.1])
+    content["edges_vertices"].append([0, 5])
+    content["edges_assignment"].append("V")
+    with pytest.raises(LinkageFileError, match="edges at vertex: 0"):
+        read(tmp_path, content)
+
+
+def test_angles_and_folded_coordinates_leave_the_same_way_to_go(tmp_path):
+    content = miura(3, 3, 0.8)
+    by_angles = read(tmp_path, content)
+    given = {one.joint: one for one in by_angles.creases}
+    coordinates = folded_coordinates(
+        by_angles, len(content["vertices_coords"]), content
+    )
+    folded = {
+        **content,
+        "frame_classes": ["foldedForm"],
+        "vertices_coords": coordinates,
+    }
+    del folded["edges_foldAngle"]
+    for crease in read(tmp_path, folded).creases:
+        assert crease.letter == given[crease.joint].letter
+        assert crease.angle == pytest.approx(given[crease.joint].angle, abs=1e-9)
+
+
+def folded_coordinates(mechanism, count, content):
+    """The vertices (count, 3) of a sheet in the reference configuration."""
+    places = np.zeros((count, 3))
+    by_body = {panel.body: panel.corners for panel in mechanism.panels}
+    for number, face in enumerate(content["faces_vertices"]):
+        places[face] = by_body[f"f{number}"]
+    return places.tolist()
+
+
+def test_a_crease_that_is_folded_against_its_letter_is_free_and_named(tmp_path, caplog):
+    content = miura(3, 3, 0.8)
+    wrong = content["edges_assignment"].index("V")
+    content["edges_assignment"][wrong] = "M"
+    name = "-".join(map(str, content["edges_vertices"][wrong]))
+    mechanism = read(tmp_path, content)
+    assert mechanism.joint(name).limits == (None,)
+    assert f"crease {name} is M and folded by" in caplog.text
+
+
+def test_an_assignment_survives_mirroring_and_json(tmp_path):
+    mechanism = read(tmp_path, miura(3, 3, 0.8))
+    values = json.loads(json.dumps(mechanism_subject(mechanism)))
+    assert mechanism_from(values["mechanism"], "m").creases == mechanism.creases
+    back = mechanism.mirrored().mirrored()
+    assert back.creases == mechanism.creases
+    for crease in mechanism.mirrored().creases:
+        (limits,) = mechanism.mirrored().joint(crease.joint).limits
+        assert limits == pytest.approx(crease.limits)

@@ -5,6 +5,7 @@ import pytest
 
 from linkages import load, map_linkage
 from linkages.file import LinkageFileError
+from linkages.structure.hanging import Hanging
 from tests.linkages.formats.worlds import CASES, world_text
 
 MAPPED = [name for name, case in CASES.items() if case["facts"] is not None]
@@ -80,12 +81,13 @@ def test_limits_count_from_the_configuration_found(tmp_path):
     assert low <= 0 <= high
 
 
-def test_what_hangs_on_no_loop_is_left_out_and_said(tmp_path, caplog):
+def test_what_hangs_on_no_loop_stays(tmp_path):
     text = world_text(CASES["FourBars"]).replace("[JOINTS]", "hook\n[JOINTS]")
     text += "revolute: link1 (0,0,0)+(0,0,1) hook (0,0,0)+(0,0,1)\n"
     mechanism = read(tmp_path, text)
-    assert len(mechanism.bodies) == 4
-    assert "left out, as they lie in no loop: joints J5" in caplog.text
+    assert len(mechanism.bodies) == 5
+    (hanging,) = Hanging(mechanism).joints
+    assert (hanging.joint, hanging.base, hanging.bodies) == ("J5", "link1", ("hook",))
 
 
 def test_links_without_joints_are_named(tmp_path, caplog):
@@ -123,7 +125,7 @@ BAD = {
     ),
     "no loop": (
         "[LINKS]\na\nb\n[JOINTS]\nspherical: a (0,0,0) b (0,0,0)",
-        "without a closed loop",
+        "number of joints: 1",
     ),
     "an end in the middle": (
         "[LINKS]\na\nb\n[JOINTS]\nspherical: a (0,0",

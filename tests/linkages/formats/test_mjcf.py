@@ -12,6 +12,7 @@ from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.readout.readout import Readout
+from linkages.structure.structure import Structure
 from tests.linkages.formats.examples import EXAMPLES, assert_same_geometry
 from tests.linkages.mechanisms.test_couplings import five_bar
 from tests.maps import map_of
@@ -166,25 +167,25 @@ def four_bar_and_gears(*couplings):
     return text.replace('<body name="ball"', wheel + '<body name="ball"')
 
 
-def test_joints_that_follow_one_outside_of_the_loops_follow_each_other(
-    tmp_path, caplog
-):
+def test_joints_in_loops_that_follow_one_outside_of_them_stay_coupled(tmp_path):
     text = four_bar_and_gears(
         '<joint joint1="A" joint2="W" polycoef="0.1 2 0 0 0"/>',
         '<joint joint1="D" joint2="W" polycoef="0.5 1 0 0 0"/>',
     )
     mechanism = read(tmp_path, text)
     (coupling,) = mechanism.joint("D").coupled
-    assert coupling.to == "A"
-    assert coupling.ratio == pytest.approx(0.5)
-    assert coupling.offset == pytest.approx(0.5 - 0.5 * 0.1)
-    assert "left out: the coupling of A to what lies in no loop" in caplog.text
+    assert coupling.to == "W"
+    assert coupling.ratio == pytest.approx(1.0)
+    structure = Structure(mechanism)
+    assert structure.hanging.pairs
+    assert structure.hanging.joints == ()  # W moves the loop
+    assert "W" in [one.label for one in structure.unknowns]
 
 
-def test_a_joint_outside_of_the_loops_follows_nothing(tmp_path, caplog):
-    text = four_bar_and_gears('<joint joint1="W" joint2="A"/>')
-    assert not read(tmp_path, text).is_coupled
-    assert "left out, as they lie in no loop: joints W" in caplog.text
+def test_a_joint_outside_of_the_loops_follows_one_in_them(tmp_path):
+    mechanism = read(tmp_path, four_bar_and_gears('<joint joint1="W" joint2="A"/>'))
+    assert mechanism.is_coupled
+    assert Structure(mechanism).hanging.joints == ()
 
 
 FOUR_BAR = """
@@ -280,7 +281,7 @@ BAD = {
     "no XML": ("<mujoco><worldbody>", "line 1"),
     "an entity": ('<!DOCTYPE m [<!ENTITY a "b">]><mujoco/>', "<!DOCTYPE m>"),
     "another document": ("<html/>", "<mujoco> or <sdf>"),
-    "no loop": ("<mujoco/>", "without a closed loop"),
+    "no joint": ("<mujoco/>", "no joint is left"),
     "a coupling": (four_bar(equality=COUPLED), "a coupling of joints A and D"),
     "a coupling to itself": (
         four_bar(equality='<joint joint1="A" joint2="A"/>'),
@@ -420,9 +421,7 @@ def test_the_leg_of_a_robot_has_two_loops_in_the_places_of_mujoco(tmp_path):
     assert np.degrees([low, high]) == pytest.approx([-119, 8])
 
 
-def test_joints_between_two_loops_are_held_and_those_at_an_end_left_out(
-    tmp_path, caplog
-):
+def test_a_joint_between_two_loops_hangs(tmp_path):
     twice = (
         four_bar()
         .replace(
@@ -442,8 +441,9 @@ def test_joints_between_two_loops_are_held_and_those_at_an_end_left_out(
         )
     )
     mechanism = read(tmp_path, twice)
-    assert "held, as they lie in no loop: joints N" in caplog.text
     assert mechanism.independent_loops == 2
+    by_name = {one.joint: one for one in Structure(mechanism).hanging.joints}
+    assert by_name["N"].bodies == ("neck", "u", "v", "w")
 
 
 @pytest.mark.parametrize(
@@ -480,8 +480,8 @@ OPEN_CHAINS = """<mujoco><default><equality {default}/></default><worldbody>
 def test_equalities_take_the_defaults_of_equalities(tmp_path):
     inactive = OPEN_CHAINS.format(default='active="false"')
     assert not mujoco.MjModel.from_xml_string(inactive).eq_active0.any()
-    with pytest.raises(ValueError, match="without a closed loop"):
-        read(tmp_path, inactive)
+    assert read(tmp_path, inactive).independent_loops == 0
+    assert read(tmp_path, OPEN_CHAINS.format(default="")).independent_loops == 1
 
 
 def test_a_range_without_a_width_is_no_limit(tmp_path):

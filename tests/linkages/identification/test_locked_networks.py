@@ -118,7 +118,7 @@ def test_two_locks_of_three_loops_leave_a_6r_a_5r_or_a_bennett_loop(name):
 def test_the_single_loop_left_is_that_of_the_reference(name):
     case = LOOPS[name]
     mechanism = lock_network(network(case["network"]), kinks_of(case))
-    loop = mechanism.without_centre()
+    loop = mechanism.without_centre().loop
     ring = mechanism.placed.network.plan.ring
     kept = [axis for axis in ring if axis not in mechanism.still]
     loop = loop.relabelled(kept.index(case["keep"][0]))
@@ -133,7 +133,7 @@ def test_the_single_loop_left_is_recognised(name):
     case = LOOPS[name]
     mechanism = lock_network(network(case["network"]), kinks_of(case))
     expected = entry(LINKAGES[name])
-    loop = mechanism.without_centre()
+    loop = mechanism.without_centre().loop
     assert identify(loop, entries=[expected], locking=False).names == (expected.name,)
 
 
@@ -162,7 +162,7 @@ def test_loop_and_locked_network_have_the_forms_of_the_reference(name):
     atlas = map_of(mechanism, settings=FEW)
     assert len(atlas.forms) == case["network_forms"]
     assert not atlas.bifurcations
-    alone = map_of(mechanism.without_centre(), settings=FEW)
+    alone = map_of(mechanism.without_centre().loop, settings=FEW)
     assert len(alone.forms) == case["single_loop_forms"]
     assert not alone.bifurcations
     lengths = [form.branch.length for form in alone.forms]
@@ -175,10 +175,10 @@ def test_removing_the_centre_adds_two_forms_and_four_bifurcations():
     mechanism = lock_network(network(), in_radians(p2=0, p6=0))
     atlas = map_of(mechanism, settings=FEW)
     assert (len(atlas.forms), len(atlas.bifurcations)) == (2, 0)
-    alone = map_of(mechanism.without_centre(), settings=FEW)
+    alone = map_of(mechanism.without_centre().loop, settings=FEW)
     assert (len(alone.forms), len(alone.bifurcations)) == (4, 4)
     names = identify(
-        mechanism.without_centre(),
+        mechanism.without_centre().loop,
         entries=[entry("wohlhart-double-goldberg")],
         locking=False,
     ).names
@@ -201,7 +201,7 @@ def test_four_straight_or_folded_joints_move_under_the_condition(kink):
     mechanism = lock_network(network(**FITTING), four_locks([kink] * 4))
     atlas = map_of(mechanism, settings=FEW)
     assert [form.branch.closed for form in atlas.forms] == [True]
-    loop = mechanism.without_centre()
+    loop = mechanism.without_centre().loop
     assert loop.n == 4
     assert identify(loop, entries=[entry("bennett")], locking=False).names == (
         "bennett",

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.structure.groups import displacement_of
@@ -115,7 +116,6 @@ def changed(**changes):
         ({"limits": ((-7000.0, 1.0),)}, r"limits of joint B: -7000 rad .* 1000 turns"),
         ({"locked": (0.1, 0.2)}, r"number of values of locked of joint B: 2"),
         ({"limits": ((0.0, 1.0),), "locked": (2.0,)}, r"locked of joint B: 2.0"),
-        ({"bodies": ("crank", "arm")}, r"body arm: one joint only, B"),
         ({"kind": "universal"}, r"second_direction of joint B: a missing key"),
         (
             {"kind": "universal", "second_direction": Z},
@@ -128,15 +128,17 @@ def test_what_is_wrong_is_named_with_its_value(changes, message):
         changed(**changes)
 
 
-def test_bodies_that_do_not_hang_together_are_named():
+def test_bodies_that_do_not_hang_together_are_parts():
     second = [
         replace(
             joint, name=f"{joint.name}2", bodies=tuple(f"{b}2" for b in joint.bodies)
         )
         for joint in four_bar().joints
     ]
-    with pytest.raises(GeometryError, match=r"bodies: coupler2, .* joined to"):
-        Mechanism((*four_bar().joints, *second))
+    both = Mechanism((*four_bar().joints, *second))
+    assert [part.joints for part in both.parts] == [four_bar().joints, tuple(second)]
+    with pytest.raises(GeometryError, match=r"2 mechanisms apart, of frame, frame2"):
+        Structure(both)
 
 
 FULL = {"point": (0.3, -0.2, 0.4), "direction": (0.3, 0.5, -0.7)}
@@ -240,9 +242,13 @@ def test_a_coordinate_of_a_body_and_a_variable_are_called_differently():
 
 
 @pytest.mark.parametrize("first", [0, 1, 2])
-def test_a_body_on_an_axis_of_several_alone_is_refused_in_any_order(first):
+def test_a_body_on_an_axis_of_several_alone_turns_by_itself_in_any_order(first):
     bodies = ("loose", "frame", "crank")
     around = bodies[first:] + bodies[:first]
     joints = (revolute("A", around, 0), *four_bar().joints[1:])
-    with pytest.raises(GeometryError, match="body loose: one joint only, A"):
-        Mechanism(joints)
+    mechanism = Mechanism(joints)
+    (hanging,) = Structure(mechanism).hanging.joints
+    assert (hanging.joint, hanging.bodies) == ("A", ("loose",))
+    lengths = [form.branch.length for form in map_linkage(mechanism).forms]
+    alone = [form.branch.length for form in map_linkage(four_bar()).forms]
+    assert lengths == pytest.approx(alone)

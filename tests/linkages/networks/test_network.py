@@ -107,3 +107,20 @@ def test_a_lock_at_an_odd_joint_holds_one_state_and_at_an_even_one_a_difference(
     gap = np.abs(np.sin((one - other) / 2))
     assert gap[:3].max() < 1e-14
     assert gap[3:].min() > 1e-2
+
+
+@pytest.mark.parametrize("kinks", [(0, 0), (40, -40)])
+def test_a_network_of_equal_loops_leaves_the_loop_of_the_form_that_is_not_folded(kinks):
+    """Where it is folded, two of its links lie on each other."""
+    equal = network(alpha=35, beta=35, gamma=62, delta=62)
+    mechanism = lock_network(equal, dict(zip("26", np.radians(kinks), strict=True)))
+    loop, still = mechanism.without_centre()
+    assert still == ("2", "6") and loop.n == 6
+    assert len(mechanism.still) > 2  # in the reference configuration
+
+
+def test_locks_at_which_links_lie_on_each_other_leave_no_loop():
+    equal = network(alpha=35, beta=35, gamma=62, delta=62)
+    mechanism = lock_network(equal, {"2": np.pi, "6": np.pi})
+    with pytest.raises(GeometryError, match="outer axes are not the same"):
+        mechanism.without_centre()

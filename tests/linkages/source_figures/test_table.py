@@ -1,8 +1,10 @@
 """The table of the figures of the sources: every figure stands there, and only once."""
 
+import numpy as np
 import pytest
 
 from linkages.errata.misprints import misprints
+from linkages.source_figures.configurations import atlas_of, linkage_of
 from linkages.source_figures.draw import DRAWINGS
 from linkages.source_figures.table import (
     Agreement,
@@ -66,7 +68,8 @@ def test_equations_that_a_remark_calls_misprinted_are_among_the_errata():
 def test_a_figure_like_another_takes_over_what_it_does_not_say():
     own = figure_named("001-5.4")
     model = figure_named("thesis-5.2.7")
-    assert own.content == model.content
+    exchanged = {"parameters": {"beta": 45, "delta": 60}}
+    assert own.content == {**model.content, **exchanged}
     assert own.title == model.title
     assert own.remark != model.remark
 
@@ -82,3 +85,43 @@ def test_the_caption_holds_name_title_and_remark():
     caption = figure_named("thesis-5.2.4").caption
     assert caption.startswith("thesis-5.2.4: The constructive forms")
     assert caption.endswith("b = 1.0572.")
+
+
+def test_links_of_paper_001_are_those_of_its_geometry():
+    """By (5.1) links 23 and 61 are b/beta, links 34 and 56 d/delta."""
+    for name in ("001-5.1", "001-5.3"):
+        for panel in figure_named(name).content["panels"]:
+            assert panel["labels"][1:3] == ["b", "d"]
+            assert panel["labels"][4:] == ["d", "b"]
+            twists = np.degrees(linkage_of(panel).loop.arrays.twists)
+            is_special = panel["linkage"].startswith("special")
+            beta, delta = (60, 45) if is_special else (50, 83)  # as in the thesis
+            np.testing.assert_allclose(twists[[1, 5]], beta)
+            np.testing.assert_allclose(twists[[2, 4]], delta)
+
+
+@pytest.mark.parametrize(
+    ("figure", "named"),
+    [
+        (
+            "thesis-5.3.16",
+            {"I": ("Form I", "Bennett 4R form"), "II": ("Form II", "Bennett 4R form")},
+        ),
+        (
+            "thesis-4.4.7",
+            {
+                "I": ("Form I", "Form I'"),
+                "II": ("Form I'", "Form II"),
+                "III": ("Form II", "Form II'"),
+                "IV": ("Form II'", "Form I"),
+            },
+        ),
+    ],
+)
+def test_bifurcations_are_called_as_in_the_source(figure, named):
+    atlas = atlas_of(figure_named(figure).content)
+    found = {}
+    for point in atlas.points:
+        forms = {atlas.forms[form].name.split(" (")[0] for form, _ in point.passes}
+        found[point.name] = forms
+    assert found == {f"B$_{{{number}}}$": set(forms) for number, forms in named.items()}

@@ -64,6 +64,20 @@ def test_what_has_no_form_makes_a_document_as_well(atlas_of, name):
     assert bool(document["note"]) == (not atlas.surfaces and not any(curves))
 
 
+def test_near_motions_are_curves_that_the_page_runs_along(atlas_of):
+    atlas = atlas_of("nearly Bennett")
+    document = make_view_document(atlas)
+    (motion,) = document["near_motions"]
+    (near,) = atlas.near_motions
+    assert motion["name"] == near.name == "near motion 1"
+    assert motion["misclosure"] == near.misclosure > 1e-9
+    assert motion["curve"]["length"] == near.length
+    assert motion["curve"]["closed"] == near.is_closed
+    gaps = np.linalg.norm(atlas.near_motions[0].branch(0.0) - near.sample)
+    assert gaps < 1e-12
+    assert motion["curve"]["dashes"]
+
+
 def test_the_configurations_of_a_surface_are_a_walk(atlas_of):
     atlas = atlas_of("folded Sarrus")
     (surface,) = make_view_document(atlas)["surfaces"]

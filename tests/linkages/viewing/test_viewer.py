@@ -403,20 +403,23 @@ def test_forms_have_the_colours_of_the_figures(show, theme):
     assert is_dark == (theme == "dark")
 
 
-@pytest.mark.parametrize(
-    ("name", "track", "count"),
-    [("rigid", "rigid assemblies", 8), ("nearly Bennett", "near motions", 1)],
-)
-def test_configurations_that_do_not_move_are_shown_one_by_one(
-    show_shared, name, track, count
-):
-    shown = show_shared(name)
-    assert {"name": track, "count": count} in shown.bifurc("lists")
-    angles = [shown.bifurc(f"go('{track}', {k}).angles") for k in range(count)]
-    assert len({tuple(one) for one in angles}) == count
+def test_configurations_that_do_not_move_are_shown_one_by_one(show_shared):
+    shown = show_shared("rigid")
+    assert {"name": "rigid assemblies", "count": 8} in shown.bifurc("lists")
+    angles = [shown.bifurc(f"go('rigid assemblies', {k}).angles") for k in range(8)]
+    assert len({tuple(one) for one in angles}) == 8
     loop = loop_of(shown.atlas)
-    allowed = 1e-9 if name == "rigid" else 1e-2
-    assert loop.closure_error(np.array(angles)).max() < allowed
+    assert loop.closure_error(np.array(angles)).max() < 1e-9
+
+
+def test_a_near_motion_runs_like_a_form(show_shared):
+    shown = show_shared("nearly Bennett")
+    (curve,) = shown.bifurc("forms")
+    assert curve["name"] == "near motion 1"
+    places = np.linspace(0.0, curve["length"], 9)
+    angles = [shown.bifurc(f"go('near motion 1', {s}).angles") for s in places]
+    error = loop_of(shown.atlas).closure_error(np.array(angles)).max()
+    assert 1e-9 < error < 1e-2
 
 
 def test_a_surface_is_shown_by_closed_configurations(show_shared):

@@ -475,3 +475,39 @@ def test_two_planes_next_to_each_other_are_counted_in_units_of_their_distance() 
     own = in_own_units(planes)
     assert own is not None
     assert own.own_units.sizes[2] < 0.01 < own.own_units.sizes[0]
+
+
+def two(curve):
+    """Two curves of one shape, so far apart."""
+    return lambda apart: lambda u: [curve(*u) * (curve(*u) - apart)]
+
+
+NEAR_CURVES = {
+    "circles": two(lambda x, y: x**2 + y**2 - 1),
+    "lines": two(lambda x, y: y - 0.3 * x),
+    "parabolas": two(lambda x, y: y - x**2),
+    "none": lambda apart: lambda u: [(u[1] - u[0] ** 2) ** 2 + apart**2],
+}
+
+
+@pytest.mark.parametrize("apart", [3e-6, 1e-6, 1e-8, 1e-10])
+@pytest.mark.parametrize("name", NEAR_CURVES)
+def test_curves_next_to_each_other_are_never_one_without_a_word(name, apart) -> None:
+    problem = bifurc.FunctionProblem(NEAR_CURVES[name](apart), BOX)
+    atlas = bifurc.explore(problem)
+    kinds = [doubt.kind for doubt in atlas.completeness.doubts]
+    assert len(atlas.forms) == 2 or "several curves" in kinds
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda u: [1 - np.cos(u[0] - u[1])],
+        lambda u: [np.exp(u[0] - u[1]) - 1 - u[0] + u[1]],
+        lambda u: [u[0] ** 2 - 0.2 * u[0] * u[1] + 0.01 * u[1] ** 2],
+    ],
+)
+def test_a_double_curve_is_one(function) -> None:
+    atlas = bifurc.explore(bifurc.FunctionProblem(function, BOX))
+    assert [form.multiplicity for form in atlas.forms] == [2]
+    assert not atlas.completeness.doubts

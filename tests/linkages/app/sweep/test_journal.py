@@ -29,3 +29,17 @@ def test_two_sweeps_cannot_write_one_journal(tmp_path):
         pytest.raises(JournalError, match="is writing"),
     ):
         Journal(tmp_path / "j", {"sweep": 1})
+
+
+@pytest.mark.parametrize("old, new", [(b"0.25", b"0.75"), (b"wise", b"wide")])
+def test_a_line_that_was_changed_is_refused_by_its_number(tmp_path, old, new):
+    path = tmp_path / "j"
+    with Journal(path, {"sweep": 1}) as journal:
+        journal.append({"member": 0, "gap": 0.25, "message": "otherwise", "x": 1e-300})
+        assert list(journal.lines())[-1]["x"] == 1e-300
+    path.write_bytes(path.read_bytes().replace(old, new))
+    with (
+        Journal(path, {"sweep": 1}) as journal,
+        pytest.raises(JournalError, match="line 2 is damaged"),
+    ):
+        list(journal.lines())

@@ -1,0 +1,407 @@
+// Solutions of a square system over the complex numbers, followed while its parameters move:
+// `bifurc.paths` says what for.
+//
+// The next point is predicted by the Taylor series of the path, whose last coefficients bound how far
+// it is trusted, and corrected by Newton's method (Allgower and Georg 1990). A path that comes to a
+// singular end is led round it, where its mean is that end (Cauchy's integral: Morgan, Sommese and
+// Wampler 1991).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <vector>
+
+#include "bifurc/core/arrays.hpp"
+#include "bifurc/core/lu.hpp"
+#include "bifurc/core/tape.hpp"
+
+namespace bifurc {
+
+namespace paths {
+
+using Complex = std::complex<double>;
+
+// Of the estimated radius of convergence: a longer step is not tried.
+constexpr double longest_share = 0.6;
+constexpr double shorter = 0.4;        // by which a step that failed is shortened
+constexpr double shortest = 1e-13;     // step, over the size of the rest or of the way
+constexpr double contraction = 0.05;   // of a correction to the next, on an accepted step
+constexpr double rounding = 1e-9;      // a correction that may be one of rounding
+constexpr double exact = 1e-14;        // a correction after which no other is made
+constexpr int last_corrections = 6;    // at the end of a path
+constexpr double far_away = 1e8;       // unknown beyond which a path runs to infinity
+// Where what is left of a path is less than this, it is led round its end, and again whenever it is
+// less by the factor; what is left at last is nothing.
+constexpr double near_end = 1e-2, nearer = 0.1, last_rest = 1e-13;
+constexpr int corners = 8;             // of a way round the end
+constexpr int most_turns = 24;         // round the end until the path is where it was
+constexpr double closed = 1e-7;        // gap of a way round the end that is closed
+constexpr double agreement = 1e-7;     // of two means, over their size
+constexpr double solved = 1e-10;       // residual of a mean, over 1 + its size
+constexpr double growth = 1.1;         // by which the way round an end at infinity grows
+
+}  // namespace paths
+
+// How a path ended; as in `bifurc.paths`.
+enum class PathEnd { regular = 0, singular = 1, at_infinity = 2, stuck = 3, too_long = 4, no_start = 5, out_of_time = 6 };
+
+struct PathSettings {
+    Index order;       // of the predictor
+    double tolerance;  // of a prediction, over 1 + the size of the point
+    int most_steps;
+};
+
+// F(x; p) = 0 with x the first unknowns of a tape and p the others, on the line of parameters
+// last + t (first - last). With more equations than unknowns ``combinations`` (n, m) of them are solved.
+class PathSystem {
+public:
+    using Complex = paths::Complex;
+
+    PathSystem(const Tape& tape, Index unknowns, View<const Complex> combinations, Vector<const Complex> first,
+               Vector<const Complex> last, Index order)
+        : tape_(tape),
+          n_(unknowns),
+          combinations_(combinations),
+          last_(last.begin(), last.end()),
+          change_(last.size()),
+          point_(tape.unknowns()),
+          step_(tape.unknowns()),
+          row_(unknowns),
+          equations_(tape.equations()),
+          sweep_(tape),
+          series_(tape, order) {
+        for (std::size_t i = 0; i < change_.size(); ++i) change_[i] = first[i] - last[i];
+    }
+
+    Index unknowns() const { return n_; }
+
+    // F at a point and t, and its factored derivatives by x; false where these are singular.
+    bool linearize(Vector<const Complex> x, Complex t, Vector<Complex> residual, ComplexLu& lu) {
+        place(x, t);
+        sweep_.linearize(point_);
+        for (Index row = 0; row < tape_.equations(); ++row) equations_[row] = sweep_.value(row);
+        combine(residual);
+        const View<Complex> matrix = lu.matrix();
+        std::fill_n(matrix.data, n_ * n_, Complex(0.0));
+        for (Index row = 0; row < tape_.equations(); ++row) {
+            if (!combinations_.rows) {
+                sweep_.gradient(row, [&](Index unknown, const Complex& entry) {
+                    if (unknown < n_) matrix(row, unknown) += entry;
+                });
+                continue;
+            }
+            std::fill(row_.begin(), row_.end(), Complex(0.0));
+            sweep_.gradient(row, [&](Index unknown, const Complex& entry) {
+                if (unknown < n_) row_[unknown] += entry;
+            });
+            for (Index i = 0; i < n_; ++i) {
+                for (Index j = 0; j < n_; ++j) matrix(i, j) += combinations_(i, row) * row_[j];
+            }
+        }
+        return lu.factor();
+    }
+
+    // Taylor coefficients (order + 1, n) of the path through a point, in powers of t.
+    void series(Vector<const Complex> x, Complex t, const ComplexLu& lu, View<Complex> coefficients) {
+        place(x, t);
+        series_.start(point_);
+        std::copy(x.begin(), x.end(), coefficients.row(0).begin());
+        for (Index k = 1; k < coefficients.rows; ++k) {
+            series_.advance(k);
+            std::fill(step_.begin(), step_.end(), Complex(0.0));
+            if (k == 1) {
+                std::copy(change_.begin(), change_.end(), step_.begin() + n_);
+                series_.correct(k, step_);
+                std::fill(step_.begin(), step_.end(), Complex(0.0));
+            }
+            for (Index row = 0; row < tape_.equations(); ++row) equations_[row] = -series_.coefficient(row, k);
+            const Vector<Complex> solution = coefficients.row(k);
+            combine(solution);
+            lu.solve(solution);
+            std::copy(solution.begin(), solution.end(), step_.begin());
+            series_.correct(k, step_);
+        }
+    }
+
+private:
+    void place(Vector<const Complex> x, Complex t) {
+        std::copy(x.begin(), x.end(), point_.begin());
+        for (std::size_t i = 0; i < change_.size(); ++i) point_[n_ + i] = last_[i] + t * change_[i];
+    }
+
+    void combine(Vector<Complex> out) const {
+        if (!combinations_.rows) {
+            std::copy(equations_.begin(), equations_.end(), out.begin());
+            return;
+        }
+        for (Index i = 0; i < n_; ++i) {
+            out[i] = 0.0;
+            for (Index row = 0; row < tape_.equations(); ++row) out[i] += combinations_(i, row) * equations_[row];
+        }
+    }
+
+    const Tape& tape_;
+    Index n_;
+    View<const Complex> combinations_;
+    std::vector<Complex> last_, change_, point_, step_, row_, equations_;
+    Sweep<Complex> sweep_;
+    SeriesSweep<Complex> series_;
+};
+
+class PathTracker {
+public:
+    using Complex = paths::Complex;
+    using Point = std::vector<Complex>;
+
+    PathTracker(PathSystem& system, const PathSettings& settings)
+        : system_(system),
+          settings_(settings),
+          lu_(system.unknowns()),
+          coefficients_(settings.order + 1, system.unknowns()),
+          correction_(system.unknowns()) {}
+
+    struct Outcome {
+        Point point;
+        double rest = 1.0;  // t where the path was left
+        PathEnd end = PathEnd::no_start;
+        int winding = 1;  // turns after which a path round its end is where it was
+        int steps = 0;
+    };
+
+    // From a solution at t = 1 towards t = 0.
+    Outcome follow(Vector<const Complex> start) {
+        Outcome out{{start.begin(), start.end()}};
+        steps_ = 0;
+        if (!begin(out.point, 1.0)) return out;
+        Circuit before;
+        double next_look = paths::near_end;
+        Complex t = 1.0;
+        while (true) {
+            const Advance advance = step(out.point, t, 0.0, t.real() < next_look);
+            out.rest = t.real();
+            out.steps = steps_;
+            if (advance == Advance::arrived) {
+                polish(out.point);
+                out.end = PathEnd::regular;
+                return out;
+            }
+            if (largest(out.point) > paths::far_away) {
+                out.end = PathEnd::at_infinity;
+                return out;
+            }
+            if (advance == Advance::failed || steps_ >= settings_.most_steps || t.real() < paths::last_rest) {
+                out.end = advance == Advance::failed ? PathEnd::stuck : PathEnd::too_long;
+                return out;
+            }
+            if (t.real() >= next_look) continue;
+            next_look = paths::nearer * t.real();
+            const Circuit circuit = go_round(out.point, t.real());
+            if (!begin(out.point, t)) {
+                out.end = PathEnd::stuck;
+                return out;
+            }
+            if (!circuit.winding || circuit.winding != before.winding) {
+                before = circuit;
+                continue;
+            }
+            out.winding = circuit.winding;
+            if (circuit.extent > paths::growth * before.extent) {
+                out.end = PathEnd::at_infinity;
+                return out;
+            }
+            if (distance(circuit.mean, before.mean) < paths::agreement && is_solution(circuit.mean)) {
+                out.rest = 0.0;
+                out.point = circuit.mean;
+                Point regular = circuit.mean;
+                out.end = PathEnd::singular;
+                if (circuit.winding == 1 && is_corrected(regular, 0.0)) {
+                    polish(regular);
+                    out.point = regular;
+                    out.end = PathEnd::regular;
+                }
+                return out;
+            }
+            before = circuit;
+        }
+    }
+
+private:
+    enum class Advance { went, arrived, failed };
+
+    // Round the end of a path: the mean of the points, how far they are from it, and after how many
+    // turns the path was back; none where it did not come back.
+    struct Circuit {
+        int winding = 0;
+        Point mean;
+        double extent = 0.0;
+    };
+
+    static double largest(const Point& point) {
+        double size = 0.0;
+        for (const Complex& entry : point) size = std::max(size, rough_size(entry));
+        return size;
+    }
+
+    static double distance(const Point& point, const Point& other) {
+        double size = 0.0, scale = 1.0;
+        for (std::size_t i = 0; i < point.size(); ++i) {
+            size = std::max(size, rough_size(point[i] - other[i]));
+            scale = std::max(scale, rough_size(point[i]));
+        }
+        return size / scale;
+    }
+
+    // One step of Newton's method, with derivatives that stay in `lu_`; its size over that of the point,
+    // infinite where it cannot be made.
+    double correct(Point& point, Complex t) {
+        constexpr double infinity = std::numeric_limits<double>::infinity();
+        if (!system_.linearize(point, t, correction_, lu_)) return infinity;
+        lu_.solve(correction_);
+        const double size = largest(correction_);
+        if (!std::isfinite(size)) return infinity;
+        for (std::size_t i = 0; i < point.size(); ++i) point[i] -= correction_[i];
+        return size / (1.0 + largest(point));
+    }
+
+    // Corrects a predicted point, by two steps of which the second is much smaller than the first: a
+    // theorem of Newton and Kantorovich in small.
+    bool is_corrected(Point& point, Complex t) {
+        const double first = correct(point, t);
+        if (!(first <= trust())) return false;
+        const double second = correct(point, t);
+        return second <= std::max(paths::contraction * first, paths::rounding) && second <= settings_.tolerance;
+    }
+
+    // The largest first correction that is trusted.
+    double trust() const { return 10.0 * settings_.tolerance; }
+
+    void expand(const Point& point, Complex t) { system_.series(point, t, lu_, coefficients_); }
+
+    // Corrects a start and expands the path there.
+    bool begin(Point& point, Complex t) {
+        if (!is_corrected(point, t)) return false;
+        expand(point, t);
+        return true;
+    }
+
+    // Whether a point solves the equations at the end. Where two paths meet beside the end, their mean
+    // round it is between them.
+    bool is_solution(const Point& point) {
+        system_.linearize(point, 0.0, correction_, lu_);
+        return largest(correction_) < paths::solved * (1.0 + largest(point));
+    }
+
+    // How far the series is trusted: what the terms that are left out come to is below the tolerance, and
+    // a share of the radius of convergence is not exceeded. That keeps a path from one that it passes
+    // closely, which prediction and correction may well reach: between them is a singularity. By the
+    // first terms nothing is told of it.
+    double trusted_length() const {
+        const Index order = settings_.order;
+        const double last = std::max({size_of(order), size_of(order - 1), 1e-300});
+        const double before = std::max(size_of(order - 4), size_of(order - 5));
+        const double radius = std::sqrt(std::sqrt(before / last));
+        const double allowed = settings_.tolerance * (1.0 + size_of(0));
+        const double length = std::pow(allowed / std::max(size_of(order), 1e-300), 1.0 / static_cast<double>(order));
+        return std::min(length, before > 0.0 ? paths::longest_share * radius : length);
+    }
+
+    double size_of(Index k) const {
+        double size = 0.0;
+        for (const Complex& entry : coefficients_.row(k)) size = std::max(size, rough_size(entry));
+        return size;
+    }
+
+    void predict(Complex way, Point& point) const {
+        for (std::size_t i = 0; i < point.size(); ++i) {
+            Complex value = coefficients_(settings_.order, i);
+            for (Index k = settings_.order - 1; k >= 0; --k) value = coefficients_(k, i) + way * value;
+            point[i] = value;
+        }
+    }
+
+    // From a point whose series is known towards ``goal``. ``in_pieces``: near a goal that may be singular
+    // no more than a part of what is left is gone unless the series reaches it.
+    Advance step(Point& point, Complex& t, Complex goal, bool in_pieces) {
+        const Complex rest = goal - t;
+        const double length = std::abs(rest);
+        double share = trusted_length() / length;
+        bool is_whole = share >= 1.0;
+        if (!is_whole && in_pieces) share = std::min(share, 1.0 - paths::nearer);
+        Point ahead(point.size());
+        while (true) {
+            ++steps_;
+            const Complex way = is_whole ? rest : share * rest;
+            const Complex place = is_whole ? goal : t + way;
+            predict(way, ahead);
+            if (is_corrected(ahead, place)) {
+                point.swap(ahead);
+                t = place;
+                expand(point, t);
+                return is_whole ? Advance::arrived : Advance::went;
+            }
+            share = paths::shorter * std::min(share, 1.0);
+            is_whole = false;
+            if (share < paths::shortest * std::max(1.0, 1.0 / length) || steps_ >= settings_.most_steps) return Advance::failed;
+        }
+    }
+
+    // Follows the path straight to another t; false where it cannot be followed.
+    bool go(Point& point, Complex& t, Complex goal) {
+        while (true) {
+            const Advance advance = step(point, t, goal, false);
+            if (advance == Advance::arrived) return true;
+            if (advance == Advance::failed || steps_ >= settings_.most_steps) return false;
+        }
+    }
+
+    // Follows the path on a polygon round t = 0, turn after turn, until it is back.
+    Circuit go_round(const Point& start, double radius) {
+        Circuit out;
+        Point point = start;
+        std::vector<Point> corners;
+        Complex t = radius;
+        for (int turn = 1; turn <= paths::most_turns; ++turn) {
+            for (int corner = 1; corner <= paths::corners; ++corner) {
+                const bool is_back = corner == paths::corners;
+                const double angle = 2.0 * std::numbers::pi * corner / paths::corners;
+                if (!go(point, t, is_back ? Complex(radius) : std::polar(radius, angle))) return {};
+                corners.push_back(point);
+            }
+            if (distance(point, start) > paths::closed) continue;
+            out.winding = turn;
+            out.mean.assign(start.size(), 0.0);
+            for (const Point& corner : corners) {
+                for (std::size_t i = 0; i < corner.size(); ++i) out.mean[i] += corner[i] / static_cast<double>(corners.size());
+            }
+            for (const Point& corner : corners) {
+                for (std::size_t i = 0; i < corner.size(); ++i) out.extent = std::max(out.extent, rough_size(corner[i] - out.mean[i]));
+            }
+            return out;
+        }
+        return {};
+    }
+
+    // Newton's method at the end, as long as its steps become shorter.
+    void polish(Point& point) {
+        double former = 1.0;
+        for (int i = 0; i < paths::last_corrections; ++i) {
+            Point better = point;
+            const double size = correct(better, 0.0);
+            if (!(size < former)) return;
+            point.swap(better);
+            former = size;
+            if (size < paths::exact) return;
+        }
+    }
+
+    PathSystem& system_;
+    PathSettings settings_;
+    ComplexLu lu_;
+    Matrix<Complex> coefficients_;
+    Point correction_;
+    int steps_ = 0;
+};
+
+}  // namespace bifurc

@@ -1,0 +1,81 @@
+"""What of an atlas is drawn: which forms, which angles, and points of the user's."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from bifurc.atlas import Atlas, MeetingPoint
+from bifurc.errors import ProblemError, RouteError
+from bifurc.form_order import listed_numbers
+
+
+@dataclass(frozen=True)
+class Selection:
+    """What of an atlas is drawn.
+
+    ``forms`` are names of forms, in full or by the part that tells them apart, or their
+    numbers in tables, from 1; all where there are none.
+    ``window`` are the first and the last angle that are shown, in degrees, at most a
+    turn. ``overlay`` are points of the user's that are laid over: their values, as axes
+    show them, by the names of the unknowns; it is drawn where both unknowns of a plane
+    have some.
+    """
+
+    forms: Sequence[str | int] = ()
+    window: tuple[float, float] | None = None
+    overlay: Mapping[str, Sequence[float]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Raises `ProblemError` for a window that is none, and for columns of unequal
+        lengths."""
+        if self.window is not None:
+            low, high = self.window
+            if not 0 < high - low <= 360:
+                allowed = "a first and a larger last angle in degrees, at most a turn"
+                raise ProblemError("window", self.window, allowed)
+        lengths = {name: len(values) for name, values in self.overlay.items()}
+        if len(set(lengths.values())) > 1:
+            raise ProblemError("overlay", lengths, "as many values of each unknown")
+
+    def indices(self, atlas: Atlas) -> list[int]:
+        """The indices of the forms of an atlas that are drawn, in the order in which they
+        are listed; raises `ProblemError`."""
+        chosen = [_index_of(atlas, form) for form in self.forms]
+        return [i for i in listed_numbers(atlas) if i in chosen or not chosen]
+
+    def points(self, atlas: Atlas) -> list[MeetingPoint]:
+        """The singular points of an atlas that are drawn: all, or those on the forms
+        that are chosen."""
+        if not self.forms:
+            return list(atlas.points)
+        chosen = set(self.indices(atlas))
+        return [
+            point
+            for point in atlas.points
+            if any(form in chosen for form, _ in point.passes)
+        ]
+
+    def points_over(self, horizontal: str, vertical: str) -> np.ndarray | None:
+        """The user's points (k, 2) over two unknowns; None where there are none."""
+        if horizontal not in self.overlay or vertical not in self.overlay:
+            return None
+        columns = [self.overlay[horizontal], self.overlay[vertical]]
+        return np.array(columns, dtype=float).T
+
+
+EVERYTHING = Selection()
+
+
+def _index_of(atlas: Atlas, form: str | int) -> int:
+    names = [one.name for one in atlas.forms]
+    if isinstance(form, str):
+        with suppress(RouteError):
+            return atlas.form(form)
+    if isinstance(form, int) and 1 <= form <= len(names):
+        return listed_numbers(atlas)[form - 1]
+    allowed = f"one of {', '.join(names)}, or a number from 1 to {len(names)}"
+    raise ProblemError("form", repr(form), allowed)

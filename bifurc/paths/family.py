@@ -1,0 +1,91 @@
+"""A family of systems: equations in unknowns and parameters, on one tape."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from bifurc.equations.recorded import RecordedNumber, Recorder, unknowns_of
+from bifurc.equations.tape import Tape
+
+SQUARING_SEED = 28  # of the combinations of equations: any generic ones will do
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Equations F(x; p) = 0: the first ``n`` unknowns of the ``tape`` are x, the others
+    the parameters p. All are complex.
+
+    There are as many equations as unknowns x, or more, of which generic combinations
+    are followed. Raises `ValueError` where there are fewer.
+    """
+
+    tape: Tape
+    n: int
+
+    def __post_init__(self) -> None:
+        if self.tape.m < self.n:
+            raise ValueError(
+                f"equations: {self.tape.m} are not allowed for {self.n} unknowns; there "
+                "must be as many or more"
+            )
+
+    @staticmethod
+    def of(
+        equations: Callable[[np.ndarray, np.ndarray], Sequence[Any]],
+        n: int,
+        parameters: int,
+    ) -> Family:
+        """The family of ``equations`` (x (n,), p (q,)) -> (m,) of numbers that can be
+        recorded."""
+        writer = Recorder(n + parameters)
+        numbers = unknowns_of(writer)
+        values = equations(numbers[:n], numbers[n:])
+        slots = [
+            one.slot if isinstance(one, RecordedNumber) else writer.constant(float(one))
+            for one in values
+        ]
+        return Family(writer.tape(slots), n)
+
+    @property
+    def parameters(self) -> int:
+        """The number of parameters."""
+        return self.tape.n - self.n
+
+    @property
+    def combinations(self) -> np.ndarray:
+        """What combinations (n, m) of the equations are followed; (0, n) where these
+        are the equations themselves."""
+        if self.tape.m == self.n:
+            return np.empty((0, self.n), dtype=complex)
+        rng = np.random.default_rng(SQUARING_SEED)
+        return complex_normal(rng, (self.n, self.tape.m))
+
+    def residuals(self, points: np.ndarray, parameters: np.ndarray) -> np.ndarray:
+        """F (k, m) at points (k, n) of the member with ``parameters`` (q,)."""
+        at = self._with_parameters(points, parameters)
+        values: np.ndarray = self.tape.compiled.complex_residuals(at)
+        return values
+
+    def jacobians(self, points: np.ndarray, parameters: np.ndarray) -> np.ndarray:
+        """Derivatives (k, m, n) of F by x there."""
+        at = self._with_parameters(points, parameters)
+        jacobians: np.ndarray = self.tape.compiled.complex_jacobians(at)
+        return jacobians[:, :, : self.n]
+
+    def _with_parameters(
+        self, points: np.ndarray, parameters: np.ndarray
+    ) -> np.ndarray:
+        repeated = np.broadcast_to(parameters, (len(points), self.parameters))
+        joined: np.ndarray = np.hstack([points, repeated]).astype(complex)
+        return joined
+
+
+def complex_normal(rng: np.random.Generator, shape: Any) -> np.ndarray:
+    """Complex numbers of normal distribution, 1 in the mean square."""
+    numbers: np.ndarray = rng.normal(size=shape) + 1j * rng.normal(size=shape)
+    numbers *= np.sqrt(0.5)
+    return numbers

@@ -1,0 +1,192 @@
+"""Solutions of a family, followed while its parameters move on a straight line.
+
+Every isolated solution of a member is the end of a path that begins at one of the
+solutions of a generic member (coefficient-parameter continuation: Morgan and Sommese
+1989; Sommese and Wampler 2005, theorem 7.1.1). The compiled tracker predicts by the
+Taylor series of a path and corrects by two steps of Newton's method, of which the
+second has to be much smaller than the first. Two paths from different starts do not
+meet but at singular ends: where two came to one regular end, one has jumped, and both
+are followed again in smaller steps.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from bifurc.decisions import is_same_path_end, solves_all_equations
+from bifurc.limits import Deadline
+from bifurc.paths.family import Family
+
+ORDER = 8  # of the series by which the next point is predicted
+TOLERANCE = 1e-5  # of a prediction, over 1 + the size of the point
+SMALLER = 1e-2  # of the tolerance with which paths are followed again
+AGAIN = 3  # times at most
+MOST_STEPS = 2000
+NEARBY = 1e-6  # along any direction: points that are compared
+
+
+class PathEnd(IntEnum):
+    """How a path ended; the numbers are those of the compiled tracker."""
+
+    # At a solution with independent equations.
+    REGULAR = 0
+    # At a solution where they are dependent, or that is not isolated.
+    SINGULAR = 1
+    AT_INFINITY = 2
+    # Where steps became too small.
+    STUCK = 3
+    TOO_LONG = 4
+    # Newton's method does not converge at the start.
+    NO_START = 5
+    OUT_OF_TIME = 6
+
+
+REASONS = {
+    PathEnd.STUCK: "steps became too small",
+    PathEnd.TOO_LONG: f"more than {MOST_STEPS} steps",
+    PathEnd.NO_START: "the start is no solution",
+    PathEnd.OUT_OF_TIME: "out of time",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Paths:
+    """Where paths ended: ``points`` (k, n), what is left of each way, ``rests`` (k,)
+    from 1 to 0, ``ends`` (k,) of `PathEnd`, how often each goes round its end until it
+    closes, ``windings`` (k,), and ``steps`` (k,).
+
+    ``solves_all`` (k,): whether a regular end solves all equations, and not only the
+    combinations of them that were followed.
+    """
+
+    points: np.ndarray
+    rests: np.ndarray
+    ends: np.ndarray
+    windings: np.ndarray
+    steps: np.ndarray
+    solves_all: np.ndarray
+
+    @property
+    def is_regular(self) -> np.ndarray:
+        """Which of them (k,) ended at regular solutions of the equations followed."""
+        regular: np.ndarray = self.ends == PathEnd.REGULAR
+        return regular
+
+    @property
+    def regular(self) -> np.ndarray:
+        """The regular ends (j, n) that solve all equations."""
+        points: np.ndarray = self.points[self.is_regular & self.solves_all]
+        return points
+
+    @property
+    def is_lost(self) -> np.ndarray:
+        """Which of them (k,) came to no end."""
+        lost: np.ndarray = self.ends >= PathEnd.STUCK
+        return lost
+
+    def reasons(self) -> list[str]:
+        """Why paths were lost, each reason once."""
+        kinds = np.unique(self.ends[self.is_lost]).tolist()
+        return [REASONS[PathEnd(kind)] for kind in kinds]
+
+
+def follow_paths(
+    family: Family,
+    starts: np.ndarray,
+    first: np.ndarray,
+    last: np.ndarray,
+    deadline: Deadline | None = None,
+    tolerance: float = TOLERANCE,
+) -> Paths:
+    """The paths of solutions ``starts`` (k, n), all different, of the member with the
+    parameters ``first`` (q,) to that with ``last`` (q,).
+
+    Paths that come to one regular end, and those that are lost, are followed again in
+    smaller steps. None is begun after the ``deadline``.
+    """
+    deadline = deadline or Deadline()
+    paths = _followed(family, starts, first, last, deadline, tolerance)
+    for _ in range(AGAIN):
+        again = np.flatnonzero(_are_doubtful(paths))
+        if not len(again) or deadline.passed:
+            break
+        tolerance *= SMALLER
+        others = _followed(family, starts[again], first, last, deadline, tolerance)
+        for name in vars(paths):
+            getattr(paths, name)[again] = getattr(others, name)
+    # what still meets is not known to be right
+    paths.ends[_meets_another(paths)] = PathEnd.STUCK
+    return paths
+
+
+def _followed(
+    family: Family,
+    starts: np.ndarray,
+    first: np.ndarray,
+    last: np.ndarray,
+    deadline: Deadline,
+    tolerance: float,
+) -> Paths:
+    points, rests, ends, windings, steps = family.tape.compiled.follow_paths(
+        np.ascontiguousarray(starts, dtype=complex),
+        np.ascontiguousarray(first, dtype=complex),
+        np.ascontiguousarray(last, dtype=complex),
+        family.combinations,
+        ORDER,
+        tolerance,
+        MOST_STEPS,
+        deadline.left,
+    )
+    solves_all = np.ones(len(points), dtype=bool)
+    if family.tape.m > family.n:
+        misfits = np.abs(family.residuals(points, last)).max(axis=1, initial=0.0)
+        sizes = np.abs(family.jacobians(points, last)).max(axis=(1, 2), initial=0.0)
+        sizes *= 1.0 + np.abs(points).max(axis=1, initial=0.0)
+        solves_all = solves_all_equations(misfits / sizes)
+    return Paths(points, rests, ends, windings, steps, solves_all)
+
+
+def _are_doubtful(paths: Paths) -> np.ndarray:
+    """Which paths (k,) are to be followed again."""
+    has_failed: np.ndarray = paths.is_lost & (paths.ends != PathEnd.OUT_OF_TIME)
+    doubtful: np.ndarray = has_failed | _meets_another(paths)
+    return doubtful
+
+
+def _meets_another(paths: Paths) -> np.ndarray:
+    """Which paths (k,) ended at a regular solution where another one did."""
+    numbers = np.flatnonzero(paths.is_regular)
+    copies = copy_of(paths.points[numbers])
+    meets = np.zeros(len(paths.ends), dtype=bool)
+    is_copy = copies != np.arange(len(copies))
+    meets[numbers[is_copy]] = True
+    meets[numbers[copies[is_copy]]] = True
+    return meets
+
+
+def copy_of(points: np.ndarray) -> np.ndarray:
+    """For each of the points (k, n) the number (k,) of the first one that is the
+    same."""
+    copies = np.arange(len(points))
+    sizes = 1.0 + np.abs(points).max(axis=1, initial=0.0)
+    # what is the same is near each other in every order along a direction
+    direction = np.random.default_rng(0).normal(size=points.shape[1])
+    heights = points.real @ direction / sizes
+    order = np.argsort(heights)
+    for place, number in enumerate(order.tolist()):
+        for other in order[place + 1 :].tolist():
+            if heights[other] - heights[number] > NEARBY:
+                break
+            gap = float(np.abs(points[other] - points[number]).max(initial=0.0))
+            if is_same_path_end(gap / sizes[number]):
+                copies[other] = copies[number] = min(copies[other], copies[number])
+    return copies
+
+
+def distinct(points: np.ndarray) -> np.ndarray:
+    """The points (k, n) without those that stand there before."""
+    first: np.ndarray = points[copy_of(points) == np.arange(len(points))]
+    return first

@@ -1,0 +1,224 @@
+"""All solutions of a generic member of a family, from one of them.
+
+While the parameters move on a closed way, solutions move to others. If the solutions
+of all members together are one irreducible variety, as where the parameters are
+functions of a solution, every solution is reached from every other one (Duff, Hill,
+Jensen, Lee, Leykin and Sommars 2019).
+
+Whether any is missing is asked of a curve: the solutions while the parameters move on a
+line, with the place t on that line as a further unknown. A hyperplane a x + b t = s
+that moves with s cuts it in points of which the sum is linear in s if they are all of
+them, and of no part of them (the trace test: Sommese, Verschelde and Wampler 2002).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import islice, pairwise
+
+import numpy as np
+
+from bifurc.decisions import is_linear_trace
+from bifurc.equations.tape import TapeWriter
+from bifurc.limits import Deadline
+from bifurc.paths.family import Family, complex_normal
+from bifurc.paths.follow import Paths, distinct, follow_paths
+
+# closed ways in a row that bring nothing new before something else is tried: before the
+# trace test of a curve one is enough
+QUIET, QUIET_ON_CURVE = 2, 1
+MOST_LOOPS = 60
+MOST_SOLUTIONS = 10_000
+CORNERS = 3  # of a closed way
+TESTS = 10  # trace tests, with further closed ways between them
+
+
+@dataclass(frozen=True, eq=False)
+class Fibre:
+    """The ``solutions`` (k, n) that are known of the member with ``parameters``
+    (q,)."""
+
+    parameters: np.ndarray
+    solutions: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class GenericSolutions:
+    """The solutions of a generic member, a ``fibre``.
+
+    ``trace``: by how much the sum of the points in a moving hyperplane was not linear,
+    over its change; None where there was no time for that. ``are_all``: whether that
+    says that no solution is missing.
+    """
+
+    fibre: Fibre
+    trace: float | None
+
+    @property
+    def count(self) -> int:
+        """The number of solutions."""
+        return len(self.fibre.solutions)
+
+    @property
+    def are_all(self) -> bool:
+        """Whether the trace test says that no solution is missing."""
+        return self.trace is not None and is_linear_trace(self.trace)
+
+
+def solve_generic(
+    family: Family,
+    start: np.ndarray,
+    parameters: np.ndarray,
+    rng: np.random.Generator,
+    deadline: Deadline | None = None,
+    most: int = MOST_SOLUTIONS,
+) -> GenericSolutions:
+    """The solutions of the member with generic complex ``parameters`` (q,), of which
+    ``start`` (n,) is one; where there are more than ``most``, some of them.
+
+    Raises `ValueError` where the start is no regular solution.
+    """
+    deadline = deadline or Deadline()
+    fibre = Fibre(np.asarray(parameters, complex), np.asarray(start, complex)[None])
+    _require_start(family, fibre)
+    size = float(np.abs(fibre.parameters).mean()) if len(fibre.parameters) else 1.0
+    ways = _Ways(np.full(family.parameters, size), QUIET, most)
+    fibre = _enlarged(family, fibre, ways, rng, deadline)
+    if deadline.passed or len(fibre.solutions) > most:
+        return GenericSolutions(fibre, None)
+    curve = _CurveOverLine(family, fibre, size, rng, deadline)
+    trace = None
+    for _ in range(TESTS):
+        curve.find_points(rng, deadline)
+        if deadline.passed:
+            break
+        trace = curve.trace(deadline)
+        if trace is not None and is_linear_trace(trace):
+            fibre = curve.solutions_in(fibre, deadline)
+            break
+    return GenericSolutions(fibre, trace)
+
+
+def _require_start(family: Family, fibre: Fibre) -> None:
+    paths = follow_paths(family, fibre.solutions, fibre.parameters, fibre.parameters)
+    if not np.all(paths.is_regular):
+        raise ValueError("start: it is not allowed; it must be a regular solution")
+
+
+@dataclass(frozen=True, eq=False)
+class _Ways:
+    """Closed ways on which parameters move by about their ``sizes`` (q,); ``quiet`` of
+    them in a row that bring nothing new are the last, and none is tried once there are
+    more than ``most`` solutions."""
+
+    sizes: np.ndarray
+    quiet: int
+    most: float = np.inf
+
+    def stops(self, home: np.ndarray, rng: np.random.Generator) -> list[np.ndarray]:
+        """The parameters (q,) at the corners of a way from ``home`` (q,)."""
+        stops = [
+            self.sizes * complex_normal(rng, len(home)) for _ in range(CORNERS - 1)
+        ]
+        return [home, *stops, home]
+
+
+def _enlarged(
+    family: Family,
+    fibre: Fibre,
+    ways: _Ways,
+    rng: np.random.Generator,
+    deadline: Deadline,
+) -> Fibre:
+    """A fibre with the solutions to which closed ways lead."""
+    known = fibre.solutions
+    quiet = 0
+    for _ in range(MOST_LOOPS):
+        if quiet == ways.quiet or deadline.passed or len(known) > ways.most:
+            break
+        points = known
+        for here, there in pairwise(ways.stops(fibre.parameters, rng)):
+            points = follow_paths(family, points, here, there, deadline).regular
+        larger = distinct(np.concatenate([known, points]))
+        quiet = quiet + 1 if len(larger) == len(known) else 0
+        known = larger
+    return Fibre(fibre.parameters, known)
+
+
+class _CurveOverLine:
+    """The curve of the solutions (x, t) of a ``family`` at the parameters p + t v, p
+    those of a ``fibre``, in the hyperplanes a x + b t = s.
+
+    Its family has the unknowns x and t and the parameters p, v, a, b, s.
+    """
+
+    def __init__(
+        self,
+        family: Family,
+        fibre: Fibre,
+        size: float,
+        rng: np.random.Generator,
+        deadline: Deadline,
+    ):
+        self.family = _sliced(family)
+        self.n = family.n
+        direction = size * complex_normal(rng, family.parameters)
+        line = np.concatenate([fibre.parameters, direction])
+        hyperplane = complex_normal(rng, family.n + 2)
+        self.at_fibre = np.concatenate([line, np.zeros(family.n), [1.0, 0.0]])
+        generic = np.concatenate([line, hyperplane])
+        sizes = np.concatenate([np.full(len(line), size), np.ones(len(hyperplane))])
+        self.ways = _Ways(sizes, QUIET_ON_CURVE)
+        starts = np.column_stack([fibre.solutions, np.zeros(len(fibre.solutions))])
+        came = follow_paths(self.family, starts, self.at_fibre, generic, deadline)
+        self.slice = Fibre(generic, came.regular)
+
+    def find_points(self, rng: np.random.Generator, deadline: Deadline) -> None:
+        """Find more of the points in a generic hyperplane: it moves, and so does the
+        line."""
+        self.slice = _enlarged(self.family, self.slice, self.ways, rng, deadline)
+
+    def trace(self, deadline: Deadline) -> float | None:
+        """How far the sum of the points is from linear in s, over its change; None
+        where paths were lost."""
+        sums = [self.slice.solutions.sum(axis=0)]
+        for shift in (1.0, -1.0):
+            moved = self.slice.parameters.copy()
+            moved[-1] += shift
+            paths = self._followed(moved, deadline)
+            if not np.all(paths.is_regular):
+                return None
+            sums.append(paths.points.sum(axis=0))
+        here, ahead, behind = sums
+        change = max(np.abs(ahead - here).max(), np.abs(behind - here).max(), 1.0)
+        return float(np.abs(ahead - 2.0 * here + behind).max() / change)
+
+    def solutions_in(self, fibre: Fibre, deadline: Deadline) -> Fibre:
+        """The fibre at t = 0 with the points of the curve there."""
+        back = self._followed(self.at_fibre, deadline).regular[:, : self.n]
+        both = distinct(np.concatenate([fibre.solutions, back]))
+        return Fibre(fibre.parameters, both)
+
+    def _followed(self, last: np.ndarray, deadline: Deadline) -> Paths:
+        first = self.slice.parameters
+        return follow_paths(self.family, self.slice.solutions, first, last, deadline)
+
+
+def _sliced(family: Family) -> Family:
+    """The family of the points of the curve over a line in a hyperplane."""
+    n, q = family.n, family.parameters
+    writer = TapeWriter(n + 1 + 2 * q + n + 2)
+    numbers = map(writer.unknown, range(writer.n))
+    x, (t,), start, direction, normal, (of_place, s) = (
+        list(islice(numbers, count)) for count in (n, 1, q, q, n, 2)
+    )
+    parameters = [
+        writer.add(one, writer.multiply(t, rate))
+        for one, rate in zip(start, direction, strict=True)
+    ]
+    slots = family.tape.write_on(writer, [*x, *parameters])
+    outputs = [slots[slot] for slot in family.tape.outputs.tolist()]
+    height = writer.multiply(of_place, t)
+    for factor, unknown in zip(normal, x, strict=True):
+        height = writer.add(height, writer.multiply(factor, unknown))
+    return Family(writer.tape([*outputs, writer.subtract(height, s)]), n + 1)

@@ -1,0 +1,88 @@
+"""The command `bifurc animate`: a linkage that moves, as GIF or MP4."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from linkages.app import options
+from linkages.app.exit_codes import CommandError, exit_code_table
+
+ENDINGS = (".gif", ".mp4")
+SIZE = (4.8, 4.0)  # inches
+FEWEST, MOST = 2, 5000
+
+
+@click.command("animate", epilog=exit_code_table())
+@click.argument("source", metavar="NAME|FILE.toml|ATLAS.nc")
+@click.option(
+    "--out",
+    type=options.FILE,
+    required=True,
+    metavar="FILE",
+    help="The moving picture: .gif, or .mp4 where ffmpeg is installed.",
+)
+@click.option(
+    "--form",
+    metavar="FORM",
+    help="A form, by its name or its number in the summary.  [default: the first]",
+)
+@click.option(
+    "--route",
+    type=(str, str),
+    metavar="FROM TO",
+    help="The shortest route between two forms, in place of a form.",
+)
+@options.number_option(
+    "--count", click.IntRange(FEWEST, MOST), 100, "Pictures, 25 a second."
+)
+@click.option(
+    "--size",
+    type=options.Pair("x", "4.8x4.0"),
+    callback=options.check_size,
+    default=SIZE,
+    metavar="WxH",
+    help="Width and height in inches of 100 pixels.  [default: 4.8x4.0]",
+)
+@options.atlas_options
+def animate_command(
+    source: str,
+    out: Path,
+    form: str | None,
+    route: tuple[str, str] | None,
+    count: int,
+    size: tuple[float, float],
+    choice: options.AtlasOptions,
+) -> None:
+    """Show a linkage that moves along a form or a route: straight from above where it
+    is planar, else from where its joints are seen farthest apart.
+
+    \b
+    Examples:
+      bifurc animate bennett --out bennett.gif
+      bifurc animate altmann --form 2 --out altmann.gif --size 3.4x3.4
+      bifurc animate out/atlas.nc --route "Form I" "Form II" --out route.mp4
+    """
+    from bifurc.files.atomic import replace_file
+    from linkages.app.answer.verdict import exit_by, judge
+    from linkages.app.atlas_source import atlas_of
+    from linkages.app.motions import choose_motions
+    from linkages.app.output import require_ending, require_writable, writing_to
+    from linkages.app.texts.form_names import require_forms
+    from linkages.pictures.animation import movie_writer, write_animation
+
+    if form is not None and route is not None:
+        raise CommandError("--form: it does not go with --route")
+    require_ending("--out", out, *ENDINGS)
+    require_writable(out)
+    movie_writer(out)  # an error before anything is computed
+    atlas = atlas_of(source, choice)
+    require_forms(atlas)
+    forms = () if form is None else (form,)
+    routes = () if route is None else (route,)
+    motion = choose_motions(atlas, forms, routes, count)[0]
+    with writing_to(out):
+        replace_file(out, lambda part: write_animation(atlas, motion, size, part))
+    click.echo(f"wrote {out}: {motion.name}", err=True)
+    exit_by(judge(atlas))

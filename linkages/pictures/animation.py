@@ -1,0 +1,64 @@
+"""A linkage that moves, as a picture file: GIF with Pillow, MP4 with ffmpeg, by the
+writers of matplotlib."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.figure import Figure
+
+from bifurc.atlas import Atlas
+from bifurc.errors import BifurcError
+from bifurc.figures.rc import drawing_style
+from linkages.export.model import Motion
+from linkages.pictures.picture import Painter
+from linkages.pictures.plot_linkage import draw_picture
+from linkages.subject import subject_at
+from linkages.viewing.start import clearest
+
+RATE = 25  # pictures a second
+RESOLUTION = 100  # dots per inch
+GIF, MP4 = ".gif", ".mp4"
+
+
+class NoWriterError(BifurcError):
+    """A program is missing that writes this kind of file."""
+
+
+def movie_writer(path: Path) -> AbstractMovieWriter:
+    """What writes a moving picture to a path that ends with .gif or .mp4; raises
+    `NoWriterError`."""
+    if path.suffix.lower() == GIF:
+        return PillowWriter(fps=RATE)
+    if not FFMpegWriter.isAvailable():
+        raise NoWriterError(f"{path.name}: MP4 is written by ffmpeg, which is not here")
+    return FFMpegWriter(fps=RATE)
+
+
+def write_animation(
+    atlas: Atlas, motion: Motion, size: tuple[float, float], path: Path
+) -> None:
+    """Write the linkage of an atlas along a motion, one picture for each of its
+    configurations, of a size in inches; raises `NoWriterError` and `OSError`.
+
+    It is seen from where the configuration is clear whose joints are farthest from one
+    line, and all of the motion is within the picture.
+    """
+    points = motion.configurations
+    parts = subject_at(atlas).parts
+    first = points[clearest(parts.breadths(points))]
+    painter = Painter(parts, first, points)
+    pictures = [painter.picture(point) for point in points]
+    corners = np.array([picture.corners for picture in pictures])
+    frame = np.array([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)])
+    with drawing_style():
+        figure = Figure(figsize=size)
+        ax = figure.add_axes((0, 0, 1, 1))
+        writer = movie_writer(path)
+        with writer.saving(figure, str(path), RESOLUTION):
+            for picture in pictures:
+                ax.clear()
+                draw_picture(ax, picture, frame)
+                writer.grab_frame()

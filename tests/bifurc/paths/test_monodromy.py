@@ -1,0 +1,140 @@
+"""All solutions of generic members of families with known counts."""
+
+import numpy as np
+import pytest
+
+from bifurc.limits import Deadline
+from bifurc.paths.family import Family, complex_normal
+from bifurc.paths.monodromy import Fibre, GenericSolutions, solve_generic
+
+PRISM = [(0, 1), (0, 2), (1, 2), (0, 3), (1, 4), (2, 5), (3, 4), (3, 5), (4, 5)]
+SEVEN_POINTS = [
+    *((0, 1), (0, 2), (1, 2), (0, 3), (1, 4), (3, 4)),
+    *((2, 5), (3, 5), (4, 6), (5, 6), (2, 6)),
+]
+BIPARTITE = [(i, j) for i in range(3) for j in range(3, 6)]
+
+
+def framework(edges, points):
+    """Points in the plane with given distances; the first edge stands still."""
+
+    def equations(x, p):
+        base = {edges[0][0]: (0.0, 0.0), edges[0][1]: (1.0, 1.0)}
+        others = [point for point in range(points) if point not in base]
+        places = {point: x[2 * k : 2 * k + 2] for k, point in enumerate(others)}
+        places |= base
+        return [
+            (places[i][0] - places[j][0]) * (places[i][1] - places[j][1]) - squared
+            for (i, j), squared in zip(edges[1:], p, strict=True)
+        ]
+
+    return Family.of(equations, 2 * points - 4, len(edges) - 1)
+
+
+def generic_solutions(family, seed=0, **options):
+    """Those of a member that a random configuration gives, whose equations are
+    functions of it minus the parameters."""
+    rng = np.random.default_rng(seed)
+    start = complex_normal(rng, family.n)
+    parameters = family.residuals(start[None], np.zeros(family.parameters))[0]
+    return solve_generic(family, start, parameters, rng, **options)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(
+    ("edges", "count"),
+    # Borcea and Streinu 2004; Walter and Husty 2007; the most that seven points have:
+    # Capco, Gallet, Grasegger, Koutschan, Lubbes and Schicho 2018
+    [(PRISM, 24), (BIPARTITE, 16), (SEVEN_POINTS, 56)],
+    ids=["prism", "K(3,3)", "seven points"],
+)
+def test_the_count_of_a_framework_is_that_of_the_literature(edges, count, seed):
+    points = 1 + max(map(max, edges))
+    known = generic_solutions(framework(edges, points), seed)
+    assert known.are_all
+    assert known.count == count
+
+
+def test_a_univariate_polynomial_has_as_many_roots_as_its_degree():
+    family = Family.of(lambda x, p: [x[0] ** 7 + p[1] * x[0] - p[0]], 1, 2)
+    start, slope = 0.3 + 0.4j, 0.7 - 0.2j
+    known = solve_generic(
+        family,
+        np.array([start]),
+        np.array([start**7 + slope * start, slope]),
+        np.random.default_rng(1),
+    )
+    assert known.are_all
+    assert known.count == 7
+
+
+def test_the_trace_test_misses_a_point_that_is_left_out():
+    from bifurc.paths import monodromy
+
+    family = framework(PRISM, 6)
+    rng = np.random.default_rng(0)
+    known = generic_solutions(family)
+    curve = monodromy._CurveOverLine(family, known.fibre, 1.0, rng, Deadline())
+    curve.find_points(rng, Deadline())
+    while not GenericSolutions(known.fibre, curve.trace(Deadline())).are_all:
+        curve.find_points(rng, Deadline())
+    points = curve.slice.solutions
+    for missing in range(0, len(points), 7):
+        left = np.delete(points, missing, axis=0)
+        curve.slice = Fibre(curve.slice.parameters, left)
+        assert curve.trace(Deadline()) > 1e-3
+
+
+def test_what_is_not_tested_for_lack_of_time_is_not_said_to_be_all():
+    known = generic_solutions(framework(PRISM, 6), deadline=Deadline(0.0))
+    assert known.trace is None
+    assert not known.are_all
+
+
+def test_no_more_solutions_than_are_asked_for_are_looked_for():
+    known = generic_solutions(framework(PRISM, 6), most=5)
+    assert not known.are_all
+    assert 5 < known.count <= 24
+
+
+def test_a_start_that_is_no_solution_is_refused():
+    family = framework(PRISM, 6)
+    with pytest.raises(ValueError, match="start: it is not allowed"):
+        solve_generic(family, np.ones(8), np.ones(8), np.random.default_rng(0))
+
+
+def platform(x, p):
+    """Three points of a platform at x (9,), the others as it has them, on six legs: base
+    points (6, 3), squares of the lengths of legs (6,), products of the sides of the
+    three points (3,), and where the others are (3, 3), in p."""
+    first, second, third = x[:3], x[3:6], x[6:]
+    base, legs, sides, others = p[:18], p[18:24], p[24:27], p[27:]
+    side, other = second - first, third - first
+    normal = np.array(
+        [side[k - 2] * other[k - 1] - side[k - 1] * other[k - 2] for k in range(3)]
+    )
+    points = [first, second, third]
+    for k in range(3):
+        along, across, above = others[3 * k : 3 * k + 3]
+        points.append(first + along * side + across * other + above * normal)
+    products = [(side * side).sum(), (other * other).sum(), (side * other).sum()]
+    gaps = [point - base[3 * k : 3 * k + 3] for k, point in enumerate(points)]
+    squares = [(gap * gap).sum() for gap in gaps]
+    return [
+        value - given
+        for value, given in zip([*squares, *products], [*legs, *sides], strict=True)
+    ]
+
+
+def test_a_platform_on_six_legs_has_40_complex_assemblies():
+    """Ronga and Vust 1995; Raghavan 1993."""
+    from bifurc.paths.monodromy import _enlarged, _Ways
+
+    family = Family.of(platform, 9, 36)
+    rng = np.random.default_rng(0)
+    start, parameters = complex_normal(rng, 9), complex_normal(rng, 36)
+    parameters[18:27] = 0.0
+    parameters[18:27] = family.residuals(start[None], parameters)[0]
+    ways = _Ways(np.ones(36), quiet=3)
+    fibre = Fibre(parameters, start[None])
+    assert len(_enlarged(family, fibre, ways, rng, Deadline()).solutions) == 40

@@ -1,0 +1,113 @@
+"""The command `bifurc animate`, and pictures that `bifurc export` and `map` write."""
+
+import numpy as np
+import pytest
+from matplotlib.animation import FFMpegWriter
+from PIL import Image, ImageSequence
+
+from tests.linkages.app.test_files import names, run
+
+
+def frames_of(path) -> list[np.ndarray]:
+    with Image.open(path) as image:
+        return [
+            np.asarray(one.convert("L"), dtype=float)
+            for one in ImageSequence.Iterator(image)
+        ]
+
+
+def test_a_form_goes_round_and_comes_back(tmp_path):
+    out = tmp_path / "bennett.gif"
+    result = run("animate", "bennett", "--out", out, "--count", 9, "--size", "2x2")
+    assert result.exit_code == 0, result.stderr
+    frames = frames_of(out)
+    assert len(frames) >= 8 and frames[0].shape == (200, 200)
+    half = len(frames) // 2
+    assert np.abs(frames[0] - frames[half]).mean() > 1  # it has moved
+    assert np.abs(frames[0] - frames[-1]).mean() < 1  # and is back
+    margins = [frame[[0, -1]].min() for frame in frames]
+    assert min(margins) > 250  # nothing is cut off
+
+
+def test_a_route_is_shown_from_its_begin_to_its_end(tmp_path):
+    out = tmp_path / "route.gif"
+    options = ("--route", "Form I", "Form II", "--count", 5, "--size", "2x2")
+    name = "special-double-subtractive-goldberg"
+    result = run("animate", name, *options, "--out", out)
+    assert result.exit_code == 0, result.stderr
+    assert "to Form II" in result.stderr
+    assert len(frames_of(out)) == 5
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--out", "a.avi"), ".gif or .mp4"),
+        (("--out", "a.gif", "--form", "1", "--route", "a", "b"), "--route"),
+        (("--out", "a.gif", "--form", "Form 9"), "Form 9"),
+        (("--out", "a.gif", "--size", "0x3"), "inches"),
+    ],
+)
+def test_wrong_options_end_in_one_line(options, message, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = run("animate", "bennett", *options)
+    assert result.exit_code != 0
+    assert message in result.stderr and len(result.stderr.splitlines()) == 1
+    assert names(tmp_path) == []
+
+
+def test_mp4_without_ffmpeg_is_said_before_anything_is_computed(tmp_path, monkeypatch):
+    monkeypatch.setattr(FFMpegWriter, "isAvailable", classmethod(lambda cls: False))
+    result = run("animate", "bennett", "--out", tmp_path / "a.mp4")
+    assert result.exit_code != 0 and "ffmpeg" in result.stderr
+
+
+def test_pictures_are_exported(tmp_path):
+    for ending in ("svg", "dxf"):
+        out = tmp_path / f"four_bar.{ending}"
+        assert run("export", "four-bar", "--to", out, "--form", 2).exit_code == 0
+        assert out.stat().st_size > 1000
+
+
+def test_a_map_has_figures_in_the_formats_that_are_asked_for(tmp_path):
+    points = tmp_path / "points.csv"
+    points.write_text("theta1,theta2\n10,20\n")
+    options = ("--format", "pdf,png", "--size", "3.4x2.6", "--range", "0:360")
+    out = tmp_path / "out"
+    result = run("map", "bennett", "--out", out, *options, "--overlay", points)
+    assert result.exit_code == 0, result.stderr
+    figures = {name for name in names(out) if name.endswith(("pdf", "png", "svg"))}
+    stems = ("joint_angles", "linkage", "singular_values", "transition_map")
+    assert figures == {
+        f"{stem}.{ending}" for stem in stems for ending in ("pdf", "png")
+    }
+    with Image.open(out / "transition_map.png") as image:
+        assert image.size == (476, 364)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--size", "3"), "3.4x2.6"),
+        (("--format", "gif"), "png, svg, pdf"),
+        (("--range", "90:0"), "--range 90:0"),
+        (("--form", "Form 9"), "Form 9"),
+        (("--overlay", "bad.csv"), "theta1, theta2"),
+        (("--overlay", "row.csv"), "row 3"),
+        (("--overlay", "none.csv"), "none.csv"),
+    ],
+)
+def test_wrong_options_of_figures_end_in_one_line(
+    options, message, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "bad.csv").write_text("a,b\n1,2\n")
+    (tmp_path / "row.csv").write_text("theta1,theta2\n1,2\n1,x\n")
+    result = run("map", "bennett", "--out", "out", *options)
+    assert result.exit_code != 0
+    assert message in result.stderr.splitlines()[-1]
+
+
+def test_options_of_figures_need_a_folder():
+    result = run("map", "bennett", "--size", "3x3")
+    assert result.exit_code != 0 and "--size" in result.stderr

@@ -1,0 +1,176 @@
+"""Groups larger than a dyad: all complex assemblies, and the real ones among them."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from bifurc.completeness import Level
+from bifurc.paths.monodromy import solve_generic
+from linkages.dyads import group
+from linkages.dyads.group import (
+    Pattern,
+    UnfollowedError,
+    all_assemblies,
+    generic_solutions,
+)
+from linkages.dyads.slices import for_subject
+from linkages.files.bars import read_bars
+from linkages.mapping import map_linkage
+from linkages.structure.structure import Structure
+from tests.samples import one_in
+
+# Two triangles joined by three bars, with lengths of bars between points 1 to 6 for
+# which all complex assemblies are real.
+PRISM = {
+    (1, 2): 2.0,
+    (1, 3): 2.0,
+    (2, 3): 2.0,
+    (1, 4): 7 / 4,
+    (3, 6): 27 / 10,
+    (2, 5): 197 / 100,
+    (4, 5): 11 / 5,
+    (4, 6): 29 / 10,
+    (5, 6): 43 / 20,
+}
+
+
+def pattern_of_bars(bars):
+    """Points (numbers from 0) joined by bars; the first bar stands."""
+    return Pattern(tuple(bars[1:]), standing=2)
+
+
+def lengths_of(bars, places):
+    return np.array([abs(places[end] - places[start]) for start, end in bars])
+
+
+def assemblies_of_bars(bars, lengths):
+    own = [(0j, complex(length)) for length in lengths[1:]]
+    return all_assemblies(pattern_of_bars(bars), own, [0j, complex(lengths[0])])
+
+
+def bars_of_prism():
+    return [(start - 1, end - 1) for start, end in PRISM]
+
+
+def test_a_prism_has_24_real_assemblies():
+    bars, lengths = bars_of_prism(), np.array(list(PRISM.values()))
+    assemblies = assemblies_of_bars(bars, lengths)
+    assert len(assemblies) == 24
+    for places in assemblies:
+        assert np.allclose(lengths_of(bars, places), lengths, atol=1e-13)
+    gaps = np.abs(assemblies[:, None] - assemblies[None]).max(axis=2)
+    assert np.min(gaps[~np.eye(24, dtype=bool)]) > 1e-3
+    # with each its mirror image
+    mirrored = np.abs(assemblies[:, None] - assemblies.conj()[None]).max(axis=2)
+    assert np.all(mirrored.min(axis=1) < 1e-12)
+
+
+# numbers of complex assemblies of Baranov trusses (Rojas and Thomas 2011)
+KNOWN = {
+    # a ternary link on three bars, the group of the third class
+    "triad": (Pattern(((3, 4, 5), (0, 3), (1, 4), (2, 5)), standing=3), 6),
+    "K(3,3)": (
+        pattern_of_bars([(i, j) for i in (0, 2, 4) for j in (1, 3, 5)]),
+        16,
+    ),
+    "prism": (pattern_of_bars(bars_of_prism()), 24),
+}
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_the_count_of_complex_assemblies_is_that_of_the_literature(name):
+    pattern, count = KNOWN[name]
+    assert pattern.is_square
+    generic = generic_solutions(pattern)
+    assert generic.are_all
+    assert generic.count == count
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_the_assemblies_are_the_same_from_whatever_generic_member(seed, monkeypatch):
+    bars = bars_of_prism()
+    lengths = lengths_of(bars, np.exp(1j * np.arange(6) ** 2) + 0.1 * np.arange(6))
+    known = assemblies_of_bars(bars, lengths)
+
+    def another(pattern):
+        rng = np.random.default_rng(1000 + seed)
+        member = group._group(pattern)
+        return solve_generic(member.family, *member.generic_member(rng), rng)
+
+    monkeypatch.setattr(group, "generic_solutions", another)
+    again = assemblies_of_bars(bars, lengths)
+    assert len(known) == len(again) > 0
+    assert len(known) % 2 == 0
+    gaps = np.abs(known[:, None] - again[None]).max(axis=2)
+    assert np.all(gaps.min(axis=1) < 1e-11)
+
+
+def test_assemblies_that_move_are_not_said_to_be_all():
+    # opposite sides of three parallelograms
+    bars = bars_of_prism()
+    places = np.array([0, 1, 0.3 + 0.8j, 0.5 - 1j, 1.5 - 1j, 0.8 - 0.2j])
+    with pytest.raises(UnfollowedError, match="singular or move"):
+        assemblies_of_bars(bars, lengths_of(bars, places))
+
+
+# --- mechanisms -----------------------------------------------------------------------
+
+
+def framework(bars, points):
+    """Points and bars as a file; the first bar stands."""
+    return read_bars(
+        {
+            "fixed": [str(point) for point in bars[0]],
+            "bars": [list(map(str, bar)) for bar in bars[1:]],
+            "points": {str(k): [p.real, p.imag] for k, p in enumerate(points)},
+        },
+        "framework",
+    )
+
+
+def random_framework(rng, points):
+    """A random minimally rigid graph by Henneberg's two steps, and places of its
+    points."""
+    bars = {(0, 1)}
+    for new in range(2, points):
+        ends = [int(end) for end in rng.choice(new, 2, replace=False)]
+        split = sorted(bars)[rng.integers(len(bars))]
+        others = [point for point in range(new) if point not in split]
+        if others and rng.random() < 0.7:
+            bars.discard(split)
+            ends = [*split, others[rng.integers(len(others))]]
+        bars |= {(end, new) for end in ends}
+    places = rng.normal(size=points) + 1j * rng.normal(size=points)
+    return sorted(bars), places
+
+
+def built(mechanism):
+    structure = Structure(mechanism)
+    return for_subject(None, structure, np.random.default_rng(0), 0)
+
+
+def test_the_answer_says_how_many_of_the_complex_assemblies_are_real():
+    bars = bars_of_prism()
+    lengths = list(PRISM.values())
+    places = assemblies_of_bars(bars, np.array(lengths))[0]
+    atlas = map_linkage(framework(bars, places))
+    assert atlas.completeness.level is Level.CERTIFIED
+    assert len(atlas.rigid) == 24
+    text = atlas.completeness.statement
+    assert "24 of 24 complex assemblies are real, and all 24 were followed" in text
+
+
+@pytest.mark.parametrize("seed", one_in(10, range(100)))
+def test_counts_of_random_frameworks_are_the_combinatorial_ones(seed):
+    """By Capco, Gallet, Grasegger, Koutschan, Lubbes and Schicho (2018)."""
+    lnumber = pytest.importorskip("lnumber")
+    rng = np.random.default_rng(seed)
+    points = 6 + seed % 3
+    bars, places = random_framework(rng, points)
+    slices = built(framework(bars, places))
+    bits = [int(pair in bars) for pair in combinations(range(points), 2)]
+    number = lnumber.lnumber(int("".join(map(str, bits)), 2))
+    assert len(slices.starts) % 2 == 0
+    if slices.complex_count is not None:  # dyads alone do else
+        assert slices.complex_count == number

@@ -1,0 +1,110 @@
+"""Robots in URDF, with the YAML file that closes their loops."""
+
+import numpy as np
+import pytest
+
+from linkages import load, map_linkage
+from linkages.file import LinkageFileError
+from linkages.mechanisms.joint import JointKind
+from linkages.structure.structure import Structure
+
+
+def joint(name, parent, child, place, kind="revolute", more=""):
+    return (
+        f'<joint name="{name}" type="{kind}"><origin xyz="{place}"/>'
+        f'<parent link="{parent}"/><child link="{child}"/><axis xyz="0 0 1"/>'
+        f"{more}</joint>"
+    )
+
+
+LINKS = "base", "crank", "rod", "rocker", "end_a", "end_b", "hand"
+JOINTS = {
+    "A": joint("A", "base", "crank", "0 0 0"),
+    "B": joint("B", "crank", "rod", "0 1 0"),
+    "D": joint("D", "base", "rocker", "2 0 0"),
+    "a": joint("a", "rod", "end_a", "2 0.5 0"),
+    "b": joint("b", "rocker", "end_b", "0 1.5 0", kind="fixed"),
+    "H": joint("H", "rocker", "hand", "0 2 0", more='<limit lower="-1" upper="0.5"/>'),
+}
+WHOLE = "closed_loop: [['a', 'b']]\ntype: ['6d']\nname_mot: ['A']\n"
+POINT = "closed_loop:\n  - [a, b]\ntype: [3d]\n"
+
+
+def robot(tmp_path, closures=WHOLE, **joints):
+    links = "".join(f'<link name="{link}"/>' for link in LINKS)
+    text = "".join({**JOINTS, **joints}.values())
+    path = tmp_path / "robot.urdf"
+    path.write_text(f'<robot name="four-bar">{links}{text}</robot>')
+    if closures:
+        (tmp_path / "robot.yaml").write_text(closures)
+    return load(path)
+
+
+def test_a_loop_is_closed_by_the_file_beside(tmp_path, caplog):
+    mechanism = robot(tmp_path)
+    assert mechanism.independent_loops == 1
+    assert "motors, which --drive takes: A" in caplog.text
+    (hanging,) = Structure(mechanism).hanging.joints
+    assert (hanging.joint, hanging.limited) == ("H", True)
+    np.testing.assert_allclose(mechanism.joint("H").place, [2, 2, 0], atol=1e-12)
+    assert mechanism.joint("H").limits == ((-1.0, 0.5),)
+    four_bar = map_linkage(mechanism)
+    assert four_bar.mobility == 1
+    assert len(four_bar.forms) == 2  # no link of 1, 2.06, 1.5 and 2 turns past its line
+
+
+def test_frames_that_share_a_point_are_held_by_a_ball(tmp_path):
+    joints = {"a": joint("a", "rod", "end_a", "2 0.5 0", kind="fixed")}
+    mechanism = robot(tmp_path, POINT, **joints)
+    assert mechanism.joint("a=b").kind is JointKind.SPHERICAL
+    assert map_linkage(mechanism).mobility == 1
+
+
+def test_without_a_file_all_joints_hang(tmp_path):
+    mechanism = robot(tmp_path, "")
+    assert mechanism.independent_loops == 0
+    assert map_linkage(mechanism).mobility == 5
+
+
+def test_a_mimic_is_a_coupling(tmp_path):
+    mimic = '<mimic joint="A" multiplier="-2" offset="0.5"/>'
+    closures = "joint_name: [a]\njoint_type: [FIXED]\n"
+    joints = {"H": joint("H", "rocker", "hand", "0 2 0", more=mimic)}
+    (coupling,) = robot(tmp_path, closures, **joints).joint("H").coupled
+    assert (coupling.to, coupling.ratio) == ("A", -2.0)
+
+
+def test_joints_get_the_kinds_that_the_file_names(tmp_path):
+    closures = WHOLE + "joint_name: [B, H]\njoint_type: [SPHERICAL, UJOINT_ZX]\n"
+    mechanism = robot(tmp_path, closures)
+    assert mechanism.joint("B").kind is JointKind.SPHERICAL
+    cross = mechanism.joint("H")
+    assert cross.kind is JointKind.UNIVERSAL
+    np.testing.assert_allclose(cross.direction, [0, 0, 1], atol=1e-12)
+    np.testing.assert_allclose(cross.second_direction, [1, 0, 0], atol=1e-12)
+
+
+BAD = {
+    "a frame that is not there": ("closed_loop: [[a, z]]\ntype: [6d]\n", r'"z"'),
+    "a type that is not there": ("closed_loop: [[a, b]]\ntype: [5d]\n", r'"5d"'),
+    "a type too few": ("closed_loop: [[a, b]]\n", "number of type: 0"),
+    "no YAML": ("closed_loop: [[a, b]\n", "robot.yaml"),
+    "no table": ("- a\n", "closures"),
+    "a kind that is not there": (
+        "joint_name: [B]\njoint_type: [SCREW]\n",
+        'joint_type of B: "SCREW"',
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_what_is_wrong_is_named(name, tmp_path):
+    closures, message = BAD[name]
+    with pytest.raises(LinkageFileError, match=message):
+        robot(tmp_path, closures)
+
+
+def test_a_circle_of_joints_is_no_tree(tmp_path):
+    circle = joint("A", "rod", "crank", "0 0 0")
+    with pytest.raises(LinkageFileError, match="in a circle"):
+        robot(tmp_path, A=circle)
