@@ -211,6 +211,11 @@ class Linkage:
         return self.loop.name
 
     @property
+    def parts(self) -> tuple[Linkage, ...]:
+        """What does not hang together: the linkage itself."""
+        return (self,)
+
+    @property
     def extent(self) -> float:
         """The characteristic length."""
         return self.loop.characteristic_length

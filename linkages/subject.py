@@ -67,6 +67,11 @@ class Subject(ABC):
     is_exact = False
     places = ""
 
+    @property
+    def held_freedoms(self) -> int:
+        """The freedoms of what hangs on it in no closed loop, and is held."""
+        return 0
+
     # --- equations --------------------------------------------------------------------
 
     @property
@@ -246,6 +251,11 @@ class MechanismSubject(Subject):
     @cached_property
     def closure(self) -> Closure:
         return Closure(self.mechanism, structure=self.readout.structure)
+
+    @property
+    def held_freedoms(self) -> int:
+        structure = self.readout.structure
+        return structure.hanging.freedoms if structure.holds_flaps else 0
 
     @property
     def values(self) -> dict[str, Any]:

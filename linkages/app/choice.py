@@ -213,11 +213,6 @@ def hold_joints(text: str, linkage: Linkage | Mechanism, hold: HoldOptions) -> I
     return Inputs(loop.mechanism, inputs.notes + loop.notes)
 
 
-def parts_of(linkage: Linkage | Mechanism) -> tuple[Linkage | Mechanism, ...]:
-    """The mechanisms that do not hang together; itself where it is one."""
-    return (linkage,) if isinstance(linkage, Linkage) else linkage.parts
-
-
 def _part(mechanism: Mechanism, number: int | None) -> Mechanism:
     """The part of this number, from 1; all of it without one."""
     if number is None:

@@ -85,10 +85,7 @@ def _remark(atlas: Atlas) -> str:
 
 def _flaps(atlas: Atlas) -> str:
     """What hangs on the linkage, where that is held."""
-    readout = subject_at(atlas).readout
-    if readout is None or not readout.structure.holds_flaps:
-        return ""
-    freedoms = readout.structure.hanging.freedoms
+    freedoms = subject_at(atlas).held_freedoms
     return f" What hangs on it has mobility {freedoms} besides." if freedoms else ""
 
 

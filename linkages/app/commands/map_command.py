@@ -107,7 +107,6 @@ def map_command(
       bifurc map special-double-subtractive-goldberg --digits 50
     """
     from linkages.app.atlas_source import explore_parts
-    from linkages.app.choice import parts_of
     from linkages.app.files import figure_axes
     from linkages.app.output import require_folder, require_out
 
@@ -115,7 +114,7 @@ def map_command(
     if digits:
         allow_digits(as_json, nearest, choice.hold)
     mechanism, exact = choose_mapped(linkage, choice, nearest)
-    parts = parts_of(mechanism)
+    parts = mechanism.parts
     folders = folders_of(out, len(parts))
     over = [figure_axes(part, axes, against, window, overlay) for part in parts]
     for folder in folders:

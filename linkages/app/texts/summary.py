@@ -4,6 +4,7 @@ what of it stands on the first screen."""
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,10 @@ from linkages.labels import FormLabels, loop_of
 from linkages.readout.drawn import drawn_place
 from linkages.subject import subject_at
 
+if TYPE_CHECKING:
+    # it imports networkx, which a loop does not need
+    from linkages.readout.readout import Readout
+
 SHOWN = 12  # near misses and rigid assemblies beyond this number are only counted
 SCREEN = 25  # lines that the first screen has
 SCREEN_ROWS = 4  # rigid assemblies and near motions on it
@@ -41,10 +46,10 @@ def make_screen(atlas: Atlas) -> str:
     """What `bifurc map` shows first: verdict, forms, points, what joints do where that
     has room, and one line on how sure it is."""
     points = [_point_records(atlas, title) for title in _titles()]
-    motions = _tables(atlas)[1]
+    tables = _tables(atlas)
     parts = [
         _head_of(atlas),
-        _held(atlas),
+        tables.held,
         section_of("Forms", _shortened(_form_records(atlas))),
         _surfaces(atlas),
         *(
@@ -57,18 +62,15 @@ def make_screen(atlas: Atlas) -> str:
     ]
     shown = [part for part in parts if part]
     certainty = certainty_in_short(atlas.completeness)
-    for motion in filter(None, motions):
+    for motion in filter(None, tables.motions):
         text = "\n\n".join([*shown, motion, certainty])
         if len(text.splitlines()) <= SCREEN:
             shown.append(motion)
     return "\n\n".join([*shown, certainty])
 
 
-def _held(atlas: Atlas) -> str:
+def _held(readout: Readout) -> str:
     """How creases are assigned, and what is held as it lies in no closed loop."""
-    readout = subject_at(atlas).readout
-    if readout is None:
-        return ""
     lines = [describe_creases(readout.mechanism)] if readout.mechanism.creases else []
     lines.append(describe_hanging(readout.structure))
     return "\n".join(filter(None, lines))
@@ -156,10 +158,10 @@ def make_summary(atlas: Atlas) -> str:
     singular points, completeness and time."""
     completeness = atlas.completeness
     provenance = atlas.provenance
-    geometry, motions = _tables(atlas)
+    tables = _tables(atlas)
     parts = [
         _head_of(atlas),
-        *geometry,
+        *tables.geometry,
         section_of("Forms", _form_records(atlas)),
         _surfaces(atlas),
         *(section_of(title, _point_records(atlas, title)) for title in _titles()),
@@ -167,18 +169,27 @@ def make_summary(atlas: Atlas) -> str:
         section("Rigid assemblies", *_rigid_table(atlas), SHOWN),
         section_of(NEAR_MOTIONS, _near_motion_records(atlas), SHOWN),
         _certificates(atlas),
-        *motions,
+        *tables.motions,
         f"Completeness ({completeness.level}): {completeness.statement}.",
         f"Explored in {provenance.seconds:.3f} s, seed {provenance.seed}.",
     ]
     return "\n\n".join(part for part in parts if part)
 
 
-def _tables(atlas: Atlas) -> tuple[list[str], list[str]]:
-    """Tables of what was mapped, and of what it does along its forms."""
+class _Tables(NamedTuple):
+    """What is ``held`` of what was mapped, tables of its ``geometry``, and of what it does
+    along its forms."""
+
+    held: str
+    geometry: list[str]
+    motions: list[str]
+
+
+def _tables(atlas: Atlas) -> _Tables:
+    """The tables of a loop, or of a mechanism."""
     readout = subject_at(atlas).readout
     if readout is None:
-        return [describe_geometry(loop_of(atlas))], []
+        return _Tables("", [describe_geometry(loop_of(atlas))], [])
     from linkages.app.texts import mechanism_text
 
     geometry = [
@@ -187,12 +198,13 @@ def _tables(atlas: Atlas) -> tuple[list[str], list[str]]:
         mechanism_text.describe_loops(atlas, readout),
     ]
     if not atlas.forms:
-        return geometry, []
-    return geometry, [
+        return _Tables(_held(readout), geometry, [])
+    motions = [
         mechanism_text.describe_motions(atlas, readout),
         mechanism_text.describe_dead_points(atlas, readout),
         mechanism_text.describe_outer_motions(atlas, readout),
     ]
+    return _Tables(_held(readout), geometry, motions)
 
 
 def _form_records(atlas: Atlas) -> list[dict[str, str]]:
