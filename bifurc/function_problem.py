@@ -213,6 +213,8 @@ class FunctionProblem(EquationProblem):
     a period that is none of the function.
     """
 
+    has_exact_constants = False  # they are the doubles that the function computes with
+
     def __init__(
         self,
         function: Callable[[np.ndarray], Sequence[float] | np.ndarray],
@@ -414,15 +416,11 @@ class FunctionProblem(EquationProblem):
             return
         given = [self._jacobian_as_given(probe) for probe in probes]
         values = [self.equations.value(probe) for probe in probes]
-        origin = "by differences"
-        expected = [self.equations.central_difference(probe, sizes) for probe in probes]
-        if self.equations.tape is not None:
-            expected = list(self.jacobians(probes))
-            origin = "as recorded"
+        origin, expected = self._jacobians_without_given(probes, sizes)
         is_known = np.isfinite(expected).all(axis=(1, 2))  # else at the rim of F
         if not np.any(is_known):
             return
-        rows = sizes_of_rows(sizes * np.array(expected)[is_known], np.array(values))
+        rows = sizes_of_rows(sizes * expected[is_known], np.array(values))
         for number in np.flatnonzero(is_known):
             gaps = np.abs(given[number] - expected[number])
             shares = gaps * sizes / rows[:, None]
@@ -432,6 +430,16 @@ class FunctionProblem(EquationProblem):
                 right = f"{expected[number][row, column]:.6g} {origin}"
                 allowed = f"the derivative of the function, {right} at {probes[number]}"
                 raise ProblemError(name, given[number][row, column], allowed)
+
+    def _jacobians_without_given(
+        self, probes: np.ndarray, sizes: np.ndarray
+    ) -> tuple[str, np.ndarray]:
+        """F' (k, m, n) at the probes (k, n) as recorded, else by differences, and which of
+        these."""
+        if self.equations.tape is not None:
+            return "as recorded", self.jacobians(probes)
+        by_differences = self.equations.central_difference
+        return "by differences", np.array([by_differences(p, sizes) for p in probes])
 
     def _jacobian_as_given(self, probe: np.ndarray) -> np.ndarray:
         """F' (m, n) as it is given at a probe (n,); raises `ProblemError` where it has
