@@ -571,9 +571,11 @@ def _checked_texts(name: str, texts: Sequence[str]) -> tuple[str, ...]:
 
 
 def _spectral_norm(matrix: np.ndarray | sparray) -> float:
-    """Largest singular value of a dense matrix; for a sparse or a large one the bound
-    sqrt(|A|_1 |A|_inf)."""
+    """Largest singular value of a dense matrix, nan where it is not finite; for a sparse
+    or a large one the bound sqrt(|A|_1 |A|_inf)."""
     if isinstance(matrix, np.ndarray):
+        if not np.all(np.isfinite(matrix)):
+            return np.nan
         if max(matrix.shape) <= LARGEST_COMPARED:
             return float(np.linalg.norm(matrix, ord=2))
         sizes: np.ndarray | sparray = abs(matrix)

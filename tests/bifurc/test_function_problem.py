@@ -265,3 +265,8 @@ def test_imaginary_parts_that_are_dropped_are_noticed_in_any_units(size):
         lambda u: [size * (u[0] ** 2 + u[1] ** 2 - 1.0)], BOX, is_recorded=False
     )
     assert analytic.accuracy.derivatives == "complex step"
+
+
+def test_a_derivative_that_is_finite_nowhere_is_said():
+    with pytest.raises(ProblemError, match=r"derivative of the function: nan"):
+        FunctionProblem(lambda u: [u[1] + np.arcsin(u[0] / u[0])], BOX)
