@@ -19,7 +19,7 @@ from bifurc.decisions import (
     is_whole_circle,
 )
 from bifurc.domain import Domain
-from bifurc.equations.evaluation import Equations, noise_of
+from bifurc.equations.evaluation import Equations, noise_of, sizes_of_rows
 from bifurc.equations.recording import Recording, record
 from bifurc.equations.system import CompiledSystem, ScaledTape
 from bifurc.equations.tape import Tape
@@ -213,6 +213,8 @@ class FunctionProblem(EquationProblem):
     a period that is none of the function.
     """
 
+    has_exact_constants = False  # they are the doubles that the function computes with
+
     def __init__(
         self,
         function: Callable[[np.ndarray], Sequence[float] | np.ndarray],
@@ -307,15 +309,15 @@ class FunctionProblem(EquationProblem):
         size."""
         self._take_magnitude(1.0)
         with np.errstate(all="ignore"):
-            self.equations = self.equations.with_derivatives_at(probes[0])
+            sizes = _sizes_within(self.domain)
+            self.equations = self.equations.with_derivatives_at(probes[0], sizes)
             self.accuracy = accuracy_of(self.equations)
-            for probe in probes:
-                self._check_jacobian(probe)
-            sizes = [_spectral_norm(jacobian_at(self, probe)) for probe in probes]
-        if not np.any(np.isfinite(sizes)):
+            self._check_jacobian(probes, sizes)
+            norms = [_spectral_norm(jacobian_at(self, probe)) for probe in probes]
+        if not np.any(np.isfinite(norms)):
             allowed = "finite somewhere inside the bounds"
             raise ProblemError("derivative of the function", np.nan, allowed)
-        magnitude = self.equations.typical_size(probes, sizes, self.domain.scale)
+        magnitude = self.equations.typical_size(probes, norms, self.domain.scale)
         self._take_magnitude(magnitude)
 
     def _measure_noise(self, probes: np.ndarray) -> None:
@@ -324,8 +326,9 @@ class FunctionProblem(EquationProblem):
         if self.equations.tape is not None or self.n > LARGEST_COMPARED:
             return
         rng, value = np.random.default_rng(0), self.equations.value
+        sizes = _sizes_within(self.domain)
         with np.errstate(all="ignore"):
-            noise = noise_of(value, probes[:NOISE_PROBES], self.domain.scale, rng)
+            noise = noise_of(value, probes[:NOISE_PROBES], sizes, rng)
             values = np.array([value(probe) for probe in probes])
         if noise is None:
             return
@@ -401,39 +404,53 @@ class FunctionProblem(EquationProblem):
             )
             raise ProblemError(f"period of {self.domain.names[i]}", period, allowed)
 
-    def _check_jacobian(self, probe: np.ndarray) -> None:
-        """Raise `ProblemError` unless F' has its shape and is finite at a probe (n,),
-        and agrees with the recording or with differences where it is given."""
+    def _check_jacobian(self, probes: np.ndarray, sizes: np.ndarray) -> None:
+        """Raise `ProblemError` unless F' has its shape and is finite at the probes (k, n),
+        and agrees with the recording or with differences where it is given; the unknowns
+        have the ``sizes`` (n,)."""
         if self.equations.given_jacobian is None:
             return
-        shape = (len(self.equations.value(probe)), self.n)
+        if self.n > LARGEST_COMPARED:
+            for probe in probes:
+                self._jacobian_as_given(probe)
+            return
+        given = [self._jacobian_as_given(probe) for probe in probes]
+        values = [self.equations.value(probe) for probe in probes]
+        origin, expected = self._jacobians_without_given(probes, sizes)
+        is_known = np.isfinite(expected).all(axis=(1, 2))  # else at the rim of F
+        if not np.any(is_known):
+            return
+        rows = sizes_of_rows(sizes * expected[is_known], np.array(values))
+        for number in np.flatnonzero(is_known):
+            gaps = np.abs(given[number] - expected[number])
+            shares = gaps * sizes / rows[:, None]
+            if not is_derivative(float(shares.max())):
+                row, column = np.unravel_index(np.argmax(shares), shares.shape)
+                name = f"jacobian[{row}, {column}]"
+                right = f"{expected[number][row, column]:.6g} {origin}"
+                allowed = f"the derivative of the function, {right} at {probes[number]}"
+                raise ProblemError(name, given[number][row, column], allowed)
+
+    def _jacobians_without_given(
+        self, probes: np.ndarray, sizes: np.ndarray
+    ) -> tuple[str, np.ndarray]:
+        """F' (k, m, n) at the probes (k, n) as recorded, else by differences, and which of
+        these."""
+        if self.equations.tape is not None:
+            return "as recorded", self.jacobians(probes)
+        by_differences = self.equations.central_difference
+        return "by differences", np.array([by_differences(p, sizes) for p in probes])
+
+    def _jacobian_as_given(self, probe: np.ndarray) -> np.ndarray:
+        """F' (m, n) as it is given at a probe (n,); raises `ProblemError` where it has
+        another shape, or is not finite."""
         jacobian = as_dense(self.equations.jacobian_as_given(probe))
+        shape = (self.equations.m, self.n)
         if jacobian.shape != shape:
             raise ProblemError("shape of the jacobian", jacobian.shape, str(shape))
         if not np.all(np.isfinite(jacobian)):
             raise ProblemError("jacobian", jacobian, "finite")
-        if self.n > LARGEST_COMPARED:
-            return
-        expected = self.equations.central_difference(probe)
-        origin = "by differences"
-        if self.equations.tape is not None:
-            expected = self.jacobians(probe[None])[0]
-            origin = "as recorded"
-        if np.all(np.isfinite(expected)):  # else at the rim of where F is defined
-            _require_derivative(jacobian, expected, f"{origin} at {probe}")
-
-
-def _require_derivative(
-    jacobian: np.ndarray, expected: np.ndarray, origin: str
-) -> None:
-    """Raise `ProblemError` unless a matrix (m, n) is the derivative that is expected."""
-    gaps = np.abs(jacobian - expected)
-    if is_derivative(float(gaps.max()), 1.0 + float(np.abs(expected).max())):
-        return
-    row, column = np.unravel_index(np.argmax(gaps), gaps.shape)
-    name = f"jacobian[{row}, {column}]"
-    allowed = f"the derivative of the function, {expected[row, column]:.6g} {origin}"
-    raise ProblemError(name, jacobian[row, column], allowed)
+        return jacobian
 
 
 def accuracy_of(equations: Equations) -> Accuracy:
@@ -496,6 +513,13 @@ def _quarter_of_width(bounds: np.ndarray) -> float:
     return float(np.median(high - low)) / 4.0
 
 
+def _sizes_within(domain: Domain) -> np.ndarray:
+    """The typical size (n,) of each of the unknowns of a domain."""
+    low, high = _finite_bounds(domain)
+    sizes: np.ndarray = 0.25 * (high - low)
+    return sizes
+
+
 def _finite_bounds(domain: Domain) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper ends (n,); where the bounds are infinite, half a period about
     0, or from -1 to 1, or as far from the other end as that is from 0 and 1 more."""
@@ -547,9 +571,11 @@ def _checked_texts(name: str, texts: Sequence[str]) -> tuple[str, ...]:
 
 
 def _spectral_norm(matrix: np.ndarray | sparray) -> float:
-    """Largest singular value of a dense matrix; for a sparse or a large one the bound
-    sqrt(|A|_1 |A|_inf)."""
+    """Largest singular value of a dense matrix, nan where it is not finite; for a sparse
+    or a large one the bound sqrt(|A|_1 |A|_inf)."""
     if isinstance(matrix, np.ndarray):
+        if not np.all(np.isfinite(matrix)):
+            return np.nan
         if max(matrix.shape) <= LARGEST_COMPARED:
             return float(np.linalg.norm(matrix, ord=2))
         sizes: np.ndarray | sparray = abs(matrix)

@@ -33,6 +33,9 @@ DIFFERENCE_STEP = 6e-6  # third root of rounding: best for central differences o
 VALUE, SHOWN = "value of the function", 4  # unknowns of a place in an error
 MADE_BY_ROUNDING = 10.0  # times bounds on the rounding of F
 SOLVED_IN_NOISE = 30.0  # times the noise, below which a value is zero
+AGREEMENT = 1e-5  # of derivatives by complex step with those by differences
+TINY = 1e-300  # keeps a size of zero from being one
+SMALLEST_ROW = 1e-5  # over the largest; rounding may make a row of differences below it
 
 # From a point (n,) to F (m,), and to F' (m, n), dense or sparse.
 Function: TypeAlias = Callable[[np.ndarray], "Sequence[float] | np.ndarray"]
@@ -91,15 +94,18 @@ class Equations:
             noise=None if self.noise is None else units.weights * self.noise,
         )
 
-    def with_derivatives_at(self, probe: np.ndarray) -> Equations:
-        """The same with F' made as well as can be, by what is seen at a point (n,)."""
+    def with_derivatives_at(self, probe: np.ndarray, sizes: np.ndarray) -> Equations:
+        """The same with F' made as well as can be, by what is seen at a point (n,) of
+        unknowns of the ``sizes`` (n,)."""
         is_given = self.tape is None and self.given_jacobian is not None
         is_sparse = is_given and not isinstance(
             self.jacobian_as_given(probe), np.ndarray
         )
-        return replace(self, derivatives=self._best_way(probe), is_sparse=is_sparse)
+        return replace(
+            self, derivatives=self._best_way(probe, sizes), is_sparse=is_sparse
+        )
 
-    def _best_way(self, probe: np.ndarray) -> str:
+    def _best_way(self, probe: np.ndarray, sizes: np.ndarray) -> str:
         """How F' is made: from the recording or as it is given, else by complex step,
         if that agrees with differences at a point.
 
@@ -116,12 +122,13 @@ class Equations:
                 by_complex = self.complex_step(probe)
         except (TypeError, ValueError):
             return "central differences"
-        by_difference = self.central_difference(probe)
+        by_difference = self.central_difference(probe, sizes)
         if by_complex.shape != by_difference.shape:
             return "central differences"
-        error = np.abs(by_complex - by_difference).max()
-        size = 1.0 + np.abs(by_difference).max()
-        return "complex step" if error < 1e-5 * size else "central differences"
+        errors = np.abs(sizes * (by_complex - by_difference)).max(axis=1)
+        rows = sizes_of_rows(sizes * by_difference, self.value(probe))
+        is_equal = bool(np.all(errors < AGREEMENT * rows))
+        return "complex step" if is_equal else "central differences"
 
     def value(self, point: np.ndarray) -> np.ndarray:
         """What the function gives at one point (n,), as an array."""
@@ -175,7 +182,7 @@ class Equations:
         with np.errstate(all="ignore"):
             if self.derivatives == "complex step":
                 return self.complex_step(point)
-            return self.central_difference(point)
+            return self.central_difference(point, 1.0 + np.abs(point))
 
     def jacobian_as_given(self, point: np.ndarray) -> np.ndarray | sparray:
         """What the ``given_jacobian`` is at one point (n,)."""
@@ -192,13 +199,14 @@ class Equations:
             columns.append(np.imag(value) / COMPLEX_STEP)
         return np.column_stack(columns)
 
-    def central_difference(self, point: np.ndarray) -> np.ndarray:
-        """F' (m, n) at one point (n,) by central differences."""
+    def central_difference(self, point: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+        """F' (m, n) at one point (n,) by central differences, of unknowns of the
+        ``sizes`` (n,)."""
         columns = []
-        size = max(DIFFERENCE_STEP, self.noise_share ** (1.0 / 3.0))
+        share = max(DIFFERENCE_STEP, self.noise_share ** (1.0 / 3.0))
         for i in range(len(point)):
             step = np.zeros(len(point))
-            step[i] = size * (1.0 + abs(point[i]))
+            step[i] = share * sizes[i]
             upper = self.value(point + step)
             lower = self.value(point - step)
             width = 2 * step[i]
@@ -229,6 +237,17 @@ class Equations:
         return None if tape is None else partial(rounding_of_constants, tape)
 
 
+def sizes_of_rows(derivatives: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """By how much each equation (m,) changes over the sizes of the unknowns, given what
+    it changes by (..., m, n) and its values (..., m); no less than what rounding of all
+    of them may look like."""
+    changes = np.abs(derivatives).max(axis=-1)
+    rows = changes.reshape(-1, changes.shape[-1]).max(axis=0)
+    largest = max(float(rows.max()), float(np.abs(values).max()), TINY)
+    sizes: np.ndarray = rows + SMALLEST_ROW * largest
+    return sizes
+
+
 VALUES = 13  # along each line
 ORDERS = range(5, 10)  # of differences that are compared
 LONG, SHORT = 1e-3, 1e-4  # steps between values, over the size of the region
@@ -241,18 +260,18 @@ SMOOTH = 1e4
 def noise_of(
     function: Callable[[np.ndarray], np.ndarray],
     points: np.ndarray,
-    scale: float,
+    sizes: np.ndarray,
     rng: np.random.Generator,
 ) -> np.ndarray | None:
     """The standard deviation (m,) of what is not smooth in the values (m,) of a
-    ``function`` of an unknown size ``scale`` about points (k, n); None where too few of
-    these are finite."""
+    ``function`` of unknowns of the ``sizes`` (n,) about points (k, n); None where too
+    few of these are finite."""
     estimates = []
     for point in points:
         heading = rng.normal(size=len(point))
         heading /= np.linalg.norm(heading)
-        over_long = _along(function, point, LONG * scale * heading)
-        over_short = _along(function, point, SHORT * scale * heading)
+        over_long = _along(function, point, LONG * sizes * heading)
+        over_short = _along(function, point, SHORT * sizes * heading)
         if over_long is not None and over_short is not None:
             is_smooth = over_long > SMOOTH * over_short
             estimates.append(np.where(is_smooth, over_short, over_long))

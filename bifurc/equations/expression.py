@@ -180,6 +180,11 @@ class _Reader:
                 f"the exponent {value:g} at column {sign.column + len(sign.text)} is "
                 f"larger than {LARGEST_EXPONENT}"
             )
+        if value is None and base.value is not None and base.value <= 0.0:
+            raise ExpressionError(
+                f"{sign.text} at column {sign.column} raises {base.value:g} to an unknown; "
+                "what is raised to an unknown must be positive"
+            )
         return self._combined("^", sign, base, exponent)
 
     def _atom(self) -> Part:

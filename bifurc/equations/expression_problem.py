@@ -69,6 +69,8 @@ class ExpressionProblem(TapeProblem):
     unknowns of the ``names``. At high precision the numbers in it are exact: a third is
     a third."""
 
+    has_exact_constants = True
+
     def __init__(
         self,
         program: Program,

@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -24,6 +24,8 @@ from bifurc.equations.tape import PARTIAL, Node, Operation, Tape, TapeWriter
 if TYPE_CHECKING:
     from flint import fmpq_mpoly  # few searches need it
 
+BITS_OF_DOUBLES = 54  # ratios of more are no simpler than a double
+Ratio: TypeAlias = Callable[[float], Fraction]  # what a double stands for
 MOST_TERMS = 400  # of a polynomial whose factors are looked for
 
 
@@ -81,13 +83,16 @@ def written_factors(tape: Tape) -> Factors:
     return replace(factors, rims=rims, are_plain=are_plain)
 
 
-def polynomial_factors(tape: Tape, rows: Sequence[int], region: np.ndarray) -> Factors:
+def polynomial_factors(
+    tape: Tape, rows: Sequence[int], region: np.ndarray, ratio: Ratio = Fraction
+) -> Factors:
     """The same, with the square-free factors of polynomials for the equations ``rows``,
     where they are polynomials in the unknowns and in functions of them, of not too many
     terms.
 
     They are expanded about the middle of a ``region`` (n, 2) that is far from zero: there
-    the terms of (u - c)^2 are as large as c^2, and what they add up to is lost.
+    the terms of (u - c)^2 are as large as c^2, and what they add up to is lost. The
+    constants of the tape are what ``ratio`` makes of them.
     """
     written = written_factors(tape)
     writer = TapeWriter(tape.n)
@@ -98,7 +103,7 @@ def polynomial_factors(tape: Tape, rows: Sequence[int], region: np.ndarray) -> F
     for row, slot in enumerate(tape.outputs.tolist()):
         found = None
         if row in rows and written.are_plain:
-            found = _polynomial_powers(writer, slots[slot], origins)
+            found = _polynomial_powers(writer, slots[slot], origins, ratio)
         if found is None:
             found = {}
             for output, number, power in zip(
@@ -107,7 +112,7 @@ def polynomial_factors(tape: Tape, rows: Sequence[int], region: np.ndarray) -> F
                 if number == row:
                     found[of_factors[output]] = power
             if row in rows and not written.are_plain:
-                found = _polynomial_parts(writer, found, origins)
+                found = _polynomial_parts(writer, found, origins, ratio)
         for factor, power in found.items():
             entries.append((row, factor, power))
     factors = _factors(writer, entries)
@@ -199,7 +204,7 @@ def _origins(region: np.ndarray) -> list[float]:
 
 
 def _polynomial_powers(
-    writer: TapeWriter, output: int, origins: Sequence[float]
+    writer: TapeWriter, output: int, origins: Sequence[float], ratio: Ratio
 ) -> dict[int, int] | None:
     """The slots of the square-free factors of the polynomial in slot ``output``, newly
     written in the unknowns less their ``origins`` (n,), and the power of each; None where
@@ -213,8 +218,8 @@ def _polynomial_powers(
     ]
     if not generators or any(nodes[k].operation in _REFUSED for k in generators):
         return None
-    shifts = [_shift_of(nodes[slot], origins) for slot in generators]
-    polynomial = _expanded(nodes, output, dict(zip(generators, shifts, strict=True)))
+    shifts = {slot: _shift_of(nodes[slot], origins) for slot in generators}
+    polynomial = _expanded(nodes, output, shifts, ratio)
     if polynomial is None or not polynomial:
         return None
     degrees = zip(generators, polynomial.degrees(), strict=True)
@@ -223,19 +228,22 @@ def _polynomial_powers(
     _, factors = polynomial.factor_squarefree()
     shifted = [
         writer.add(slot, writer.constant(-shift)) if shift else slot
-        for slot, shift in zip(generators, shifts, strict=True)
+        for slot, shift in shifts.items()
     ]
     return {_written(writer, factor, shifted): int(power) for factor, power in factors}
 
 
 def _polynomial_parts(
-    writer: TapeWriter, factors: Mapping[int, int], origins: Sequence[float]
+    writer: TapeWriter,
+    factors: Mapping[int, int],
+    origins: Sequence[float],
+    ratio: Ratio,
 ) -> dict[int, int]:
     """The same of each of the ``factors``, by their slots, with their powers; those that
     are no polynomials as they are."""
     parts: dict[int, int] = defaultdict(int)
     for slot, power in factors.items():
-        found = _polynomial_powers(writer, slot, origins) or {slot: 1}
+        found = _polynomial_powers(writer, slot, origins, ratio) or {slot: 1}
         for part, multiplicity in found.items():
             parts[part] += power * multiplicity
     return parts
@@ -264,12 +272,26 @@ def _polynomial_part(writer: TapeWriter, output: int) -> list[int]:
     return sorted(needed)
 
 
+def simplest_ratio(number: float) -> Fraction:
+    """The ratio of fewest digits, as a rule, that is rounded to a double: 9/100 of
+    0.09. With it x^2 - 0.6 x + 0.09 is a square, which it is not in doubles."""
+    exact = Fraction(number)
+    for bits in range(0, BITS_OF_DOUBLES, 3):
+        near = exact.limit_denominator(1 << bits)
+        if float(near) == number:
+            return near
+    return exact
+
+
 def _expanded(
-    nodes: dict[int, Node], output: int, shifts: dict[int, float]
+    nodes: dict[int, Node],
+    output: int,
+    shifts: dict[int, float],
+    ratio: Ratio,
 ) -> fmpq_mpoly | None:
     """The polynomial in slot ``output`` over the rational numbers, in the generators,
     given by their slots, less the ``shifts`` of them; None where it has more than
-    `MOST_TERMS`."""
+    `MOST_TERMS`. Its constants are what ``ratio`` makes of doubles."""
     from flint import fmpq, fmpq_mpoly_ctx
 
     domain = fmpq_mpoly_ctx.get([f"g{slot}" for slot in shifts])
@@ -280,7 +302,7 @@ def _expanded(
     for slot, node in nodes.items():
         if slot in values:
             continue
-        number = fmpq(*node.constant.as_integer_ratio())
+        number = fmpq(*ratio(node.constant).as_integer_ratio())
         values[slot] = _value(node, domain.constant(number), values)
         if len(values[slot]) > MOST_TERMS:
             return None

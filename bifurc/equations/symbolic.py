@@ -43,6 +43,8 @@ class SymbolicProblem(TapeProblem):
     names the expression and the symbol or the function which cannot be used.
     """
 
+    has_exact_constants = True
+
     def __init__(
         self,
         expressions: Sequence[Any],

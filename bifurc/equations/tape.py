@@ -8,6 +8,7 @@ other kind.
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from enum import IntEnum
@@ -455,9 +456,9 @@ class TapeWriter:
                 return self.constant(float(np.float64(a) ** b))
         if b is None:
             if a is not None:
-                return self.apply(
-                    Operation.EXP, self.multiply(exponent, self.constant(np.log(a)))
-                )
+                logarithm_of_base = math.log(a) if a > 0.0 else math.nan
+                scaled = self.multiply(exponent, self.constant(logarithm_of_base))
+                return self.apply(Operation.EXP, scaled)
             logarithm = self.apply(Operation.LOG, base)
             return self.apply(Operation.EXP, self.multiply(exponent, logarithm))
         if b == 0.5:

@@ -226,3 +226,47 @@ def test_a_function_may_change_its_argument(is_recorded):
     problem = FunctionProblem(spoiled, BOX, jacobian=given, is_recorded=is_recorded)
     (form,) = explore(problem).forms
     assert form.branch.length == pytest.approx(2 * math.pi)
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+def test_a_wrong_jacobian_is_refused_in_any_units(size):
+    box = [(-2.0 * size, 2.0 * size)] * 2
+
+    def values(u):
+        x, y = float(u[0]) / size, float(u[1]) / size
+        return [np.sin(x) - y, 1e-3 * (x * y - 0.1)]
+
+    def right(u):
+        x, y = u / size
+        return np.array(
+            [[np.cos(x) / size, -1.0 / size], [1e-3 * y / size, 1e-3 * x / size]]
+        )
+
+    FunctionProblem(values, box, jacobian=right)
+    for row in range(2):
+        factors = np.where(np.arange(2) == row, 2.0, 1.0)
+
+        def wrong(u, factors=factors):
+            return factors[:, None] * right(u)
+
+        with pytest.raises(ProblemError, match=rf"jacobian\[{row}, "):
+            FunctionProblem(values, box, jacobian=wrong)
+
+
+@pytest.mark.parametrize("size", [1e-8, 1.0, 1e8])
+def test_imaginary_parts_that_are_dropped_are_noticed_in_any_units(size):
+    def values(u):
+        x, y = np.real(u).tolist()
+        return [size * (x**2 + y**2 - 1.0)]
+
+    problem = FunctionProblem(values, BOX, is_recorded=False)
+    assert problem.accuracy.derivatives == "central differences"
+    analytic = FunctionProblem(
+        lambda u: [size * (u[0] ** 2 + u[1] ** 2 - 1.0)], BOX, is_recorded=False
+    )
+    assert analytic.accuracy.derivatives == "complex step"
+
+
+def test_a_derivative_that_is_finite_nowhere_is_said():
+    with pytest.raises(ProblemError, match=r"derivative of the function: nan"):
+        FunctionProblem(lambda u: [u[1] + np.arcsin(u[0] / u[0])], BOX)

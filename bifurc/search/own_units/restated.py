@@ -68,18 +68,21 @@ def restated_branch(branch: Branch, units: Units, periods: np.ndarray) -> Course
     if units.is_uniform or not len(branch.pieces):
         return _scaled_course(branch, units, periods)
     pieces: list[_Piece] = []
-    for low, high in zip(branch.breaks[:-1], branch.breaks[1:], strict=True):
-        pieces += _pieces_between(branch, units, float(low), float(high))
+    numbers: list[int] = []  # of the pieces that they are parts of
+    for number in np.flatnonzero(np.diff(branch.breaks) > 0.0):  # some have no length
+        low, high = branch.breaks[number : number + 2]
+        parts = _pieces_between(branch, units, float(low), float(high))
+        pieces += parts
+        numbers += [int(number)] * len(parts)
     lengths = np.array([piece.length for piece in pieces])
     ends = np.cumsum(lengths)
     starts = ends - lengths
-    numbers = np.searchsorted(branch.breaks, [piece.low for piece in pieces], "right")
     restated_pieces = Branch(
         pieces=np.array([piece.coefficients for piece in pieces]),
         centers=starts + 0.5 * lengths,
         radii=0.5 * lengths,
         breaks=np.concatenate([[0.0], ends]),
-        residuals=branch.residuals[numbers - 1],
+        residuals=branch.residuals[numbers],
         periods=periods,
         outcome=branch.outcome,
         gap=branch.gap,

@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -28,7 +29,13 @@ from bifurc.decisions import (
 )
 from bifurc.domain import Domain
 from bifurc.equations.differentiation import with_gradients
-from bifurc.equations.factors import Factors, polynomial_factors, written_factors
+from bifurc.equations.factors import (
+    Factors,
+    Ratio,
+    polynomial_factors,
+    simplest_ratio,
+    written_factors,
+)
 from bifurc.equations.rims import NO_RIMS, Rims
 from bifurc.equations.system import LARGEST_DENSE
 from bifurc.equations.tape import Tape, TapeWriter, rounding_of_constants
@@ -457,9 +464,14 @@ def _closer_and_closer(problem: FunctionProblem) -> Iterator[UnitProblem]:
         closer = _region_of(problem, own.ends(count), region, is_point)
         if closer is None:
             break
+        if simplified is None and region is whole:
+            # starts seem to shrink to a line along which an equation is a square
+            simplified = _with_repeated_factors(own)
+            if simplified is not None:
+                own = _problem_on(problem, region, simplified)
+                continue
         # what shrinks without end is a point, and looked at from where it is
-        extents = np.maximum(np.diff(whole, axis=1)[:, 0], np.abs(closer).max(axis=1))
-        is_point |= np.diff(closer, axis=1)[:, 0] < POINT * extents
+        is_point |= _is_point(closer, whole)
         region = np.where(is_point[:, None], whole, closer)
         own = _problem_on(problem, region, simplified)
     else:
@@ -472,6 +484,13 @@ def _closer_and_closer(problem: FunctionProblem) -> Iterator[UnitProblem]:
     if not np.array_equal(region, whole) and not _has_curves(own):
         own = _deflated(_problem_on(problem, whole, simplified))
     yield own
+
+
+def _is_point(region: np.ndarray, whole: np.ndarray) -> np.ndarray:
+    """Which unknowns (n,) a ``region`` (n, 2) of the ``whole`` has only one value of."""
+    extents = np.maximum(np.diff(whole, axis=1)[:, 0], np.abs(region).max(axis=1))
+    is_point: np.ndarray = np.diff(region, axis=1)[:, 0] < POINT * extents
+    return is_point
 
 
 def in_one_size(own: UnitProblem) -> UnitProblem:
@@ -556,7 +575,8 @@ def _with_written_factors(problem: FunctionProblem) -> Simplified | None:
     if not factors.are_plain:
         # what a root leaves may be a square, along which starts seem to shrink to a point
         rows = sorted(set(factors.rows))
-        factors = polynomial_factors(tape, rows, _first_region(problem))
+        region = _first_region(problem)
+        factors = polynomial_factors(tape, rows, region, _ratio_of(problem))
     return Simplified(factors.radical(), factors) if factors.are_simpler else None
 
 
@@ -565,21 +585,41 @@ def _deflated(own: UnitProblem) -> UnitProblem:
     at some solutions by their different factors, and with the derivatives of the
     equations whose gradients still vanish at all solutions, where that leaves curves of
     full rank."""
-    tape = own.problem.recording.tape
-    if tape is None or own.n < 2:
+    flatness = _flatness(own)
+    factors = _factors_where_flat(own, flatness)
+    if factors is None:
         return own
     region = own.own_units.outwards(own.region.T).T
-    flatness = _flatness(own)
-    is_flat = may_repeat_factors(flatness)
-    rows = np.flatnonzero(np.count_nonzero(is_flat, axis=0) >= FEWEST_FLAT)
-    if not len(rows):
-        return own
-    factors = polynomial_factors(tape, rows.tolist(), region)
     if factors.are_simpler:
         simplified = Simplified(factors.radical(), factors)
         own = _problem_on(own.problem, region, simplified)
         flatness = _flatness(own)
     return _with_derivatives(own, factors, flatness)
+
+
+def _with_repeated_factors(own: UnitProblem) -> Simplified | None:
+    """The equations with every factor once; None where none is repeated that is seen."""
+    factors = _factors_where_flat(own, _flatness(own))
+    if factors is None or not factors.are_simpler:
+        return None
+    return Simplified(factors.radical(), factors)
+
+
+def _factors_where_flat(own: UnitProblem, flatness: np.ndarray) -> Factors | None:
+    """The factors of the equations, by the ``flatness`` (k, m) of these; None where none
+    is flat at several solutions."""
+    tape = own.problem.recording.tape
+    is_flat = may_repeat_factors(flatness)
+    rows = np.flatnonzero(np.count_nonzero(is_flat, axis=0) >= FEWEST_FLAT)
+    if tape is None or not len(rows):
+        return None
+    region = own.own_units.outwards(own.region.T).T
+    return polynomial_factors(tape, rows.tolist(), region, _ratio_of(own.problem))
+
+
+def _ratio_of(problem: FunctionProblem) -> Ratio:
+    """What the doubles on the tape of a problem stand for."""
+    return simplest_ratio if problem.has_exact_constants else Fraction
 
 
 def _with_derivatives(
@@ -610,7 +650,9 @@ def _with_derivatives(
 
 def _flatness(own: UnitProblem) -> np.ndarray:
     """Lengths (k, m) of the gradients of the equations where random starts end, over
-    those elsewhere; k is 0 where too few end anywhere."""
+    those elsewhere; k is 0 where too few end anywhere, and of what is not recorded."""
+    if own.tape is None or own.n < 2:
+        return np.empty((0, own.equations.m))
     ends = own.all_ends(STARTS)
     _, typical = own._matrices()
     if len(ends) < FEWEST or not len(typical):

@@ -87,6 +87,8 @@ def test_a_text_says_what_it_says_in_mathematics(text, expected) -> None:
         ("x/(1 - 1)", "/ at column 2 gives no real number"),
         ("sqrt(-1)", "sqrt at column 1 gives no real number for -1"),
         ("(-8)^(1/3)", "no real number"),
+        ("y - 0^x", "at column 6 raises 0 to an unknown"),
+        ("(1 - 3)**x", "at column 8 raises -2 to an unknown"),
         ("log(0)", "no real number"),
         ("1e400", "outside the range of doubles"),
         ("1e-400", "outside the range of doubles"),

@@ -1,10 +1,17 @@
 """The different factors of recorded equations."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
 import bifurc
-from bifurc.equations.factors import Factors, polynomial_factors, written_factors
+from bifurc.equations.factors import (
+    Factors,
+    polynomial_factors,
+    simplest_ratio,
+    written_factors,
+)
 from bifurc.equations.recording import record
 from bifurc.equations.tape import Tape
 
@@ -129,3 +136,18 @@ def test_what_cancels_stays_where_it_need_not_be_defined():
     factors = polynomial_factors(tape, [0], region)
     values = factors.tape.compiled.residuals(np.array([[-1.0, -1.0]]))
     assert np.isnan(values).any()
+
+
+@pytest.mark.parametrize(
+    ("number", "ratio"),
+    [
+        (0.09, Fraction(9, 100)),
+        (-2 / 3, Fraction(-2, 3)),
+        (1234.5678, Fraction(6172839, 5000)),
+        (0.0, Fraction(0)),
+        (1e300, Fraction(1e300)),
+        (5e-324, Fraction(5e-324)),
+    ],
+)
+def test_a_double_is_read_as_the_simplest_ratio_that_is_rounded_to_it(number, ratio):
+    assert simplest_ratio(number) == ratio

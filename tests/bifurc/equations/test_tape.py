@@ -162,3 +162,10 @@ def test_entries_of_a_sparse_jacobian_are_those_of_the_dense_one():
         dense[row, columns[part]] = entries[part]
     assert len(columns) == 21
     assert np.array_equal(dense, tape.jacobians(point[None])[0])
+
+
+@pytest.mark.parametrize("base", [0.0, -2.0])
+def test_a_number_that_is_not_positive_has_no_power_that_is_an_unknown(base):
+    writer = TapeWriter(1)
+    tape = writer.tape([writer.power(writer.constant(base), writer.unknown(0))])
+    assert np.isnan(tape.compiled.residuals(np.array([[1.5]]))).all()

@@ -22,7 +22,7 @@ def noisy(function, noise, seed=5):
 def measured(function, scale=1.0):
     rng = np.random.default_rng(0)
     points = rng.uniform(-scale, scale, (5, 2))
-    return noise_of(function, points, scale, rng)[0]
+    return noise_of(function, points, np.full(2, scale), rng)[0]
 
 
 @pytest.mark.parametrize("noise", [1e-13, 1e-10, 1e-6, 1e-2])
@@ -50,6 +50,18 @@ def test_rounded_values_are_noisy_to_what_is_rounded(function, size):
 @pytest.mark.parametrize("rate", [1, 3, 30, 100])
 def test_smooth_values_are_noisy_to_rounding(rate):
     assert measured(lambda u: np.exp(np.sin(rate * u[:1])) * u[1:]) < 1e-14
+
+
+def test_unknowns_of_very_different_sizes_make_no_noise():
+    def function(u):
+        x, y = 1e4 * u[0], 1e-4 * u[1]
+        return circle((x, y)) * (2.0 + x**2) ** 4
+
+    bounds = [(-2e-4, 2e-4), (-2e4, 2.1e4)]
+    problem = FunctionProblem(function, bounds, is_recorded=False)
+    assert problem.accuracy.noise == 0.0
+    (form,) = explore(problem).forms
+    assert form.branch.closed
 
 
 @pytest.mark.parametrize("noise", [1e-12, 1e-9])

@@ -12,10 +12,12 @@ import bifurc
 from bifurc.branch import Outcome
 from bifurc.completeness import Claim
 from bifurc.curves.certificate import CertificateStatus
+from bifurc.search.own_units.restated import restated_branch
 from bifurc.search.own_units.unit_problem import in_own_units
 from bifurc.seeds import Audit
 from bifurc.system import Curvature, jacobian_at
 from bifurc.systems.equation_file import read_equations
+from bifurc.units import Units
 
 BOX = [(-2.0, 2.0), (-2.0, 2.0)]
 
@@ -511,3 +513,48 @@ def test_a_double_curve_is_one(function) -> None:
     atlas = bifurc.explore(bifurc.FunctionProblem(function, BOX))
     assert [form.multiplicity for form in atlas.forms] == [2]
     assert not atlas.completeness.doubts
+
+
+@pytest.mark.parametrize(
+    ("text", "multiplicity", "length"),
+    [
+        ("x^2 - 0.6*x + 0.09", 2, 4.0),
+        ("x^2 + 1.4*x + 0.49", 2, 4.0),
+        ("x^2 - 2*x/3 + 1/9", 2, 4.0),
+        ("x^3 - 0.9*x^2 + 0.27*x - 0.027", 3, 4.0),
+        ("(x^2 + y^2)^2 - 1.62*(x^2 + y^2) + 0.6561", 2, 1.8 * np.pi),
+    ],
+)
+def test_powers_that_rounding_of_decimals_hides_are_one_curve(
+    tmp_path, text, multiplicity, length
+):
+    path = tmp_path / "power.toml"
+    bounds = "x = [-2, 2]\ny = [-2, 2]"
+    path.write_text(f'equations = ["{text}"]\n[unknowns]\n{bounds}\n')
+    (form,) = read_equations(path).explore().forms
+    assert form.multiplicity == multiplicity
+    assert form.branch.length == pytest.approx(length)
+
+
+def test_a_branch_that_ends_with_a_piece_of_no_length_is_restated():
+    problem = bifurc.FunctionProblem(lambda u: [u[1] - u[0] ** 2], [(-1, 1), (-1, 2)])
+    (form,) = bifurc.explore(problem).forms
+    branch = form.branch
+    end, radius = branch.length, branch.radii[-1]
+    last = np.zeros((1, *branch.pieces.shape[1:]))
+    last[0, :2] = branch(end), radius * branch(end, 1)
+    longer = replace(
+        branch,
+        pieces=np.concatenate([branch.pieces, last]),
+        centers=np.append(branch.centers, end),
+        radii=np.append(branch.radii, radius),
+        breaks=np.append(branch.breaks, end),
+        residuals=np.append(branch.residuals, branch.residuals[-1]),
+    )
+    units = Units(np.zeros(2), np.array([1e-3, 1e3]), np.ones(1))
+    expected = restated_branch(branch, units, problem.domain.periods)
+    course = restated_branch(longer, units, problem.domain.periods)
+    assert len(course.branch.pieces) == len(expected.branch.pieces)
+    arclengths = expected.arclengths(np.linspace(0.0, end, 7))
+    assert course.arclengths(np.linspace(0.0, end, 7)) == pytest.approx(arclengths)
+    assert course.branch(arclengths) == pytest.approx(expected.branch(arclengths))
