@@ -11,14 +11,19 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d import Axes3D, proj3d
 
 from bifurc import torus
-from bifurc.atlas import Atlas
-from bifurc.figures.drawing import DegreeLocator, drawn_curves, legend_entries
+from bifurc.atlas import Atlas, MeetingPoint
+from bifurc.figures.drawing import (
+    OVERLAY,
+    DegreeLocator,
+    drawn_curves,
+    legend_entries,
+    marked_points,
+)
 from bifurc.figures.labels import joined
 from bifurc.figures.layout import Canvas, Margins, PanelPlan, figure_of, lay_out
 from bifurc.figures.planes import Scale, curve_points, indices_of, scale_of
 from bifurc.figures.rc import drawing_style
 from bifurc.figures.selection import EVERYTHING, Selection
-from bifurc.figures.style import hollow
 
 SPACE = {"projection": "3d", "proj_type": "ortho"}
 MARGINS = Margins(0.1, 0.3, 0.25, 0.1)
@@ -85,6 +90,16 @@ def _draw_forms(
         axes.plot(*rows.T, linewidth=1.6, label=curve.name, **curve.style.line)
 
 
+def _in_frame(shown: np.ndarray, scales: Sequence[Scale]) -> np.ndarray:
+    """Those of the points (k, 3), as they are shown, that lie in the frame."""
+    is_inside = np.ones(len(shown), dtype=bool)
+    for column, scale in zip(shown.T, scales, strict=True):
+        if scale.is_periodic:
+            low, high = scale.limits
+            is_inside &= (low <= column) & (column <= high)
+    return shown[is_inside]
+
+
 def _draw_points(
     axes: Axes3D,
     atlas: Atlas,
@@ -92,20 +107,43 @@ def _draw_points(
     scales: Sequence[Scale],
     selection: Selection,
 ) -> None:
-    """Singular points with their names, and isolated solutions."""
-    points = selection.points(atlas)
-    spots = [_shown(one.point.u[None, list(indices)], scales)[0] for one in points]
-    for point, spot in zip(points, spots, strict=True):
-        axes.plot(*spot[:, None], zorder=4, **hollow(point.kind.mark))
+    """What is marked, singular points with their names, surfaces, and what the user lays
+    over."""
+    picked = list(indices)
+    for surface in selection.surfaces(atlas):
+        shown = _in_frame(_shown(surface.samples[:, picked], scales), scales)
+        axes.plot(*shown.T, ".", color="0.6", markersize=2, zorder=1)
+    for marked in marked_points(atlas, selection):
+        shown = _shown(np.array(marked.points)[:, picked], scales)
+        places = _in_frame(shown, scales).T
+        axes.plot(*places, ls="", zorder=marked.zorder, **marked.style)
+    over = selection.points_over(*(atlas.names[index] for index in indices))
+    if over is not None:
+        factors = [scale.factor for scale in scales]
+        places = _in_frame(_shown(over / factors, scales), scales).T
+        axes.plot(*places, ls="", zorder=5, **OVERLAY)
+    _name_points(axes, selection.points(atlas), picked, scales)
+
+
+def _name_points(
+    axes: Axes3D,
+    points: Sequence[MeetingPoint],
+    indices: Sequence[int],
+    scales: Sequence[Scale],
+) -> None:
+    """Singular points with their names; those in one spot share it."""
+    spots, names = [], []
+    for point in points:
+        shown = _shown(point.point.u[None, list(indices)], scales)
+        for spot in _in_frame(shown, scales):
+            spots.append(spot)
+            names.append(point.name)
 
     def are_same(spot: np.ndarray, other: np.ndarray) -> bool:
         return bool(np.abs(_seen(axes, spot) - _seen(axes, other)).max() < SAME_SPOT)
 
-    for label in joined([point.name for point in points], spots, are_same):
+    for label in joined(names, spots, are_same):
         _write_name(axes, label.spot, label.text)
-    for solution in atlas.rigid:
-        spot = _shown(solution[None, list(indices)], scales)[0]
-        axes.plot(*spot[:, None], "x", color="0.3", markersize=4)
 
 
 def _seen(axes: Axes3D, spot: np.ndarray) -> np.ndarray:
