@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from linkages.entry import Linkage
     from linkages.mechanisms.mechanism import Mechanism
 
-EXACT = "exact.toml"  # the table that --nearest maps
-
 
 @click.command("map", epilog=exit_code_table())
 @click.argument("linkage", metavar="NAME|FILE.toml")
@@ -134,8 +132,10 @@ def map_command(
         confirm(atlases, linkage, choice.parameters, digits)
     write_all_pictures(atlases, folders, paths, over, figures)
     has_steps = not as_json and len(atlases) == 1
-    steps = next_steps_of(atlases[0], linkage, choice, out is not None)
-    end(atlases, as_json, steps if has_steps else "")
+    steps = ""
+    if has_steps:
+        steps = steps_after(atlases[0], linkage, choice, nearest, out)
+    end(atlases, as_json, steps)
 
 
 def write_all_pictures(
@@ -204,13 +204,19 @@ def choose_mapped(
     return meant.linkage, meant.toml
 
 
-def next_steps_of(
-    atlas: Atlas, linkage: str, choice: options.AtlasOptions, has_files: bool
+def steps_after(
+    atlas: Atlas,
+    linkage: str,
+    choice: options.AtlasOptions,
+    nearest: bool,
+    out: Path | None,
 ) -> str:
     """What can be done next with a linkage."""
-    from linkages.app.texts.next_steps import next_steps
+    from linkages.app.texts.next_steps import next_steps, next_steps_of_nearest
 
-    return next_steps(atlas, linkage, choice, has_files)
+    if nearest:
+        return next_steps_of_nearest(atlas, linkage, choice, out)
+    return next_steps(atlas, linkage, choice, out is not None)
 
 
 def end(atlases: Sequence[Atlas], as_json: bool, steps: str) -> None:
@@ -256,6 +262,8 @@ def write_numbers(atlas: Atlas, out: Path | None, exact: str = "") -> list[Path]
         subject = subject_at(atlas)
         more, others = subject.dataset_variables(atlas), dict(subject.files())
         if exact:
+            from linkages.app.texts.next_steps import EXACT
+
             others[EXACT] = lambda path: path.write_text(exact, encoding="utf-8")
         return write_data(atlas, out, make_summary(atlas), more, others)
 

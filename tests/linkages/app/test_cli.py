@@ -5,6 +5,7 @@ import json
 import shlex
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -134,6 +135,31 @@ def test_what_can_be_done_next_can_be_typed():
     route = shlex.split(steps[0].removeprefix("next: bifurc "))
     assert route[0] == "route"
     assert bifurc(*route).exit_code == 0
+
+
+def _next_steps(*arguments):
+    lines = bifurc(*arguments).stderr.splitlines()
+    steps = [line for line in lines if line.startswith("next: ")]
+    return [shlex.split(step.removeprefix("next: bifurc ")) for step in steps]
+
+
+def test_next_steps_are_about_what_was_mapped(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    table = "lengths = {}\ntwists = {}\noffsets = [0, 0, 0, 0]\nangles = 'deg'\n"
+    rounded = table.format([1, 0.501, 1, 0.501], [90, 30, 90, 30])
+    Path("rounded.toml").write_text(rounded)
+    # in the modified convention the link stands before its joint
+    modified = table.format([0.5, 1, 0.5, 1], [30, 90, 30, 70])
+    Path("modified.toml").write_text(modified)
+    identify, draw, view = _next_steps("map", "rounded.toml", "--nearest")
+    assert bifurc(*identify).exit_code == 0
+    assert bifurc(*draw[:-1], "exact").exit_code == 0
+    assert bifurc(*view, "--no-open").exit_code == 0
+    assert _next_steps("map", "rounded.toml", "--nearest", "--out", "out") == []
+    for step in _next_steps("map", "modified.toml", "--modified-dh"):
+        assert "--modified-dh" in step
+    longer, *_ = _next_steps("map", "rounded.toml", "--budget", "1e-6")
+    assert longer == ["map", "rounded.toml", "--budget", "1e-05"]
 
 
 def test_json_is_one_document_with_the_documented_keys_and_nothing_else():
