@@ -152,3 +152,10 @@ def test_a_sheet_of_paper_is_drawn_as_panels_and_no_rods(tmp_path):
             for corners in panels
         ]
         assert sorted(gap.min() for gap in gaps)[1] < 1e-9
+
+
+def test_a_picture_is_of_what_is_drawn_or_listed_first(slider_crank):
+    assert np.array_equal(place_of(slider_crank, None, None).point, slider_crank.drawn)
+    atlas = map_of("special-double-subtractive-goldberg")
+    first = place_of(atlas, None, None)
+    assert atlas.forms[first.form].name.startswith("Form I ")
