@@ -162,6 +162,30 @@ def test_next_steps_are_about_what_was_mapped(tmp_path, monkeypatch):
     assert longer == ["map", "rounded.toml", "--budget", "1e-05"]
 
 
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ("bennett", "it takes a file with a table, and bennett is none"),
+        ("axes.toml", "it takes a file with a table, and axes.toml is none"),
+        ("craig.csv", "the headings of craig.csv say so themselves"),
+    ],
+)
+def test_the_modified_convention_is_for_tables_that_do_not_say_so(
+    source, message, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    Path("axes.toml").write_text(
+        "points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]\n"
+        "directions = [[0, 0, 1], [0, 0, 1], [0, 0, 1], [0, 0, 1]]\n"
+    )
+    rows = "1, 90, 0\n0.5, 30, 0\n" * 2
+    Path("craig.csv").write_text(f"a(i-1), alpha(i-1) (deg), d(i)\n{rows}")
+    assert bifurc("map", source).exit_code == 0
+    result = bifurc("map", source, "--modified-dh")
+    assert result.exit_code == 2
+    assert message in result.stderr
+
+
 def test_json_is_one_document_with_the_documented_keys_and_nothing_else():
     result = bifurc("map", "reconfigurable-bricard-1", "--json", "--seed", 7)
     assert result.exit_code == 0
