@@ -158,11 +158,15 @@ def write_all_pictures(
 def confirm(
     atlases: Sequence[Atlas], linkage: str, parameters: Sequence[str], digits: int
 ) -> None:
-    """Print how many of the maps' digits agree with those of so many."""
+    """Print how many of the maps' digits agree with those of so many; of several maps
+    with their names."""
     from linkages.app.output import say
     from linkages.app.reports.confirmation import describe_confirmation
+    from linkages.subject import subject_at
 
     for atlas in atlases:
+        if len(atlases) > 1:
+            say("\n" + subject_at(atlas).name)
         say("\n" + describe_confirmation(atlas, linkage, parameters, digits))
 
 
@@ -182,6 +186,8 @@ def allow_digits(as_json: bool, nearest: bool, hold: options.HoldOptions) -> Non
         )
     if hold.is_without_centre:
         raise CommandError("--digits: it does not go with --without-centre")
+    if hold.is_modified:
+        raise CommandError("--digits: it does not go with --modified-dh")
     if nearest:
         raise CommandError("--digits: it does not go with --nearest")
 

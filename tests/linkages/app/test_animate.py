@@ -94,7 +94,7 @@ def test_a_map_has_figures_in_the_formats_that_are_asked_for(tmp_path):
         (("--form", "Form 9"), "Form 9"),
         (("--overlay", "bad.csv"), "theta1, theta2"),
         (("--overlay", "row.csv"), "row 3"),
-        (("--overlay", "none.csv"), "none.csv"),
+        (("--overlay", "none.csv"), "none.csv: it cannot be read (No such file or dir"),
     ],
 )
 def test_wrong_options_of_figures_end_in_one_line(
