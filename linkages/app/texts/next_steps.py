@@ -33,11 +33,12 @@ def next_steps_of_nearest(
     atlas: Atlas, linkage: str, choice: AtlasOptions, out: Path | None
 ) -> str:
     """The same after the map of the exact linkage that the table of ``linkage`` is meant
-    to be: for the file of that one, which is in ``out`` or is first to be written."""
+    to be, whose forms have the names of the source only there: for the map in ``out``, or
+    for a file that is first to be written."""
     if out is not None:
-        return _lines(_steps(atlas, shlex.quote(str(out / EXACT)), has_files=True))
+        return _lines(_routes(atlas, shlex.quote(str(out / "atlas.nc"))))
     identify = f"bifurc identify {_chosen(linkage, choice)} --write {EXACT}"
-    return _lines([identify, *_steps(atlas, EXACT, has_files=False)])
+    return _lines([identify, *_drawings(EXACT)])
 
 
 def _lines(steps: list[str]) -> str:
@@ -61,9 +62,11 @@ def _steps(atlas: Atlas, chosen: str, has_files: bool) -> list[str]:
         longer = LONGER * atlas.provenance.settings.budget
         steps.append(f"bifurc map {chosen} --budget {longer:g}")
     steps += _routes(atlas, chosen)
-    if not has_files:
-        steps += [f"bifurc map {chosen} --out DIR", f"bifurc view {chosen}"]
-    return steps
+    return steps if has_files else [*steps, *_drawings(chosen)]
+
+
+def _drawings(chosen: str) -> list[str]:
+    return [f"bifurc map {chosen} --out DIR", f"bifurc view {chosen}"]
 
 
 def _about_the_table(atlas: Atlas, chosen: str, has_files: bool) -> list[str]:

@@ -17,6 +17,7 @@ from linkages.app.cli import main
 from linkages.app.exit_codes import ExitCode
 from linkages.catalogue import catalogue
 from linkages.closure.closure import Closure
+from linkages.linkage import load
 from linkages.loop import Loop
 from linkages.networks.entries import NETWORKS
 
@@ -156,6 +157,15 @@ def test_next_steps_are_about_what_was_mapped(tmp_path, monkeypatch):
     assert bifurc(*draw[:-1], "exact").exit_code == 0
     assert bifurc(*view, "--no-open").exit_code == 0
     assert _next_steps("map", "rounded.toml", "--nearest", "--out", "out") == []
+    source = load("special-double-subtractive-goldberg").loop
+    Path("source.toml").write_text(
+        f"lengths = {[round(x, 4) for x in source.lengths]}\nangles = 'deg'\n"
+        f"twists = {[round(float(np.degrees(x)), 3) for x in source.twists]}\n"
+        f"offsets = {list(source.offsets)}\n"
+    )
+    (route,) = _next_steps("map", "source.toml", "--nearest", "--out", "source")
+    assert route[0] == "route"
+    assert bifurc(*route).exit_code == 0
     for step in _next_steps("map", "modified.toml", "--modified-dh"):
         assert "--modified-dh" in step
     longer, *_ = _next_steps("map", "rounded.toml", "--budget", "1e-6")
