@@ -21,7 +21,14 @@ from bifurc.figures.drawing import (
 )
 from bifurc.figures.labels import joined
 from bifurc.figures.layout import Canvas, Margins, PanelPlan, figure_of, lay_out
-from bifurc.figures.planes import Scale, curve_points, indices_of, scale_of
+from bifurc.figures.planes import (
+    Scale,
+    copies_in_frame,
+    curve_points,
+    indices_of,
+    place_in_frame,
+    scale_of,
+)
 from bifurc.figures.rc import drawing_style
 from bifurc.figures.selection import EVERYTHING, Selection
 
@@ -90,6 +97,13 @@ def _draw_forms(
         axes.plot(*rows.T, linewidth=1.6, label=curve.name, **curve.style.line)
 
 
+def _spots(points: np.ndarray, scales: Sequence[Scale]) -> np.ndarray:
+    """Where points (k, 3) are shown (m, 3): on both faces of the frame where they lie on
+    one, and nowhere where they lie outside of it."""
+    copies = [copies_in_frame(p, scales) for p in place_in_frame(points, scales)]
+    return _in_frame(np.concatenate(copies), scales)
+
+
 def _in_frame(shown: np.ndarray, scales: Sequence[Scale]) -> np.ndarray:
     """Those of the points (k, 3), as they are shown, that lie in the frame."""
     is_inside = np.ones(len(shown), dtype=bool)
@@ -111,16 +125,16 @@ def _draw_points(
     over."""
     picked = list(indices)
     for surface in selection.surfaces(atlas):
-        shown = _in_frame(_shown(surface.samples[:, picked], scales), scales)
+        shown = place_in_frame(surface.samples[:, picked], scales)
+        shown = _in_frame(shown, scales)
         axes.plot(*shown.T, ".", color="0.6", markersize=2, zorder=1)
     for marked in marked_points(atlas, selection):
-        shown = _shown(np.array(marked.points)[:, picked], scales)
-        places = _in_frame(shown, scales).T
+        places = _spots(np.array(marked.points)[:, picked], scales).T
         axes.plot(*places, ls="", zorder=marked.zorder, **marked.style)
     over = selection.points_over(*(atlas.names[index] for index in indices))
     if over is not None:
         factors = [scale.factor for scale in scales]
-        places = _in_frame(_shown(over / factors, scales), scales).T
+        places = _spots(over / factors, scales).T
         axes.plot(*places, ls="", zorder=5, **OVERLAY)
     _name_points(axes, selection.points(atlas), picked, scales)
 
@@ -134,8 +148,7 @@ def _name_points(
     """Singular points with their names; those in one spot share it."""
     spots, names = [], []
     for point in points:
-        shown = _shown(point.point.u[None, list(indices)], scales)
-        for spot in _in_frame(shown, scales):
+        for spot in _spots(point.point.u[None, list(indices)], scales)[:1]:
             spots.append(spot)
             names.append(point.name)
 
