@@ -26,6 +26,9 @@ JsonObject: TypeAlias = Mapping[str, Any]
 SHOWN = 12  # things of one kind that are shown at a prompt; the others are counted
 SHOWN_IN_NOTEBOOK = 50
 ROUNDING = 1e-12  # of the largest unknown: less is shown as 0
+# From a configuration as drawn to what is there, over the scale of the unknowns:
+# coordinates of a file have so many digits.
+NEAR_DRAWN = 1e-5
 
 
 @dataclass(frozen=True, eq=False)

@@ -181,9 +181,9 @@ def _listed(vector: Sequence[float]) -> str:
 
 def told_apart(value: float, *others: float) -> list[str]:
     """All numbers with as few digits, six at least, as tell ``value`` from the
-    others."""
+    others; zero has no sign."""
     for digits in range(FEWEST_DIGITS, ALL_DIGITS + 1):
-        first, *rest = (f"{number:.{digits}g}" for number in (value, *others))
+        first, *rest = (f"{x + 0.0:.{digits}g}" for x in (value, *others))
         pairs = zip(rest, others, strict=True)
         if all(text != first or other == value for text, other in pairs):
             break

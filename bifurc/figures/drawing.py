@@ -13,7 +13,7 @@ from matplotlib.axis import Axis
 from matplotlib.lines import Line2D
 from matplotlib.ticker import Locator
 
-from bifurc.atlas import Atlas, Event
+from bifurc.atlas import Atlas
 from bifurc.branch import Branch
 from bifurc.decisions import closes_to_rounding
 from bifurc.figures.layout import fix_names_of_axes
@@ -28,7 +28,7 @@ from bifurc.figures.planes import (
 from bifurc.figures.rc import line_style
 from bifurc.figures.selection import EVERYTHING, Selection
 from bifurc.figures.style import Properties, Style, hollow, near_motion_style
-from bifurc.singular.point import Kind, Mark
+from bifurc.singular.point import Kind
 
 RIGID_LABEL = "rigid assembly"
 SURFACE_LABEL = "mobility 2 or more"
@@ -36,7 +36,7 @@ OVERLAY_LABEL = "points laid over"
 AS_DRAWN_LABEL = "as drawn"
 AS_DRAWN: Properties = {"marker": "*", "markersize": 8, "color": "black"}
 DEAD: Properties = {"marker": "s", "markersize": 3.2, "color": "0.25"}
-RIGID: Properties = {"marker": "x", "color": "0.3"}
+RIGID: Properties = {"marker": "x", "color": "0.3", "markersize": 5.5}
 OVERLAY: Properties = {
     "marker": "+",
     "color": "black",
@@ -134,7 +134,6 @@ def draw_forms(
         axes.set_ylim(vertical.limits)
     if horizontal.is_periodic and vertical.is_periodic:
         fix_names_of_axes(axes)
-    widen_flat_axes(axes, atlas, (horizontal.factor, vertical.factor))
     axes.grid(True)
     for spine in axes.spines.values():
         spine.set_zorder(1)  # forms that lie on the edge of the frame are drawn over it
@@ -199,37 +198,60 @@ def _label_axis(axis: Axis, scale: Scale) -> None:
 # --- marks ----------------------------------------------------------------------------
 
 
+class MarkedPoints(NamedTuple):
+    """Points (k, n) of one kind: what they are called in the legend, how they are marked,
+    and whether their marks are smaller in small panels; those of a higher ``zorder``
+    lie over others."""
+
+    label: str
+    points: Sequence[np.ndarray]
+    style: Properties
+    zorder: float
+    is_scaled: bool = True
+
+
+def marked_points(atlas: Atlas, selection: Selection) -> list[MarkedPoints]:
+    """What is marked in a map: singular points, kind by kind, isolated solutions, dead
+    points of what drives, and the configuration as drawn."""
+    marked = []
+    points = selection.points(atlas)
+    for kind in dict.fromkeys(point.kind for point in points):
+        style = {"markeredgewidth": 1.1, **hollow(kind.mark)}
+        places = [point.point.u for point in points if point.kind is kind]
+        marked.append(MarkedPoints(kind.value, places, style, 4))
+    rigid = selection.rigid(atlas)
+    if len(rigid):
+        marked.append(MarkedPoints(RIGID_LABEL, list(rigid), RIGID, 3))
+    dead = selection.dead_points(atlas)
+    for index in sorted({event.index for event in dead}):
+        label = f"dead point of {atlas.names[index]}"
+        places = [event.u for event in dead if event.index == index]
+        marked.append(MarkedPoints(label, places, DEAD, 3.5, is_scaled=False))
+    drawn = selection.drawn(atlas)
+    if drawn is not None:
+        one = MarkedPoints(AS_DRAWN_LABEL, [drawn], AS_DRAWN, 5, is_scaled=False)
+        marked.append(one)
+    return marked
+
+
 def draw_marks(
     axes: Axes, atlas: Atlas, plane: Plane, settings: PanelSettings = DEFAULT_PANEL
 ) -> None:
-    """Singular points, isolated solutions and surfaces in a plane, on both edges where
-    they lie on one, and what the user lays over."""
+    """Marks and surfaces in a plane, on both edges where they lie on one, and what the
+    user lays over; an axis that then shows nothing but rounding is widened."""
     clip_on = is_part_of_turn(plane)
-    for surface in atlas.surfaces:
+    for surface in settings.selection.surfaces(atlas):
         shown = place_in_frame(plane.project(surface.samples), plane.scales)
         axes.plot(*shown.T, ".", color="0.6", markersize=2, zorder=1)
-    for solution in atlas.rigid:
-        style: Properties = {"markersize": settings.mark_size or 5.5, **RIGID}
-        places = plane.copies(solution).T
-        axes.plot(*places, ls="", clip_on=clip_on, zorder=3, **style)
-    _draw_as_given(axes, atlas, plane)
-    _draw_singular_points(axes, atlas, plane, settings)
+    for marked in marked_points(atlas, settings.selection):
+        places = np.concatenate([plane.copies(point) for point in marked.points]).T
+        style = {**marked.style}
+        if settings.mark_size and marked.is_scaled:
+            style["markersize"] = settings.mark_size
+        axes.plot(*places, ls="", clip_on=clip_on, zorder=marked.zorder, **style)
     _draw_overlay(axes, atlas, plane, settings.selection)
-
-
-def _draw_singular_points(
-    axes: Axes, atlas: Atlas, plane: Plane, settings: PanelSettings
-) -> None:
-    clip_on = is_part_of_turn(plane)
-    spots: dict[Mark, list[np.ndarray]] = {}
-    for point in settings.selection.points(atlas):
-        mark = point.kind.mark
-        mark = mark._replace(size=settings.mark_size or mark.size)
-        spots.setdefault(mark, []).append(plane.copies(point.point.u))
-    for mark, copies in spots.items():
-        style = {"markeredgewidth": 1.1, **hollow(mark)}
-        places = np.concatenate(copies).T
-        axes.plot(*places, ls="", clip_on=clip_on, zorder=4, **style)
+    horizontal, vertical = plane.scales
+    widen_flat_axes(axes, atlas, (horizontal.factor, vertical.factor))
 
 
 def _draw_overlay(axes: Axes, atlas: Atlas, plane: Plane, selection: Selection) -> None:
@@ -243,50 +265,19 @@ def _draw_overlay(axes: Axes, atlas: Atlas, plane: Plane, selection: Selection) 
         axes.plot(*shown.T, ls="", clip_on=clip_on, zorder=5, **OVERLAY)
 
 
-def _draw_as_given(axes: Axes, atlas: Atlas, plane: Plane) -> None:
-    """The configuration as drawn, if there is one, and dead points of drivers."""
-    for event in _driven(atlas):
-        style = {"clip_on": is_part_of_turn(plane), "zorder": 3.5, **DEAD}
-        axes.plot(*plane.copies(event.u).T, ls="", **style)
-    if atlas.drawn is not None:
-        style = {"clip_on": is_part_of_turn(plane), "zorder": 5, **AS_DRAWN}
-        axes.plot(*plane.copies(atlas.drawn).T, ls="", **style)
-
-
 # --- the legend -----------------------------------------------------------------------
 
 
-def _driven(atlas: Atlas) -> list[Event]:
-    """The dead points of the unknowns that drive, and do not stand still."""
-    drivers = atlas.subject.get("drivers", ())
-    events = [event for event in atlas.dead_points if event.index in drivers]
-    moving = []
-    for event in events:
-        values = atlas.forms[event.form].branch.sample(FLAT_SAMPLES)[:, event.index]
-        if np.ptp(values) > FLAT:
-            moving.append(event)
-    return moving
-
-
 def legend_entries(atlas: Atlas, selection: Selection = EVERYTHING) -> list[Line2D]:
-    """Entries of the forms in the order of their names, of the singular points, kind by
-    kind, of isolated solutions, of surfaces and of what is laid over, as far as there
-    are any."""
+    """Entries of the forms in the order of their names, of what is marked, of surfaces
+    and of what is laid over, as far as there are any."""
     entries = []
     for curve in drawn_curves(atlas, selection):
         line = {"linewidth": 1.8, **curve.style.line}
         entries.append(Line2D([], [], label=curve.name, **line))
-    marks: list[tuple[str, Properties]] = []
-    for kind in dict.fromkeys(point.kind for point in selection.points(atlas)):
-        marks.append((kind.value, hollow(kind.mark)))
-    if len(atlas.rigid):
-        marks.append((RIGID_LABEL, RIGID))
-    if atlas.surfaces:
+    marks = [(one.label, one.style) for one in marked_points(atlas, selection)]
+    if selection.surfaces(atlas):
         marks.append((SURFACE_LABEL, {"marker": ".", "color": "0.6"}))
-    for index in sorted({event.index for event in _driven(atlas)}):
-        marks.append((f"dead point of {atlas.names[index]}", DEAD))
-    if atlas.drawn is not None:
-        marks.append((AS_DRAWN_LABEL, AS_DRAWN))
     if selection.overlay:
         marks.append((OVERLAY_LABEL, OVERLAY))
     for label, style in marks:

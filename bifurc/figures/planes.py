@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 
@@ -147,8 +147,8 @@ def curve_points(branch: Branch) -> np.ndarray:
 # --- the frame ------------------------------------------------------------------------
 
 
-def place_in_frame(points: np.ndarray, scales: tuple[Scale, Scale]) -> np.ndarray:
-    """Shown coordinates (k, 2) of points (k, 2), periodic ones within (-half, half] of
+def place_in_frame(points: np.ndarray, scales: Sequence[Scale]) -> np.ndarray:
+    """Shown coordinates (k, m) of points (k, m), periodic ones within (-half, half] of
     the middle.
 
     A point on the lower edge, but for errors of its location, goes to the upper one.
@@ -161,12 +161,11 @@ def place_in_frame(points: np.ndarray, scales: tuple[Scale, Scale]) -> np.ndarra
     return np.asarray(np.where(is_on_lower_edge, shown + periods, shown) + middles)
 
 
-def copies_in_frame(spot: np.ndarray, scales: tuple[Scale, Scale]) -> np.ndarray:
-    """A place (2,) in the frame and its copies (k, 2) on the opposite edges, where it
+def copies_in_frame(spot: np.ndarray, scales: Sequence[Scale]) -> np.ndarray:
+    """A place (m,) in the frame and its copies (k, m) on the opposite edges, where it
     lies on an edge."""
-    abscissas = _copies(spot[0], scales[0])
-    ordinates = _copies(spot[1], scales[1])
-    return np.array([[x, y] for x in abscissas for y in ordinates])
+    coordinates = [_copies(x, scale) for x, scale in zip(spot, scales, strict=True)]
+    return np.array(list(product(*coordinates)))
 
 
 def _copies(x: float, scale: Scale) -> list[float]:

@@ -8,9 +8,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from bifurc.atlas import Atlas, MeetingPoint
+from bifurc.atlas import NEAR_DRAWN, Atlas, Event, MeetingPoint, Surface
 from bifurc.errors import ProblemError, RouteError
 from bifurc.form_order import listed_numbers
+
+SAMPLES = 32  # of a form, by which it is seen whether an unknown stands still
+STILL = 1e-9  # what an unknown changes by that stands still
 
 
 @dataclass(frozen=True)
@@ -59,11 +62,44 @@ class Selection:
             if any(form in chosen for form, _ in point.passes)
         ]
 
-    def points_over(self, horizontal: str, vertical: str) -> np.ndarray | None:
-        """The user's points (k, 2) over two unknowns; None where there are none."""
-        if horizontal not in self.overlay or vertical not in self.overlay:
+    def rigid(self, atlas: Atlas) -> np.ndarray:
+        """The isolated solutions (k, n) that are drawn: none where forms are chosen."""
+        return atlas.rigid[:0] if self.forms else atlas.rigid
+
+    def surfaces(self, atlas: Atlas) -> tuple[Surface, ...]:
+        """The surfaces that are drawn: none where forms are chosen."""
+        return () if self.forms else atlas.surfaces
+
+    def dead_points(self, atlas: Atlas) -> list[Event]:
+        """The dead points that are drawn: of the unknowns that drive, and do not stand
+        still, on the forms that are drawn."""
+        drivers = atlas.subject.get("drivers", ())
+        chosen = self.indices(atlas)
+        events = []
+        for event in atlas.dead_points:
+            if event.form in chosen and event.index in drivers:
+                values = atlas.forms[event.form].branch.sample(SAMPLES)[:, event.index]
+                if np.ptp(values) > STILL:
+                    events.append(event)
+        return events
+
+    def drawn(self, atlas: Atlas) -> np.ndarray | None:
+        """The configuration (n,) as drawn, if there is one, and, where forms are chosen,
+        if it is on one of them."""
+        if atlas.drawn is None or not self.forms:
+            return atlas.drawn
+        for index in self.indices(atlas):
+            distance, _ = atlas.forms[index].branch.nearest(atlas.drawn)
+            if distance[0] < NEAR_DRAWN:
+                return atlas.drawn
+        return None
+
+    def points_over(self, *names: str) -> np.ndarray | None:
+        """The user's points (k, m) over the unknowns of m names; None where there are
+        none."""
+        if not set(names) <= set(self.overlay):
             return None
-        columns = [self.overlay[horizontal], self.overlay[vertical]]
+        columns = [self.overlay[name] for name in names]
         return np.array(columns, dtype=float).T
 
 

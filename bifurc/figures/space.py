@@ -11,14 +11,26 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d import Axes3D, proj3d
 
 from bifurc import torus
-from bifurc.atlas import Atlas
-from bifurc.figures.drawing import DegreeLocator, drawn_curves, legend_entries
+from bifurc.atlas import Atlas, MeetingPoint
+from bifurc.figures.drawing import (
+    OVERLAY,
+    DegreeLocator,
+    drawn_curves,
+    legend_entries,
+    marked_points,
+)
 from bifurc.figures.labels import joined
 from bifurc.figures.layout import Canvas, Margins, PanelPlan, figure_of, lay_out
-from bifurc.figures.planes import Scale, curve_points, indices_of, scale_of
+from bifurc.figures.planes import (
+    Scale,
+    copies_in_frame,
+    curve_points,
+    indices_of,
+    place_in_frame,
+    scale_of,
+)
 from bifurc.figures.rc import drawing_style
 from bifurc.figures.selection import EVERYTHING, Selection
-from bifurc.figures.style import hollow
 
 SPACE = {"projection": "3d", "proj_type": "ortho"}
 MARGINS = Margins(0.1, 0.3, 0.25, 0.1)
@@ -85,6 +97,23 @@ def _draw_forms(
         axes.plot(*rows.T, linewidth=1.6, label=curve.name, **curve.style.line)
 
 
+def _spots(points: np.ndarray, scales: Sequence[Scale]) -> np.ndarray:
+    """Where points (k, 3) are shown (m, 3): on both faces of the frame where they lie on
+    one, and nowhere where they lie outside of it."""
+    copies = [copies_in_frame(p, scales) for p in place_in_frame(points, scales)]
+    return _in_frame(np.concatenate(copies), scales)
+
+
+def _in_frame(shown: np.ndarray, scales: Sequence[Scale]) -> np.ndarray:
+    """Those of the points (k, 3), as they are shown, that lie in the frame."""
+    is_inside = np.ones(len(shown), dtype=bool)
+    for column, scale in zip(shown.T, scales, strict=True):
+        if scale.is_periodic:
+            low, high = scale.limits
+            is_inside &= (low <= column) & (column <= high)
+    return shown[is_inside]
+
+
 def _draw_points(
     axes: Axes3D,
     atlas: Atlas,
@@ -92,20 +121,42 @@ def _draw_points(
     scales: Sequence[Scale],
     selection: Selection,
 ) -> None:
-    """Singular points with their names, and isolated solutions."""
-    points = selection.points(atlas)
-    spots = [_shown(one.point.u[None, list(indices)], scales)[0] for one in points]
-    for point, spot in zip(points, spots, strict=True):
-        axes.plot(*spot[:, None], zorder=4, **hollow(point.kind.mark))
+    """What is marked, singular points with their names, surfaces, and what the user lays
+    over."""
+    picked = list(indices)
+    for surface in selection.surfaces(atlas):
+        shown = place_in_frame(surface.samples[:, picked], scales)
+        shown = _in_frame(shown, scales)
+        axes.plot(*shown.T, ".", color="0.6", markersize=2, zorder=1)
+    for marked in marked_points(atlas, selection):
+        places = _spots(np.array(marked.points)[:, picked], scales).T
+        axes.plot(*places, ls="", zorder=marked.zorder, **marked.style)
+    over = selection.points_over(*(atlas.names[index] for index in indices))
+    if over is not None:
+        factors = [scale.factor for scale in scales]
+        places = _spots(over / factors, scales).T
+        axes.plot(*places, ls="", zorder=5, **OVERLAY)
+    _name_points(axes, selection.points(atlas), picked, scales)
+
+
+def _name_points(
+    axes: Axes3D,
+    points: Sequence[MeetingPoint],
+    indices: Sequence[int],
+    scales: Sequence[Scale],
+) -> None:
+    """Singular points with their names; those in one spot share it."""
+    spots, names = [], []
+    for point in points:
+        for spot in _spots(point.point.u[None, list(indices)], scales)[:1]:
+            spots.append(spot)
+            names.append(point.name)
 
     def are_same(spot: np.ndarray, other: np.ndarray) -> bool:
         return bool(np.abs(_seen(axes, spot) - _seen(axes, other)).max() < SAME_SPOT)
 
-    for label in joined([point.name for point in points], spots, are_same):
+    for label in joined(names, spots, are_same):
         _write_name(axes, label.spot, label.text)
-    for solution in atlas.rigid:
-        spot = _shown(solution[None, list(indices)], scales)[0]
-        axes.plot(*spot[:, None], "x", color="0.3", markersize=4)
 
 
 def _seen(axes: Axes3D, spot: np.ndarray) -> np.ndarray:

@@ -389,14 +389,16 @@ class _Cover:
     def _cut_by_bounds(
         self, polygon: Polygon, center: np.ndarray, basis: np.ndarray
     ) -> Polygon:
-        """The part of a polygon about ``center`` (n,) inside the bounds."""
-        low, high = self._problem.domain.bounds.T
-        for k in np.flatnonzero(np.isfinite(low)):
-            room = max(center[k] - low[k], 0.0)
-            polygon = polygon.clip(-basis[k], room, BORDER)
-        for k in np.flatnonzero(np.isfinite(high)):
-            room = max(high[k] - center[k], 0.0)
-            polygon = polygon.clip(basis[k], room, BORDER)
+        """The part of a polygon about ``center`` (n,) inside the bounds. What lies
+        outside by rounding is not cut off: a surface may run in a bound."""
+        domain = self._problem.domain
+        low, high = domain.bounds.T
+        for sign, rooms in ((-1.0, center - low), (1.0, high - center)):
+            for k in np.flatnonzero(np.isfinite(rooms)):
+                normal, room = sign * basis[k], max(rooms[k], 0.0)
+                farthest = (polygon.vertices @ normal).max(initial=0.0)
+                if farthest > room + domain.slack:
+                    polygon = polygon.clip(normal, room, BORDER)
         return polygon
 
     def _cut_by_chart(

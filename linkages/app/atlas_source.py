@@ -125,6 +125,10 @@ def routes_between(
 
     problem = subject_at(atlas).closure
     try:
+        wishes = wishes.resolved(atlas)
+    except RouteError as error:
+        raise CommandError(f"--avoid, --through: {error}") from None
+    try:
         return find_routes(atlas, start, goal, best, problem=problem, wishes=wishes)
     except RouteError as error:
         raise CommandError(str(error), ExitCode.NO_ROUTE) from None

@@ -6,17 +6,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import click
 import numpy as np
 
+from bifurc.files.text_file import read_text
 from linkages.app.exit_codes import CommandError
 from linkages.app.options import HoldOptions
 from linkages.catalogue import entry
 from linkages.entry import Entry, Linkage, Parameter, ParameterKind
-from linkages.file import read_precisely
-from linkages.files.csv_table import from_modified
+from linkages.file import read_linkage, read_precisely
+from linkages.files.csv_table import from_modified, says_modified
 from linkages.linkage import is_linkage_file, load
 from linkages.loop import LARGEST, SMALLEST, Loop
 from linkages.networks.entries import NETWORKS, NetworkEntry
@@ -42,9 +44,9 @@ def require_table(text: str, table: Loop | None) -> Loop:
     none."""
     if table is None:
         raise CommandError(
-            f"{text}: it is a mechanism, which `bifurc map`, `view`, `route`, `sweep`, "
-            "`clearance`, `tolerance`, `convert` and `export` to .glb and .csv take; "
-            "this takes single loops of 4 to 12 revolute joints so far"
+            f"{text}: it is a mechanism, which `bifurc export` writes to .glb, .csv, .svg "
+            "and .dxf, and `bifurc convert` to the formats of mechanisms; this takes "
+            "single loops of 4 to 12 revolute joints so far"
         )
     return table
 
@@ -187,8 +189,7 @@ def hold_joints(text: str, linkage: Linkage | Mechanism, hold: HoldOptions) -> I
     if hold == HoldOptions():
         return Inputs(linkage)
     if hold.is_modified:
-        refusal = f"--modified-dh: it takes a table, and {text} is none"
-        table = require_kind(linkage, Linkage, refusal).loop
+        table = _require_usual_table(text, linkage)
         linkage = Linkage(from_modified(table))
         return hold_joints(text, linkage, replace(hold, is_modified=False))
     if hold.is_without_centre:
@@ -211,6 +212,19 @@ def hold_joints(text: str, linkage: Linkage | Mechanism, hold: HoldOptions) -> I
         return inputs
     loop = _without_centre(_require_network(text, inputs.mechanism))
     return Inputs(loop.mechanism, inputs.notes + loop.notes)
+
+
+def _require_usual_table(text: str, linkage: Linkage | Mechanism) -> Loop:
+    """The table in a file, as it is read in the usual convention; raises `CommandError`
+    for what is no table in a file, and for one that says that it is in the other."""
+    refusal = f"--modified-dh: it takes a file with a table, and {text} is none"
+    table = require_kind(linkage, Linkage, refusal).loop
+    if not is_linkage_file(text) or read_linkage(text)[1] is not None:
+        raise CommandError(refusal)
+    path = Path(text)
+    if path.suffix.lower() == ".csv" and says_modified(read_text(path)):
+        raise CommandError(f"--modified-dh: the headings of {text} say so themselves")
+    return table
 
 
 def _part(mechanism: Mechanism, number: int | None) -> Mechanism:

@@ -77,8 +77,10 @@ def read_points(path: Path, names: Sequence[str]) -> dict[str, list[float]]:
     option = f"--overlay {path}"
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise CommandError(f"{option}: it cannot be read ({error})") from None
+    except OSError as error:
+        raise CommandError(f"{option}: it cannot be read ({error.strerror})") from None
+    except UnicodeDecodeError:
+        raise CommandError(f"{option}: it is no text in UTF-8") from None
     rows = [row for row in csv.reader(lines) if row]
     heads = [head.strip() for head in rows[0]] if rows else []
     if len(heads) < 2 or len(set(heads)) < len(heads) or not set(heads) <= set(names):

@@ -229,18 +229,25 @@ class HoldOptions:
     is_modified: bool = False
 
     @property
-    def names(self) -> str:
-        """The options that are given."""
-        given = {
-            "--lock": bool(self.locks),
-            "--drive": self.driver is not None,
+    def arguments(self) -> list[tuple[str, ...]]:
+        """The options that are given, each with its value if it has one."""
+        flags = {
             "--without-centre": self.is_without_centre,
             "--with-flaps": self.with_flaps,
-            "--part": self.part is not None,
             "--free-creases": self.free_creases,
             "--modified-dh": self.is_modified,
         }
-        return ", ".join(name for name, is_given in given.items() if is_given)
+        given: list[tuple[str, ...]] = [("--lock", lock) for lock in self.locks]
+        if self.driver is not None:
+            given.append(("--drive", self.driver))
+        if self.part is not None:
+            given.append(("--part", str(self.part)))
+        return given + [(flag,) for flag, is_given in flags.items() if is_given]
+
+    @property
+    def names(self) -> str:
+        """The options that are given, without their values."""
+        return ", ".join(dict.fromkeys(name for name, *_ in self.arguments))
 
 
 HOLD_OPTIONS: dict[str, Option] = {

@@ -64,8 +64,17 @@ def read_csv(text: str, name: str) -> Loop:
         tuple(values["offsets"]),
         name,
     )
-    of_links = [headings[columns[meaning]] for meaning in ("lengths", "twists")]
-    return from_modified(loop) if any(one.is_modified for one in of_links) else loop
+    return from_modified(loop) if _are_modified(headings) else loop
+
+
+def says_modified(text: str) -> bool:
+    """Whether the headings of a table as CSV are those of the modified convention."""
+    return _are_modified([_heading(cell) for cell in _rows(text)[0]])
+
+
+def _are_modified(headings: Sequence[_Heading]) -> bool:
+    of_links = [one for one in headings if one.meaning in ("lengths", "twists")]
+    return any(one.is_modified for one in of_links)
 
 
 def _places_of_columns(headings: Sequence[_Heading]) -> dict[str, int]:

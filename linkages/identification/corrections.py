@@ -179,14 +179,18 @@ def _rearranged(
                 yield found
 
 
-def _order(correction: Correction) -> tuple[int, int, int, int, int]:
+def _order(correction: Correction) -> tuple[int, int, int, int, int, int]:
     """The simplest mistakes come first, then what rounding accounts for, the most special
-    first, in the order of the catalogue."""
+    first, in the order of the catalogue. A length has no sign that is left out: it is a
+    twist that has the wrong one, where either may."""
     match = correction.match
+    turned = [one for one in correction.changes if one.meant < 0 <= one.printed]
+    lengths = sum(one.row is Row.LENGTHS for one in turned)
     decade = math.floor(math.log10(max(match.distance, 1e-12)))
     rounded = -100 if correction.is_rounding else decade
     position = list(catalogue()).index(match.entry.name)
-    return correction.depth, rounded, match.freedom, len(match.parameters), position
+    special = match.freedom, len(match.parameters)
+    return correction.depth, lengths, rounded, *special, position
 
 
 def _corrected(

@@ -121,18 +121,18 @@ def identify(
 
 def _nearest_first(matches: Sequence[Match]) -> tuple[Match, ...]:
     """By distance; those that miss by amounts alike come in the order of their freedom,
-    the most special first.
+    the most special first, and else as they are given.
 
     A distance is divided by the root of the number of conditions, so that a family with
     more parameters does not win by them.
     """
-    left = sorted(matches, key=_spread)
+    left = list(matches)
     out: list[Match] = []
     while left:
-        limit = ALIKE * _spread(left[0])
+        limit = ALIKE * min(map(_spread, left))
         group = [match for match in left if _spread(match) <= limit]
         out += sorted(group, key=lambda m: (m.freedom or 99, len(m.parameters)))
-        left = left[len(group) :]
+        left = [match for match in left if _spread(match) > limit]
     return tuple(out)
 
 

@@ -197,10 +197,15 @@ def _columns(structure: Structure, pairs: list[int]) -> list[int] | None:
 
 def _places(structure: Structure) -> np.ndarray:
     """Where each of the k joints is drawn (k, 3): on its axis, so that bodies are
-    short, and apart from the others of its bodies."""
+    short, and apart from the others of its bodies; between panels, in the middle of
+    their hinge."""
     mechanism = structure.mechanism
     places = structure.size.points / structure.unit
+    sheets = _sheets(mechanism)
     for number, joint in enumerate(mechanism.joints):
+        if joint.kind.facets.place is Place.ALONG and sheets.keys() >= {*joint.bodies}:
+            joined = [sheets[body] for body in joint.bodies]
+            places[number] = _middle_of_hinge(joint, joined) / structure.unit
         if joint.kind.facets.place is not Place.ANYWHERE:
             continue
         if joint.point is not None:
@@ -216,6 +221,31 @@ def _places(structure: Structure) -> np.ndarray:
             places[number] = places[others].mean(axis=0)
     apart: np.ndarray = places + _steps_aside(mechanism, places)
     return apart
+
+
+def _sheets(mechanism: Mechanism) -> dict[str, np.ndarray]:
+    """The corners (m, 3) of all panels of every body that has any."""
+    corners: dict[str, list[np.ndarray]] = {}
+    for panel in mechanism.panels:
+        corners.setdefault(panel.body, []).append(np.array(panel.corners))
+    return {body: np.concatenate(parts) for body, parts in corners.items()}
+
+
+def _middle_of_hinge(joint: Joint, sheets: list[np.ndarray]) -> np.ndarray:
+    """The middle (3,) of the stretch of an axis along which all ``sheets``, by their
+    corners (m, 3), have an edge: the corners that are nearest to it, as hinges of thick
+    panels lie beside the paper."""
+    direction = joint.motions[0].direction
+    ends = []
+    for corners in sheets:
+        offsets = corners - joint.place
+        along = offsets @ direction
+        away = np.linalg.norm(offsets - np.outer(along, direction), axis=1)
+        edge = along[away < away.min() + SAME * np.ptp(along)]
+        ends.append((edge.min(), edge.max()))
+    low, high = np.array(ends).T
+    middle: np.ndarray = joint.place + (low.max() + high.min()) / 2 * direction
+    return middle
 
 
 def _steps_aside(mechanism: Mechanism, places: np.ndarray) -> np.ndarray:

@@ -134,7 +134,14 @@ class Painter:
     # --- strokes ----------------------------------------------------------------------
 
     def _strokes_of(self, body: int, pose: np.ndarray) -> list[Stroke]:
-        """The lines and the panels of a body."""
+        """The panels of a body, or its lines where it has none."""
+        sheets = []
+        for corners in self._parts.panels(body):
+            seen = self._seen(corners @ pose[:3, :3].T + pose[:3, 3])
+            depth = float(seen[:, 2].mean())
+            sheets.append(Stroke(Part.PANEL, seen[:, :2], depth, closed=True))
+        if sheets:
+            return sheets
         is_frame = body == self._parts.frame
         at_rest = Part.RAIL if self._is_planar else Part.FRAME
         part = at_rest if is_frame else Part.LINK
@@ -144,10 +151,6 @@ class Painter:
                 continue
             seen = self._seen(line @ pose[:3, :3].T + pose[:3, 3])
             strokes.append(Stroke(part, seen[:, :2], float(seen[:, 2].mean())))
-        for corners in self._parts.panels(body):
-            seen = self._seen(corners @ pose[:3, :3].T + pose[:3, 3])
-            depth = float(seen[:, 2].mean())
-            strokes.append(Stroke(Part.PANEL, seen[:, :2], depth, closed=True))
         return strokes
 
     def _strokes_at(self, symbol: Symbol) -> list[Stroke]:

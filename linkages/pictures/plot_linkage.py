@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -19,7 +17,7 @@ from bifurc.figures.selection import Selection
 from bifurc.figures.style import Properties
 from linkages.pictures.picture import Painter, Part, Picture, Stroke
 from linkages.subject import subject_at
-from linkages.viewing.start import configurations, start_of
+from linkages.viewing.start import Place, first_place, start_of
 
 SIZE = (4.2, 3.6)  # inches
 ROOM = 0.08  # around the picture, in its extent, for names of joints
@@ -39,14 +37,6 @@ OUTLINES: dict[Part, Properties] = {
     Part.PANEL: {"color": LINK, "linewidth": 0.9},
 }
 FILLS = {Part.PANEL: "#D6E6F2"}  # white for all others
-
-
-class Place(NamedTuple):
-    """A configuration (n,) of an atlas, and the index of the form on which it is, if it
-    is on one."""
-
-    point: np.ndarray
-    form: int | None
 
 
 def plot_linkage(
@@ -80,9 +70,9 @@ def place_of(atlas: Atlas, form: str | int | None, s: float | None) -> Place:
     """The configuration at an arclength along a form; raises `ProblemError`."""
     if form is None and s is not None:
         raise ProblemError("s", s, "the arclength along a form, which has to be named")
-    if form is None and not atlas.forms:
-        return Place(configurations(atlas)[0][0], None)
-    number = 0 if form is None else Selection([form]).indices(atlas)[0]
+    if form is None:
+        return first_place(atlas)
+    number = Selection([form]).indices(atlas)[0]
     branch = atlas.forms[number].branch
     return Place(branch(start_of(atlas, number) if s is None else s), number)
 

@@ -6,10 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bifurc.atlas import Atlas
+from bifurc.atlas import NEAR_DRAWN, Atlas
 from bifurc.torus import difference
-
-NEAR = 1e-5  # of the scale of the unknowns: coordinates of a file have so many digits
 
 
 @dataclass(frozen=True)
@@ -32,14 +30,14 @@ def drawn_place(atlas: Atlas) -> Drawn | None:
         return None
     for meeting in atlas.points:
         gap = difference(meeting.point.u, point, atlas.periods)
-        if np.linalg.norm(gap) < NEAR and meeting.passes:
+        if np.linalg.norm(gap) < NEAR_DRAWN and meeting.passes:
             return Drawn(point, meeting.name, *meeting.passes[0])
     for number, form in enumerate(atlas.forms):
         distance, s = form.branch.nearest(point[None])
-        if distance[0] < NEAR:
+        if distance[0] < NEAR_DRAWN:
             return Drawn(point, form.name, number, float(s[0]))
     for solution in atlas.rigid:
-        if np.linalg.norm(difference(solution, point, atlas.periods)) < NEAR:
+        if np.linalg.norm(difference(solution, point, atlas.periods)) < NEAR_DRAWN:
             return Drawn(point, "a rigid assembly")
     if atlas.surfaces:
         names = " or ".join(surface.name for surface in atlas.surfaces)

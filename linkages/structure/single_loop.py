@@ -88,6 +88,9 @@ def turns_as_loop(structure: Structure) -> SingleLoop | None:
             if mechanism.variables[number].locked is None:
                 variables.append(number)
                 signs.append(step.sign)
+    # what hangs on the loop and is free is no part of it
+    if len(variables) != len(structure.unknowns):
+        return None
     if not MIN_JOINTS <= len(variables) <= MAX_JOINTS:
         return None
     motions = [mechanism.variables[number].motion for number in variables]
@@ -132,7 +135,8 @@ def loop_geometry(mechanism: Mechanism) -> Loop:
         in_place = tuple(LOCKED_IN_PLACE if x == 0 else None for x in joint.locked)
         limits = (None,) * len(joint.limits)
         joints.append(replace(joint, limits=limits, locked=in_place))
-    single = turns_as_loop(Structure(replace(mechanism, joints=tuple(joints))))
+    free = replace(mechanism, joints=tuple(joints), with_flaps=False)
+    single = turns_as_loop(Structure(free))
     if single is None:
         allowed = f"a single loop of {MIN_JOINTS} to {MAX_JOINTS} revolute joints"
         allowed += mechanism.way_to_loop

@@ -39,7 +39,6 @@ drawn            the configuration in which a file gives the linkage: angles, it
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
 from math import degrees
 from typing import Any, TypeAlias
 
@@ -63,7 +62,7 @@ from linkages.mechanisms.mechanism import Lock
 from linkages.readout.dead_points import driven_dead_points
 from linkages.readout.drawn import drawn_place
 from linkages.subject import subject_at
-from linkages.viewing.start import configurations, start_of
+from linkages.viewing.start import configurations, first_place, start_of
 
 Document: TypeAlias = dict[str, Any]  # values that JSON can hold
 
@@ -84,7 +83,7 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> Document:
         {**_form(form, number), **parts.form_on_page(form, start_of(atlas, number))}
         for number, form in enumerate(atlas.forms)
     ]
-    view = parts.best_view(_first(atlas, forms))
+    view = parts.best_view(first_place(atlas).point)
     return {
         "title": title_of(atlas),
         "verdict": verdict,
@@ -260,18 +259,6 @@ def _principal(atlas: Atlas) -> Document:
     largest = np.abs(axes).argmax(axis=1)
     signs = np.sign(axes[[0, 1], largest])
     return {"mean": mean.tolist(), "axes": (signs[:, None] * axes).tolist()}
-
-
-def _first(atlas: Atlas, forms: Sequence[Document]) -> np.ndarray:
-    """The configuration (n,) that is shown first: as drawn, or of what stands first on
-    the map."""
-    if atlas.drawn is not None:
-        return atlas.drawn
-    if forms and "start" in forms[0]:
-        return atlas.forms[0].branch(forms[0]["start"])
-    first = configurations(atlas)[0]
-    configuration: np.ndarray = first[len(first) // 2]
-    return configuration
 
 
 # --- the title ------------------------------------------------------------------------

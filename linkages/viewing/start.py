@@ -3,16 +3,40 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from bifurc.atlas import Atlas
 from bifurc.figures.planes import shown_branches
+from bifurc.form_order import listed_numbers
+from linkages.readout.drawn import drawn_place
 from linkages.subject import subject_at
 
 SAMPLES = 72  # places on each form that are looked at
 BESIDE_A_POINT = 2  # of the spacing of these: a form is first shown farther from points
 ALIKE = 1e-3  # of a breadth: configurations that differ by less show as much
+
+
+class Place(NamedTuple):
+    """A configuration (n,) of an atlas, and the index of the form on which it is, if it
+    is on one."""
+
+    point: np.ndarray
+    form: int | None
+
+
+def first_place(atlas: Atlas) -> Place:
+    """What is shown first: the configuration as drawn, or the form that is listed first,
+    or what stands first on the map."""
+    drawn = drawn_place(atlas)
+    if drawn is not None:
+        return Place(drawn.point, drawn.form)
+    if atlas.forms:
+        number = listed_numbers(atlas)[0]
+        return Place(atlas.forms[number].branch(start_of(atlas, number)), number)
+    first = configurations(atlas)[0]
+    return Place(first[len(first) // 2], None)
 
 
 def start_of(atlas: Atlas, number: int) -> float:

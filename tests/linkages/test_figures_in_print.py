@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.path import Path
 from matplotlib.text import Text
 
+from bifurc.atlas import Atlas
 from bifurc.figures.form_graph import plot_form_graph
 from bifurc.figures.plotting import (
     plot_joint_angles,
@@ -26,6 +27,9 @@ from bifurc.figures.plotting import (
 from bifurc.figures.selection import Selection
 from bifurc.figures.singular_values import plot_singular_values_against
 from bifurc.figures.space import plot_map_in_space
+from linkages.linkage import load
+from linkages.mapping import map_linkage
+from tests.linkages.app.slider_cranks import slider_crank_text
 from tests.maps import map_of
 
 LINKAGES = (
@@ -209,6 +213,60 @@ def test_chosen_forms_keep_their_colours_and_bring_their_points() -> None:
         == passed
         < {point.name for point in atlas.points}
     )
+
+
+@pytest.fixture(scope="module")
+def crank(tmp_path_factory) -> Atlas:
+    """A slider-crank as drawn on its first form, with the dead points of its slide
+    there, and a second form along which the slide stands still."""
+    path = tmp_path_factory.mktemp("crank") / "crank.toml"
+    path.write_text(slider_crank_text((0.6, 0.8), 1.2))
+    return map_linkage(load(path))
+
+
+def marks_in(axes: Axes, marker: str) -> int:
+    """How many marks of one kind there are, all of them inside the frame."""
+    count = 0
+    for line in axes.lines:
+        if line.get_marker() == marker:
+            places = axes.transData.transform(line.get_xydata())
+            box = axes.get_window_extent().padded(1.0)
+            assert all(box.contains(*place) for place in places)
+            count += len(places)
+    return count
+
+
+def test_marks_of_forms_that_are_not_chosen_are_not_drawn(crank: Atlas) -> None:
+    number = crank.form("Form 2")
+    chosen = Selection(forms=["Form 2"])
+    assert chosen.drawn(crank) is None and not chosen.dead_points(crank)
+    other = Selection(forms=["Form 1"])
+    assert np.array_equal(other.drawn(crank), crank.drawn)
+    assert {event.form for event in other.dead_points(crank)} == {1 - number}
+    for plot in (plot_transition_map, plot_joint_angles):
+        figure = plot(crank, selection=chosen)
+        figure.draw_without_rendering()
+        for axes in figure.axes:
+            assert marks_in(axes, "*") == marks_in(axes, "s") == 0
+            assert marks_in(axes, "o") == 2
+        words = [text.get_text() for text in figure.legends[0].get_texts()]
+        assert words == ["Form 2", "bifurcation"]
+
+
+def test_points_far_from_a_flat_form_are_in_the_frame(crank: Atlas) -> None:
+    chosen = Selection(["Form 2"], overlay={"J1": [10, 20], "J4": [0.5, -3.0]})
+    figure = plot_transition_map(crank, joints=(1, 4), selection=chosen)
+    figure.draw_without_rendering()
+    assert marks_in(figure.axes[0], "+") == 2
+
+
+def test_in_space_there_is_all_that_the_legend_names(crank: Atlas) -> None:
+    overlay = {"J1": [10.0], "J2": [20.0], "J4": [0.5]}
+    selection = Selection(overlay=overlay)
+    figure = plot_map_in_space(crank, ["J1", "J2", "J4"], selection=selection)
+    named = {one.get_marker() for one in figure.legends[0].legend_handles}
+    drawn = {line.get_marker() for line in figure.axes[0].lines}
+    assert named == drawn == {"None", "o", "s", "*", "+"}
 
 
 def test_points_of_the_user_are_laid_over_where_both_joints_have_some() -> None:

@@ -63,6 +63,7 @@ def test_numbers_in_errors_are_told_apart():
     assert told_apart(1.0, 2.0) == ["1", "2"]
     assert told_apart(1.0000001, 1.0) == ["1.0000001", "1"]
     assert told_apart(1.0, 1.0) == ["1", "1"]
+    assert told_apart(200.0, -0.0, 180.0) == ["200", "0", "180"]
     nearly = math.nextafter(1.0, 2.0)
     assert told_apart(nearly, 1.0) == ["1.0000000000000002", "1"]
     with pytest.raises(GeometryError, match=r"3.14159267 rad .* and 3.14159265 rad"):

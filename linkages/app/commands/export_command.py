@@ -100,7 +100,8 @@ def export_command(
     check_count_of_forms(out, forms)
     require_writable(out, TO)
     atlas = choose_atlas(source, out, choice)
-    require_forms(atlas)
+    if forms or not is_one_of(out, PICTURES):  # what is rigid can be drawn
+        require_forms(atlas)
     if is_one_of(out, PARTS):
         export_parts(atlas, forms, printing, choice.search.seed, out)
     elif is_one_of(out, MECHANISMS):
@@ -209,7 +210,7 @@ def export_mechanism(atlas: Atlas, texts: tuple[str, ...], out: Path) -> None:
 
 
 def export_picture(atlas: Atlas, forms: tuple[str, ...], out: Path) -> None:
-    """Write the picture of a linkage where a form is first shown."""
+    """Write the picture of a linkage where a form, or else the map, is first shown."""
     from linkages.app.output import write_content
     from linkages.app.texts.form_names import choose_form
     from linkages.pictures.dxf import make_dxf

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from linkages.entry import Linkage
     from linkages.mechanisms.mechanism import Mechanism
 
-EXACT = "exact.toml"  # the table that --nearest maps
-
 
 @click.command("map", epilog=exit_code_table())
 @click.argument("linkage", metavar="NAME|FILE.toml")
@@ -133,8 +131,10 @@ def map_command(
         confirm(atlases, linkage, choice.parameters, digits)
     write_all_pictures(atlases, folders, paths, over, figures)
     has_steps = not as_json and len(atlases) == 1
-    steps = next_steps_of(atlases[0], linkage, choice, out is not None)
-    end(atlases, as_json, steps if has_steps else "")
+    steps = ""
+    if has_steps:
+        steps = steps_after(atlases[0], linkage, choice, nearest, out)
+    end(atlases, as_json, steps)
 
 
 def write_all_pictures(
@@ -157,11 +157,15 @@ def write_all_pictures(
 def confirm(
     atlases: Sequence[Atlas], linkage: str, parameters: Sequence[str], digits: int
 ) -> None:
-    """Print how many of the maps' digits agree with those of so many."""
+    """Print how many of the maps' digits agree with those of so many; of several maps
+    with their names."""
     from linkages.app.output import say
     from linkages.app.reports.confirmation import describe_confirmation
+    from linkages.subject import subject_at
 
     for atlas in atlases:
+        if len(atlases) > 1:
+            say("\n" + subject_at(atlas).name)
         say("\n" + describe_confirmation(atlas, linkage, parameters, digits))
 
 
@@ -181,6 +185,8 @@ def allow_digits(as_json: bool, nearest: bool, hold: options.HoldOptions) -> Non
         )
     if hold.is_without_centre:
         raise CommandError("--digits: it does not go with --without-centre")
+    if hold.is_modified:
+        raise CommandError("--digits: it does not go with --modified-dh")
     if nearest:
         raise CommandError("--digits: it does not go with --nearest")
 
@@ -203,13 +209,19 @@ def choose_mapped(
     return meant.linkage, meant.toml
 
 
-def next_steps_of(
-    atlas: Atlas, linkage: str, choice: options.AtlasOptions, has_files: bool
+def steps_after(
+    atlas: Atlas,
+    linkage: str,
+    choice: options.AtlasOptions,
+    nearest: bool,
+    out: Path | None,
 ) -> str:
     """What can be done next with a linkage."""
-    from linkages.app.texts.next_steps import next_steps
+    from linkages.app.texts.next_steps import next_steps, next_steps_of_nearest
 
-    return next_steps(atlas, linkage, choice, has_files)
+    if nearest:
+        return next_steps_of_nearest(atlas, linkage, choice, out)
+    return next_steps(atlas, linkage, choice, out is not None)
 
 
 def end(atlases: Sequence[Atlas], as_json: bool, steps: str) -> None:
@@ -256,6 +268,8 @@ def write_numbers(atlas: Atlas, out: Path | None, exact: str = "") -> list[Path]
         subject = subject_at(atlas)
         more, others = subject.dataset_variables(atlas), dict(subject.files())
         if exact:
+            from linkages.app.texts.next_steps import EXACT
+
             others[EXACT] = lambda path: path.write_text(exact, encoding="utf-8")
         return write_data(atlas, out, make_summary(atlas), more, others)
 

@@ -250,10 +250,11 @@ def _range(one: VariableRange, is_turn: bool, unit: float) -> str:
     if one.turns:
         times = "once" if abs(one.turns) == 1 else f"{abs(one.turns)} times"
         return f"{one.label} turns {times}"
-    low, high = one.low, one.high
     if is_turn:
-        return f"{one.label} {in_degrees(low, 2)} to {in_degrees(high, 2)}"
-    return f"{one.label} {in_lengths(low, unit, 5)} to {in_lengths(high, unit, 5)}"
+        low, high = in_degrees(one.low, 2), in_degrees(one.high, 2)
+    else:
+        low, high = in_lengths(one.low, unit, 5), in_lengths(one.high, unit, 5)
+    return f"{one.label} at {low}" if low == high else f"{one.label} {low} to {high}"
 
 
 # --- the outer loop of a network ------------------------------------------------------

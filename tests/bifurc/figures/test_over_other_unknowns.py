@@ -14,15 +14,31 @@ from bifurc.figures.space import plot_map_in_space
 def test_a_map_in_space_has_a_line_a_form_and_a_name_a_point(parallelogram):
     figure = plot_map_in_space(parallelogram, [1, 2, 3])
     (axes,) = figure.axes
-    lines = [line for line in axes.lines if line.get_marker() == "None"]
-    assert len(lines) == len(parallelogram.forms)
+    assert len(curves_of(figure)) == len(parallelogram.forms)
     names = {text.get_text().strip() for text in axes.texts}
     assert {point.name for point in parallelogram.points} <= names
 
 
+def curves_of(figure):
+    lines = figure.axes[0].lines
+    return [line for line in lines if line.get_marker() == "None"]
+
+
+def test_marks_in_space_are_on_both_faces_of_the_frame(parallelogram):
+    figure = plot_map_in_space(parallelogram, [1, 2, 3])
+    (marks,) = [one for one in figure.axes[0].lines if one not in curves_of(figure)]
+    spots = np.array(marks.get_data_3d()).T
+    assert len(spots) > len(parallelogram.points)
+    for spot in spots:
+        for axis in np.flatnonzero(np.abs(np.abs(spot) - 180) < 1e-6):
+            other = spot.copy()
+            other[axis] *= -1
+            assert np.linalg.norm(spots - other, axis=1).min() < 1e-6
+
+
 def test_lines_in_space_break_where_they_leave_the_frame(parallelogram):
     figure = plot_map_in_space(parallelogram, [1, 2, 3])
-    for line in figure.axes[0].lines:
+    for line in curves_of(figure):
         points = np.array(line.get_data_3d())
         steps = np.abs(np.diff(points, axis=1))
         assert not np.any(steps > 180.0)

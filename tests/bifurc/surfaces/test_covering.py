@@ -51,6 +51,19 @@ def test_charts_are_solutions_with_tangent_planes(sphere_charts: ChartAtlas) -> 
     assert np.abs(products - np.eye(2)).max() < 1e-12
 
 
+@pytest.mark.parametrize("start", [0.0, 1e-13, -1e-14])
+def test_a_surface_that_runs_in_a_bound_is_whole(start: float) -> None:
+    def square(u: np.ndarray) -> np.ndarray:
+        x, y, z = u
+        return np.array([z * (1.3 + np.sin(x + 0.3) + y * y)])
+
+    problem = FunctionProblem(square, [[-1, 1], [-1, 1], [0, 1]])
+    charts = cover_surface(problem, np.array([[0.1, 0.2, start]]))
+    assert charts.complete
+    assert charts.euler_characteristic == 1
+    assert charts.area == pytest.approx(4.0, rel=0.01)
+
+
 def test_a_surface_that_leaves_the_bounds_has_a_border_and_its_area_inside() -> None:
     problem = Level(
         lambda x, y, z: z - 0.5 * x,

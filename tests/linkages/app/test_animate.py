@@ -94,7 +94,7 @@ def test_a_map_has_figures_in_the_formats_that_are_asked_for(tmp_path):
         (("--form", "Form 9"), "Form 9"),
         (("--overlay", "bad.csv"), "theta1, theta2"),
         (("--overlay", "row.csv"), "row 3"),
-        (("--overlay", "none.csv"), "none.csv"),
+        (("--overlay", "none.csv"), "none.csv: it cannot be read (No such file or dir"),
     ],
 )
 def test_wrong_options_of_figures_end_in_one_line(
@@ -111,3 +111,20 @@ def test_wrong_options_of_figures_end_in_one_line(
 def test_options_of_figures_need_a_folder():
     result = run("map", "bennett", "--size", "3x3")
     assert result.exit_code != 0 and "--size" in result.stderr
+
+
+@pytest.mark.parametrize("ending", ["svg", "dxf"])
+def test_what_does_not_move_is_drawn_as_well(ending, tmp_path):
+    table = tmp_path / "nearly.toml"
+    table.write_text(
+        "angles = 'deg'\nlengths = [1, 0.501, 1, 0.501]\n"
+        "twists = [90, 30, 90, 30]\noffsets = [0, 0, 0, 0]\n"
+    )
+    out = tmp_path / f"picture.{ending}"
+    result = run("export", table, "--to", out)
+    assert result.exit_code == 3
+    assert "nearly moves" in result.stderr
+    assert out.stat().st_size > 1000
+    motion = run("export", table, "--to", tmp_path / "motion.csv")
+    assert motion.exit_code == 3
+    assert not (tmp_path / "motion.csv").exists()

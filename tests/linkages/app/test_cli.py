@@ -5,6 +5,7 @@ import json
 import shlex
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from linkages.app.cli import main
 from linkages.app.exit_codes import ExitCode
 from linkages.catalogue import catalogue
 from linkages.closure.closure import Closure
+from linkages.linkage import load
 from linkages.loop import Loop
 from linkages.networks.entries import NETWORKS
 
@@ -134,6 +136,64 @@ def test_what_can_be_done_next_can_be_typed():
     route = shlex.split(steps[0].removeprefix("next: bifurc "))
     assert route[0] == "route"
     assert bifurc(*route).exit_code == 0
+
+
+def _next_steps(*arguments):
+    lines = bifurc(*arguments).stderr.splitlines()
+    steps = [line for line in lines if line.startswith("next: ")]
+    return [shlex.split(step.removeprefix("next: bifurc ")) for step in steps]
+
+
+def test_next_steps_are_about_what_was_mapped(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    table = "lengths = {}\ntwists = {}\noffsets = [0, 0, 0, 0]\nangles = 'deg'\n"
+    rounded = table.format([1, 0.501, 1, 0.501], [90, 30, 90, 30])
+    Path("rounded.toml").write_text(rounded)
+    # in the modified convention the link stands before its joint
+    modified = table.format([0.5, 1, 0.5, 1], [30, 90, 30, 70])
+    Path("modified.toml").write_text(modified)
+    identify, draw, view = _next_steps("map", "rounded.toml", "--nearest")
+    assert bifurc(*identify).exit_code == 0
+    assert bifurc(*draw[:-1], "exact").exit_code == 0
+    assert bifurc(*view, "--no-open").exit_code == 0
+    assert _next_steps("map", "rounded.toml", "--nearest", "--out", "out") == []
+    source = load("special-double-subtractive-goldberg").loop
+    Path("source.toml").write_text(
+        f"lengths = {[round(x, 4) for x in source.lengths]}\nangles = 'deg'\n"
+        f"twists = {[round(float(np.degrees(x)), 3) for x in source.twists]}\n"
+        f"offsets = {list(source.offsets)}\n"
+    )
+    (route,) = _next_steps("map", "source.toml", "--nearest", "--out", "source")
+    assert route[0] == "route"
+    assert bifurc(*route).exit_code == 0
+    for step in _next_steps("map", "modified.toml", "--modified-dh"):
+        assert "--modified-dh" in step
+    longer, *_ = _next_steps("map", "rounded.toml", "--budget", "1e-6")
+    assert longer == ["map", "rounded.toml", "--budget", "1e-05"]
+
+
+@pytest.mark.parametrize(
+    ("source", "message"),
+    [
+        ("bennett", "it takes a file with a table, and bennett is none"),
+        ("axes.toml", "it takes a file with a table, and axes.toml is none"),
+        ("craig.csv", "the headings of craig.csv say so themselves"),
+    ],
+)
+def test_the_modified_convention_is_for_tables_that_do_not_say_so(
+    source, message, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    Path("axes.toml").write_text(
+        "points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]\n"
+        "directions = [[0, 0, 1], [0, 0, 1], [0, 0, 1], [0, 0, 1]]\n"
+    )
+    rows = "1, 90, 0\n0.5, 30, 0\n" * 2
+    Path("craig.csv").write_text(f"a(i-1), alpha(i-1) (deg), d(i)\n{rows}")
+    assert bifurc("map", source).exit_code == 0
+    result = bifurc("map", source, "--modified-dh")
+    assert result.exit_code == 2
+    assert message in result.stderr
 
 
 def test_json_is_one_document_with_the_documented_keys_and_nothing_else():

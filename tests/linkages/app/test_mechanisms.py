@@ -377,3 +377,8 @@ def test_a_file_of_two_mechanisms_is_mapped_one_after_the_other(folder):
     result = run("view", "two.toml", "--out", "page.html", code=2)
     assert "2 mechanisms apart, of frame, frame2" in result.stderr
     assert "from 1 to 2" in run("map", "two.toml", "--part", "3", code=2).stderr
+    names = [document["linkage"]["name"] for document in documents]
+    confirmed = run("map", "two.toml", "--digits", "20").stdout
+    assert [f"{name}\n\nConfirmation at 20" in confirmed for name in names] == [
+        True
+    ] * 2

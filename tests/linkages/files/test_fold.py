@@ -1,6 +1,7 @@
 """Rigid origami from FOLD files."""
 
 import json
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -14,6 +15,7 @@ from linkages.closure.closure import Closure
 from linkages.file import LinkageFileError
 from linkages.mechanisms.subject import mechanism_from, mechanism_subject
 from linkages.readout.poses import Poses
+from linkages.structure.single_loop import loop_geometry
 from linkages.structure.structure import Structure
 from studies.miura import SECTOR, miura
 from tests.linkages.mechanisms.test_maps import counts
@@ -182,6 +184,29 @@ def test_a_crease_that_is_no_side_of_a_face_is_refused_by_name(tmp_path, letter)
         read(tmp_path, content)
     content["edges_assignment"][-1] = "F"  # a line on a panel holds nothing
     read(tmp_path, content)
+
+
+def test_a_flap_that_is_free_is_an_unknown_of_the_map(tmp_path):
+    content = miura(2, 2)
+    first = len(content["vertices_coords"])
+    below, above = (content["vertices_coords"][k] for k in (5, 8))
+    content["vertices_coords"] += [[below[0] + 1, below[1]], [above[0] + 1, above[1]]]
+    content["edges_assignment"][content["edges_vertices"].index([5, 8])] = "V"
+    content["edges_vertices"] += [[5, first], [first, first + 1], [8, first + 1]]
+    content["edges_assignment"] += ["B"] * 3
+    content["edges_foldAngle"] += [0.0] * 3
+    content["faces_vertices"] += [[5, first, first + 1, 8]]
+    sheet = read(tmp_path, content)
+    held = map_of(sheet)
+    free = map_of(replace(sheet, with_flaps=True))
+    assert (held.mobility, free.mobility) == (1, 2)
+    (form,), (surface,) = held.forms, free.surfaces
+    # each form times what the flap turns through
+    area = np.pi * form.branch.length
+    assert surface.charts.area == pytest.approx(area, rel=0.02)
+    freely = replace(sheet.with_free_creases(), with_flaps=True)
+    assert map_of(freely).mobility == 2
+    assert loop_geometry(freely).n == 4
 
 
 # --- thick panels ---------------------------------------------------------------------

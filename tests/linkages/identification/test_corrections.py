@@ -12,6 +12,8 @@ from linkages.identification.corrections import (
 )
 from linkages.identification.equivalence import as_loop, table
 from linkages.identification.identify import identify
+from linkages.identification.recovery import Row
+from linkages.loop import Loop
 
 NAME = "special-double-subtractive-goldberg"
 
@@ -119,3 +121,12 @@ def test_what_is_far_from_everything_has_no_correction():
         np.array([[1, 1.7, 0.6, 2.1], [0.6, 1.2, 0.8, 1.7], [0.2, 0.5, -0.4, 0.9]])
     )
     assert corrections_of(identify(odd, locking=False)) == ()
+
+
+def test_a_sign_is_wrong_of_a_twist_rather_than_of_a_length():
+    twists = np.radians([90, 30, -90, 30])
+    loop = Loop((1.0, 0.5, 1.0, 0.5), tuple(twists), (0.0,) * 4)
+    corrections = find_corrections(loop)
+    rows = [[one.row for one in correction.changes] for correction in corrections]
+    assert rows[0] == [Row.TWISTS]
+    assert corrections[0].match.entry.name == "bennett"

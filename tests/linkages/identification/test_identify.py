@@ -22,6 +22,7 @@ from linkages.identification.equivalence import (
 from linkages.identification.fitting import NEAR
 from linkages.identification.identify import ALIKE, ToleranceError, identify
 from linkages.identification.recovery import plain_parameters
+from linkages.loop import Loop
 from tests.samples import one_in
 
 CASES = json.loads(
@@ -230,3 +231,12 @@ def test_lengths_that_are_known_to_less_are_judged_by_that():
         8**0.5 * 1e-6 / rounded.characteristic_length
     )
     assert not identify(replace(rounded, rounding=1e-8), entries=bennett).matches
+
+
+def test_neighbours_that_miss_alike_stand_in_the_order_of_the_catalogue():
+    twists = np.radians([90, 30, 90, 30])
+    loop = Loop((1.0, 0.501, 1.0, 0.501), tuple(twists), (0.0,) * 4)
+    names = [match.entry.name for match in identify(loop).nearest]
+    known = [name for name in catalogue() if name in names and "bennett" in name]
+    assert len(known) == 4
+    assert [name for name in names if "bennett" in name] == known

@@ -94,6 +94,19 @@ def test_joints_whose_axes_meet_are_drawn_apart():
     assert all(len(body["lines"]) == 1 for body in drawn)
 
 
+@pytest.mark.parametrize("size", [(2, 2), (3, 3)])
+def test_joints_of_panels_are_in_the_middle_of_their_creases(size, tmp_path):
+    content = miura(*size)
+    path = tmp_path / "sheet.fold"
+    path.write_text(json.dumps(content))
+    structure = Structure(linkages.load(str(path)))
+    corners = np.array(content["vertices_coords"])
+    for symbol in draw_symbols(structure):
+        ends = corners[[int(vertex) for vertex in symbol["label"].split("-")]]
+        place = structure.unit * np.array(symbol["place"])
+        np.testing.assert_allclose(place[:2], ends.mean(axis=0), atol=1e-9)
+
+
 def test_a_joint_of_several_bodies_has_one_name():
     joints = (
         Joint("A", "cylindrical", ("frame", "b", "c"), (0, 0, 0), UP),

@@ -1,5 +1,6 @@
 """Pictures of linkages: what is seen from where, in figures and in drawings."""
 
+import json
 from itertools import pairwise
 
 import matplotlib
@@ -12,6 +13,7 @@ from linkages.linkage import load
 from linkages.pictures.dxf import make_dxf
 from linkages.pictures.picture import Part, Picture
 from linkages.pictures.plot_linkage import painter_of, place_of, plot_linkage
+from studies.miura import miura
 from tests.linkages.test_figures_in_print import LINKAGES, SIZES, overlapping_texts
 from tests.maps import map_of
 
@@ -134,3 +136,26 @@ def test_a_drawing_has_the_strokes_of_the_picture(slider_crank):
     assert drawn == expected
     texts = [groups[k + 6][1] for k, one in enumerate(groups) if one == ("0", "TEXT")]
     assert texts == [name.text for name in picture.names]
+
+
+def test_a_sheet_of_paper_is_drawn_as_panels_and_no_rods(tmp_path):
+    path = tmp_path / "sheet.fold"
+    path.write_text(json.dumps(miura(2, 2)))
+    picture = picture_of(map_of(load(str(path))))
+    parts = [stroke.part for stroke in picture.strokes]
+    assert parts.count(Part.PANEL) == 4
+    assert not {Part.LINK, Part.FRAME} & {*parts}
+    panels = [one.points for one in picture.strokes if one.part is Part.PANEL]
+    for place in places_in(picture).values():  # each is on an edge of two panels
+        gaps = [
+            np.linalg.norm((corners + np.roll(corners, 1, axis=0)) / 2 - place, axis=1)
+            for corners in panels
+        ]
+        assert sorted(gap.min() for gap in gaps)[1] < 1e-9
+
+
+def test_a_picture_is_of_what_is_drawn_or_listed_first(slider_crank):
+    assert np.array_equal(place_of(slider_crank, None, None).point, slider_crank.drawn)
+    atlas = map_of("special-double-subtractive-goldberg")
+    first = place_of(atlas, None, None)
+    assert atlas.forms[first.form].name.startswith("Form I ")
