@@ -129,9 +129,27 @@ class Surface:
         """Whether charts cover all of it."""
         return self.charts is not None and self.charts.complete
 
+    @property
+    def is_short_of_charts(self) -> bool:
+        """Whether charts ran out before all of it was covered."""
+        return self.charts is not None and self.charts.is_short_of_charts
+
     def __repr__(self) -> str:
         words = [f"dimension {self.dimension}", _covering(self), self.note]
         return f"<Surface {self.name!r}: {', '.join(filter(None, words))}>"
+
+
+def samples_beyond_charts(surfaces: Sequence[Surface]) -> int:
+    """How many of the solutions seen on surfaces of dimension 2 lie in no chart."""
+    of_dimension = [surface for surface in surfaces if surface.dimension == 2]
+    charted = [one.charts for one in of_dimension if one.charts is not None]
+    count = 0
+    for surface in of_dimension:
+        is_covered = np.zeros(len(surface.samples), dtype=bool)
+        for charts in charted:
+            is_covered |= charts.covers(surface.samples)
+        count += int(np.count_nonzero(~is_covered))
+    return count
 
 
 @dataclass(frozen=True, eq=False)
@@ -410,7 +428,7 @@ def _covering(surface: Surface) -> str:
     if surface.charts is None:
         return f"{len(surface.samples)} samples"
     extent = "complete" if surface.complete else "incomplete"
-    return f"{len(surface.charts)} charts, area {surface.charts.area:.6g}, {extent}"
+    return f"{len(surface.charts)} charts, area {surface.charts.area_words}, {extent}"
 
 
 # --- what a notebook shows ------------------------------------------------------------

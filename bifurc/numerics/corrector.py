@@ -21,6 +21,7 @@ from bifurc.system import (
 
 ACROSS_STEPS = 30  # of one point onto a curve
 NORMAL_STEPS = 10  # of points onto a surface
+SETTLED = 1e-9  # last step of these, over the scale
 LEAST_SQUARES_STEPS = 80  # of one random start
 LEAST_WEIGHT = 1e-15  # on the length of a step, at which what it solves is regular
 SPHERE_STEPS = 25  # of one start on a small sphere
@@ -109,34 +110,77 @@ def last_step(tolerance: float, scale: float) -> float:
     return 0.01 * tolerance * scale
 
 
+class NormalCorrections(NamedTuple):
+    """Points (k, n) corrected straight to a tangent plane, the relative residuals
+    ``gaps`` (k,) that are left, the lengths of the ``first`` step, the ``second`` and
+    the ``last`` (k,); a step that was not needed has none."""
+
+    points: np.ndarray
+    gaps: np.ndarray
+    first: np.ndarray
+    second: np.ndarray
+    last: np.ndarray
+
+    def are_settled(self, problem: System) -> np.ndarray:
+        """Whether the last step (k,) was too small to matter."""
+        settled: np.ndarray = self.last < SETTLED * problem.domain.scale
+        return settled
+
+    @property
+    def contractions(self) -> np.ndarray:
+        """The second step (k,) over the first: where no other solution is near it is
+        small (Deuflhard 2004, section 2.1)."""
+        ratios: np.ndarray = self.second / np.maximum(self.first, 1e-300)
+        return ratios
+
+
 def correct_normal(
     problem: System, points: np.ndarray, bases: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Solutions (k, n) straight above ``points`` (k, n) of tangent planes (k, n, 2),
-    and the relative residuals (k,).
+    and the relative residuals (k,)."""
+    corrections = normal_corrections(problem, points, bases)
+    return corrections.points, corrections.gaps
+
+
+def normal_corrections(
+    problem: System, points: np.ndarray, bases: np.ndarray
+) -> NormalCorrections:
+    """How ``points`` (k, n) are corrected straight to tangent planes (k, n, 2).
 
     Gauss-Newton on ``[F'; T^T] d = [-F; 0]``, as for curves, by normal equations: far
     faster than an SVD of every matrix, and what a step loses to rounding the next one
     mends. `DAMPING` keeps them regular at singular points.
     """
     points = points.copy()
-    border = bases @ np.swapaxes(bases, 1, 2)
-    damping = DAMPING * np.eye(problem.n)
+    border = bases @ np.swapaxes(bases, 1, 2) + DAMPING * np.eye(problem.n)
+    lengths = np.zeros((NORMAL_STEPS, len(points)))
+    last = np.zeros(len(points))
     unsettled = np.arange(len(points))
-    for _ in range(NORMAL_STEPS):
-        residuals = relative_residuals(problem, points[unsettled])[:, :, None]
-        jacobians = relative_jacobians(problem, points[unsettled])
-        transposed = np.swapaxes(jacobians, 1, 2)
-        with np.errstate(over="ignore", invalid="ignore"):  # such points stay
-            matrices = transposed @ jacobians + border[unsettled] + damping
-            right = (transposed @ residuals)[:, :, 0]
-        steps = -_solutions(matrices, right)
+    for number in range(NORMAL_STEPS):
+        steps = _normal_steps(problem, points[unsettled], border[unsettled])
         points[unsettled] += limited(steps, 0.5 * problem.domain.scale)
-        lengths = np.linalg.norm(steps, axis=1)
-        unsettled = unsettled[lengths >= 1e-9 * problem.domain.scale]
+        last[unsettled] = np.linalg.norm(steps, axis=1)
+        lengths[number, unsettled] = last[unsettled]
+        unsettled = unsettled[last[unsettled] >= SETTLED * problem.domain.scale]
         if not len(unsettled):
             break
-    return points, relative_gaps(problem, points)
+    gaps = relative_gaps(problem, points)
+    return NormalCorrections(points, gaps, lengths[0], lengths[1], last)
+
+
+def _normal_steps(
+    problem: System, points: np.ndarray, border: np.ndarray
+) -> np.ndarray:
+    """Steps (k, n) of Gauss-Newton from points (k, n), with a symmetric ``border`` (k, n,
+    n)."""
+    residuals = relative_residuals(problem, points)[:, :, None]
+    jacobians = relative_jacobians(problem, points)
+    transposed = np.swapaxes(jacobians, 1, 2)
+    with np.errstate(over="ignore", invalid="ignore"):  # such points stay
+        matrices = transposed @ jacobians + border
+        right = (transposed @ residuals)[:, :, 0]
+    return -_solutions(matrices, right)
 
 
 def _solutions(matrices: np.ndarray, right: np.ndarray) -> np.ndarray:

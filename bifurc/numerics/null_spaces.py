@@ -81,7 +81,14 @@ def tangent_planes(problem: System, points: np.ndarray, near: np.ndarray) -> np.
     Where the null space is larger, at singular points, the part of it that is nearest
     to ``near`` is taken.
     """
-    sigma, right = null_spaces(problem, points)
+    return planes_next_to(*null_spaces(problem, points), near)
+
+
+def planes_next_to(
+    sigma: np.ndarray, right: np.ndarray, near: np.ndarray
+) -> np.ndarray:
+    """`tangent_planes` (k, n, 2) from the singular values (k, n) and right singular
+    vectors (k, n, n)."""
     zeros = np.count_nonzero(is_null(sigma), axis=1)
     nullity = np.maximum(zeros, 2)
     most = int(nullity.max(initial=2))

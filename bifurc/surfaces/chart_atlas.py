@@ -37,6 +37,10 @@ class Covering(Enum):
         "incomplete: no chart fits at some places, or a sheet that is not covered "
         "crosses; look for singular points of the surface there"
     )
+    UNDECIDED = (
+        "incomplete: at some places sheets lie nearer to one another than can be told "
+        "apart, and may be one"
+    )
     CHART_LIMIT = (
         "incomplete: the largest number of charts is reached; allow more of them, or a "
         "larger radius"
@@ -75,7 +79,7 @@ class ChartAtlas:
         euler = self.euler_characteristic
         return (
             f"ChartAtlas({len(self)} charts, {self.outcome.name},\n"
-            f"           area {self.area:.6g}, "
+            f"           area {self.area_words}, "
             f"Euler characteristic {'unknown' if euler is None else euler})"
         )
 
@@ -83,6 +87,11 @@ class ChartAtlas:
     def complete(self) -> bool:
         """Whether the whole surface inside the bounds is covered."""
         return self.outcome is Covering.COMPLETE
+
+    @property
+    def is_short_of_charts(self) -> bool:
+        """Whether the charts ran out before the surface was covered."""
+        return self.outcome is Covering.CHART_LIMIT
 
     def difference(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         """a - b (..., n) with periodic unknowns taken to within half a period of 0."""
@@ -119,8 +128,17 @@ class ChartAtlas:
     @cached_property
     def area(self) -> float:
         """Area of the triangles: below that of a surface all covered by a share of
-        (radius x curvature)^2 / 8."""
+        (radius x curvature)^2 / 8. What corners that are fitted together move adds up to
+        1 % either way, most along the bounds."""
         return float(self.triangle_areas.sum())
+
+    @property
+    def area_words(self) -> str:
+        """The area as text, with no more digits than flat triangles give; of an
+        unfinished covering it says that there is more."""
+        rounded = float(f"{self.area:.3g}")
+        words = f"{rounded:g}"
+        return words if self.complete else f"more than {words}"
 
     @cached_property
     def border(self) -> int:

@@ -13,6 +13,7 @@ from bifurc.numerics.binary_forms import unit_vectors
 from bifurc.numerics.corrector import correct_normal
 from bifurc.problem import Problem
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
+from bifurc.surfaces.sheet import follow_sheets
 
 OUTLINE = -1  # label of an edge that nothing has cut yet
 
@@ -83,12 +84,14 @@ TOO_HIGH = 0.5
 
 class FlatCharts(NamedTuple):
     """Charts as they are made: ``centers`` (c, n), ``bases`` (c, n, 2) of the tangent
-    planes, ``radii`` (c,) of the disks, and c polygons in these planes, whose labels
-    are the numbers of the charts on the other side of each edge."""
+    planes, ``radii`` (c,) of the disks, whether other sheets ``are_clear`` (c,) of
+    them, and c polygons in these planes, whose labels are the numbers of the charts on
+    the other side of each edge."""
 
     centers: np.ndarray
     bases: np.ndarray
     radii: np.ndarray
+    are_clear: np.ndarray
     polygons: list[Polygon]
 
 
@@ -145,6 +148,7 @@ def _without_empty_polygons(charts: FlatCharts) -> FlatCharts:
         centers=charts.centers[has_polygon],
         bases=charts.bases[has_polygon],
         radii=charts.radii[has_polygon],
+        are_clear=charts.are_clear[has_polygon],
         polygons=polygons,
     )
 
@@ -175,7 +179,27 @@ def _lift_corners(problem: Problem, charts: FlatCharts) -> _Corners:
     height = np.linalg.norm(points - flat, axis=1)
     is_out_of_reach = (gaps > SOLVED) | (height > TOO_HIGH * radii)
     points[is_out_of_reach] = flat[is_out_of_reach]
+    _follow_beside_others(problem, charts, y, owner, points)
     return _Corners(points, owner)
+
+
+def _follow_beside_others(
+    problem: Problem,
+    charts: FlatCharts,
+    positions: np.ndarray,
+    owner: np.ndarray,
+    points: np.ndarray,
+) -> None:
+    """Put solutions on the sheets of their charts in the place of those ``points`` (v,
+    n) above ``positions`` (v, 2) that belong to charts beside other sheets."""
+    corners = np.flatnonzero(~charts.are_clear[owner])
+    if not len(corners):
+        return
+    chart = owner[corners]
+    ends, are_reached = follow_sheets(
+        problem, charts.centers[chart], charts.bases[chart], positions[corners]
+    )
+    points[corners[are_reached]] = ends[are_reached]
 
 
 def _merge_corners(

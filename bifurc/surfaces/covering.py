@@ -23,29 +23,28 @@ import numpy as np
 
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
-from bifurc.numerics.binary_forms import unit_vectors
 from bifurc.numerics.corrector import correct_normal
 from bifurc.numerics.null_spaces import (
     cosines_between_planes,
     null_spaces,
-    tangent_planes,
+    planes_next_to,
 )
 from bifurc.problem import Problem
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.complex import FlatCharts, Polygon, assemble_charts, octagon
 from bifurc.surfaces.crossing_sheets import has_uncovered_crossing
+from bifurc.surfaces.disk import AGREE, BEND, Disk, TangentPlane, fitting_disk
+from bifurc.surfaces.other_sheets import solutions_across
+from bifurc.surfaces.sheet import follow_sheets
 
-# Largest height of the surface above a chart's disk, over its radius.
-BEND = 0.12
-# The same above a disk in which a solution lies; rounding is allowed for.
+# Largest height above a disk at which a solution lies in it, over the distance in its
+# plane; rounding is allowed for.
 STEEPEST, ROUNDING = 2 * BEND, 1e-9
 # Distance of that solution from the centre, over the radius.
 RIM = 1.1
 # Smallest cosine between tangent planes of a chart and the next one; less is another
 # sheet.
 SMOOTH = 0.9
-# Smallest cosine between tangent planes of charts that may be neighbours.
-AGREE = 0.8
 # Radius of a chart, over that of the one from which it was made, at most.
 GROWTH = 1.4
 # Radius over the largest one below which no chart is made.
@@ -56,13 +55,17 @@ TOO_CLOSE = 0.2
 # Distance, over the largest radius, beyond which a centre was corrected onto another
 # sheet.
 TOO_FAR = 0.5
-# Relative residuals above which a centre, or a point of the disk, is no solution.
-SOLVED, SOLVED_ON_DISK = 1e-10, 1e-9
+# Relative residual above which a centre is no solution.
+SOLVED = 1e-10
 # Cosine between directions that lead to the same place.
 TOWARDS = 0.97
 # Share of the radius by which a vertex is outside the disk only by rounding, and by
 # which it shows a hole at the end.
 ON_DISK, HOLE = 1e-9, 1e-3
+# Distance, over the scale, below which the end of a ray is a solution that is known.
+SAME = 1e-7
+# Pairs of charts of which it is not known whether they are on one sheet, at most.
+MOST_UNDECIDED = 20
 # Label of the edges along the bounds.
 BORDER = -2
 
@@ -95,13 +98,12 @@ def cover_surface(
     if atlas is not None:
         cover.add_all(atlas)
     outcome = cover.grow(charts, deadline)
-    for seed in seeds:
-        if outcome is not Covering.COMPLETE:
-            break
-        if not cover.covers(seed) and cover.start(seed) is Placement.MADE:
-            outcome = cover.grow(charts, deadline)
-    if outcome is Covering.COMPLETE and cover.has_holes():
-        outcome = Covering.SINGULAR
+    if outcome is Covering.COMPLETE:
+        outcome = cover.spread(seeds, charts, deadline)
+    while outcome is Covering.COMPLETE and cover.has_charts_to_look_from:
+        outcome = cover.spread(cover.look_across(), charts, deadline)
+    if outcome is Covering.COMPLETE:
+        outcome = cover.judge()
     covering = assemble_charts(problem, cover.charts, outcome)
     if covering.complete and has_uncovered_crossing(problem, covering, AGREE):
         return replace(covering, outcome=Covering.SINGULAR)
@@ -131,6 +133,10 @@ class _Overlaps(NamedTuple):
     positions: np.ndarray
     heights: np.ndarray
 
+    def part(self, rows: np.ndarray) -> _Overlaps:
+        """The charts ``rows`` of these."""
+        return _Overlaps(self.numbers[rows], self.positions[rows], self.heights[rows])
+
 
 class _Cover:
     """The charts made so far, their polygons in the tangent planes, and the charts
@@ -142,33 +148,95 @@ class _Cover:
         self._centers = np.empty((0, problem.n))
         self._bases = np.empty((0, problem.n, 2))
         self._radii = np.empty(0)
+        # where no other sheet is near: what lies in such a chart is on its sheet
+        self._are_clear = np.empty(0, dtype=bool)
         self._polygons: list[Polygon] = []
         # directions of each chart in which no chart could be made
         self._dead_ends: list[list[np.ndarray]] = []
         self._unfit_places: list[_UnfitPlace] = []
         self._unfit_seeds: list[np.ndarray] = []
         self._open: deque[int] = deque()
+        # number of charts from which other sheets have been looked for
+        self._looked_from = 0
+        # how many pairs of charts could not be told to be on one sheet or on two
+        self._undecided = 0
 
     @property
     def charts(self) -> FlatCharts:
         """The charts made so far."""
-        return FlatCharts(self._centers, self._bases, self._radii, self._polygons)
+        return FlatCharts(
+            centers=self._centers,
+            bases=self._bases,
+            radii=self._radii,
+            are_clear=self._are_clear,
+            polygons=self._polygons,
+        )
 
-    def covers(self, point: np.ndarray) -> bool:
-        """Whether a solution (n,) lies in a chart."""
-        offset = self._problem.domain.difference(point, self._centers)
-        distance = np.linalg.norm(offset, axis=1)
-        near = np.flatnonzero(distance < RIM * self._radii)
-        bases = self._bases[near]
-        y = np.einsum("ki,kij->kj", offset[near], bases)
-        in_plane = np.einsum("kij,kj->ki", bases, y)
-        height = np.linalg.norm(offset[near] - in_plane, axis=1)
-        limit = STEEPEST * np.linalg.norm(y, axis=1) + ROUNDING
-        return bool(np.any(height < limit))
+    @property
+    def has_charts_to_look_from(self) -> bool:
+        """Whether there are charts that other sheets may be near, from which none was
+        looked for."""
+        return not np.all(self._are_clear[self._looked_from :])
+
+    def are_covered(self, points: np.ndarray) -> np.ndarray:
+        """Which solutions (k, n) lie in a chart, and on its sheet (k,)."""
+        point, chart, y = self._charts_under(points)
+        are_covered = np.zeros(len(points), dtype=bool)
+        is_clear = self._are_clear[chart]
+        are_covered[point[is_clear]] = True
+        is_open = ~is_clear & ~are_covered[point]
+        point, chart, y = point[is_open], chart[is_open], y[is_open]
+        planes = self._bases[chart]
+        ends, are_reached = follow_sheets(
+            self._problem, self._centers[chart], planes, y
+        )
+        on_sheet = ~are_reached | self._are_same(ends, points[point], planes)
+        are_covered[point[on_sheet]] = True
+        return are_covered
+
+    def _charts_under(
+        self, points: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Numbers (p,) of solutions (k, n), and of charts (p,) in whose disks they lie or
+        little above them, with the positions (p, 2) there."""
+        offset = self._problem.domain.difference(points[:, None], self._centers)
+        distance = np.linalg.norm(offset, axis=2)
+        point, chart = np.nonzero(distance < RIM * self._radii)
+        offset = offset[point, chart]
+        y = np.einsum("ki,kij->kj", offset, self._bases[chart])
+        in_plane = np.einsum("kij,kj->ki", self._bases[chart], y)
+        height = np.linalg.norm(offset - in_plane, axis=1)
+        is_low = height < STEEPEST * np.linalg.norm(y, axis=1) + ROUNDING
+        return point[is_low], chart[is_low], y[is_low]
+
+    def _are_same(
+        self, ends: np.ndarray, points: np.ndarray, planes: np.ndarray
+    ) -> np.ndarray:
+        """Whether the ends (k, n) of rays in ``planes`` (k, n, 2) are solutions (k, n)
+        or (n,). Off the surface redundant equations contradict one another, and their
+        least squares move an end a little along it."""
+        gaps = self._problem.domain.difference(points, ends)
+        along = np.einsum("kij,ki->kj", planes, gaps)
+        across = gaps - np.einsum("kij,kj->ki", planes, along)
+        moved = np.linalg.norm(along, axis=1) + SAME * self._problem.domain.scale
+        same: np.ndarray = np.linalg.norm(across, axis=1) < moved
+        return same
 
     # --- growing ----------------------------------------------------------------------
 
-    def start(self, seed: np.ndarray) -> Placement:
+    def spread(self, seeds: np.ndarray, charts: int, deadline: Deadline) -> Covering:
+        """Cover the surfaces of those of the regular solutions (k, n) that lie in no
+        chart."""
+        waiting = seeds[~self.are_covered(seeds)]
+        outcome = Covering.COMPLETE
+        while len(waiting) and outcome is Covering.COMPLETE:
+            seed, waiting = waiting[0], waiting[1:]
+            if self._start(seed) is Placement.MADE:
+                outcome = self.grow(charts, deadline)
+                waiting = waiting[~self.are_covered(waiting)]
+        return outcome
+
+    def _start(self, seed: np.ndarray) -> Placement:
         """Make the first chart of a surface about a regular solution (n,)."""
         _, right = null_spaces(self._problem, seed[None])
         plane = right[0, -2:].T
@@ -177,12 +245,26 @@ class _Cover:
             self._unfit_seeds.append(seed)
         return placement
 
+    def look_across(self) -> np.ndarray:
+        """Solutions (k, n) on other sheets, next to charts from which none were looked
+        for."""
+        first, self._looked_from = self._looked_from, len(self._radii)
+        charts = first + np.flatnonzero(~self._are_clear[first:])
+        return solutions_across(
+            self._problem,
+            self._centers[charts],
+            self._bases[charts],
+            self._radii[charts],
+        )
+
     def grow(self, charts: int, deadline: Deadline) -> Covering:
         """Add charts at open vertices until there are none, or until a limit is
         reached."""
         while self._open:
             if deadline.passed:
                 return Covering.OUT_OF_TIME
+            if self._undecided > MOST_UNDECIDED:
+                return Covering.UNDECIDED
             i = self._open[0]
             y = self._open_vertex(i)
             if y is None:
@@ -191,21 +273,22 @@ class _Cover:
             if len(self._centers) >= charts:
                 return Covering.CHART_LIMIT
             direction = y / np.linalg.norm(y)
-            step = self._radii[i] * self._bases[i] @ direction
-            start = self._centers[i] + step
-            placement = self._make(start, self._bases[i], GROWTH * self._radii[i])
+            placement = self._make_next(i, direction)
             if placement is not Placement.MADE:
                 self._dead_ends[i].append(direction)
             if placement is Placement.UNFIT:
                 self._unfit_places.append(_UnfitPlace(i, direction))
         return Covering.COMPLETE
 
-    def has_holes(self) -> bool:
-        """Whether places at which no chart fits are still uncovered by the charts next
-        to them."""
+    def judge(self) -> Covering:
+        """What is known when no more charts are wanted: places at which none fits may
+        still be uncovered by the charts next to them."""
         if any(self._is_hole(place) for place in self._unfit_places):
-            return True
-        return not all(self.covers(seed) for seed in self._unfit_seeds)
+            return Covering.SINGULAR
+        seeds = np.array(self._unfit_seeds).reshape(-1, self._problem.n)
+        if not np.all(self.are_covered(seeds)):
+            return Covering.SINGULAR
+        return Covering.UNDECIDED if self._undecided else Covering.COMPLETE
 
     def _is_hole(self, place: _UnfitPlace) -> bool:
         """Whether the polygon of a chart has a vertex outside the disk there."""
@@ -228,66 +311,69 @@ class _Cover:
                 return y
         return None
 
-    def _make(self, start: np.ndarray, basis: np.ndarray, radius: float) -> Placement:
-        """Make the chart, of at most ``radius``, about the solution above ``start`` in
-        the plane ``basis``."""
-        centers, gaps = correct_normal(self._problem, start[None], basis[None])
-        plane = tangent_planes(self._problem, centers, basis)[0]
-        center = centers[0]
-        distance = np.linalg.norm(center - start)
-        if gaps[0] > SOLVED or distance > TOO_FAR * self._largest:
+    def _make_next(self, i: int, direction: np.ndarray) -> Placement:
+        """Make the chart about the solution above the rim of chart i, in a direction
+        (2,)."""
+        basis, radius = self._bases[i], self._radii[i]
+        start = self._centers[i] + radius * basis @ direction
+        if self._are_clear[i]:
+            centers, gaps = correct_normal(self._problem, start[None], basis[None])
+            is_there = gaps[0] < SOLVED
+        else:
+            rim = (radius * direction)[None]
+            centers, are_reached = follow_sheets(
+                self._problem, self._centers[i][None], basis[None], rim
+            )
+            is_there = are_reached[0]
+        distance = np.linalg.norm(centers[0] - start)
+        if not is_there or distance > TOO_FAR * self._largest:
             return Placement.UNFIT
+        return self._make(centers[0], basis, GROWTH * radius)
+
+    def _make(self, center: np.ndarray, basis: np.ndarray, radius: float) -> Placement:
+        """Make the chart, of at most ``radius``, about a solution (n,) with a tangent
+        plane next to ``basis``."""
+        sigma, right = null_spaces(self._problem, center[None])
+        plane = planes_next_to(sigma, right, basis)[0]
         if cosines_between_planes(basis, plane)[-1] < SMOOTH:
             return Placement.UNFIT
         if self._is_close_to_a_center(center, plane):
             return Placement.COVERED
-        fitting_radius = self._fitting_radius(center, plane, min(radius, self._largest))
-        if fitting_radius is None:
+        # without equations across it there is no other sheet
+        normal = right[0, -3] if self._problem.n > 2 else np.zeros(self._problem.n)
+        disk = fitting_disk(
+            self._problem,
+            TangentPlane(center, plane, normal),
+            largest=min(radius, self._largest),
+            smallest=SMALLEST * self._largest,
+        )
+        if disk is None:
             return Placement.UNFIT
-        self.add(center, plane, fitting_radius)
+        self.add(center, plane, disk)
         return Placement.MADE
 
     def _is_close_to_a_center(self, center: np.ndarray, basis: np.ndarray) -> bool:
         """Whether a chart about ``center`` (n,) would be close to another one."""
-        overlaps = self._overlaps(center, basis, self._largest)
-        distances = np.linalg.norm(overlaps.positions, axis=1)
-        close = distances / self._radii[overlaps.numbers] < TOO_CLOSE
-        return bool(np.any(close))
-
-    def _fitting_radius(
-        self, center: np.ndarray, basis: np.ndarray, radius: float
-    ) -> float | None:
-        """The largest one up to ``radius`` at which the surface stays close to the disk
-        and tangent planes agree; None if too small."""
-        circle = unit_vectors(np.pi / 4 * np.arange(8))
-        planes = np.broadcast_to(basis, (8, *basis.shape))
-        while radius >= SMALLEST * self._largest:
-            rim = center + radius * circle @ basis.T
-            points, gaps = correct_normal(self._problem, rim, planes)
-            height = np.linalg.norm(points - rim, axis=1).max() / radius
-            if gaps.max() < SOLVED_ON_DISK and height < BEND:
-                planes_there = tangent_planes(self._problem, points, basis)
-                cosines = cosines_between_planes(basis, planes_there)
-                if cosines[:, -1].min() > AGREE:
-                    return radius
-            shrink = 0.5
-            if np.isfinite(height):
-                shrink = float(np.clip(0.9 * BEND / height, 0.5, 0.8))
-            radius *= shrink
-        return None
+        near = self._near_charts(center, basis, self._largest)
+        distances = np.linalg.norm(near.positions, axis=1)
+        close = near.part(distances / self._radii[near.numbers] < TOO_CLOSE)
+        same = self._on_sheet(center, basis, is_clear=True, near=close)
+        return len(same.numbers) > 0
 
     # --- overlaps ---------------------------------------------------------------------
 
     def add_all(self, atlas: ChartAtlas) -> None:
         """Add the charts of an atlas."""
         for i in range(len(atlas)):
-            self.add(atlas.centers[i], atlas.bases[i], float(atlas.radii[i]))
+            disk = Disk(float(atlas.radii[i]), is_clear=False)
+            self.add(atlas.centers[i], atlas.bases[i], disk)
 
-    def add(self, center: np.ndarray, basis: np.ndarray, radius: float) -> None:
+    def add(self, center: np.ndarray, basis: np.ndarray, disk: Disk) -> None:
         """Add a chart and cut its polygon and those of all charts that overlap it."""
-        number = len(self._radii)
+        number, radius = len(self._radii), disk.radius
         polygon = self._cut_by_bounds(octagon(radius), center, basis)
-        overlaps = self._overlaps(center, basis, radius)
+        near = self._near_charts(center, basis, radius)
+        overlaps = self._on_sheet(center, basis, disk.is_clear, near)
         for i, x, height in zip(*overlaps, strict=True):
             other_radius = self._radii[i]
             polygon = _cut(polygon, radius, x, height, other_radius, int(i))
@@ -295,6 +381,7 @@ class _Cover:
         self._centers = np.concatenate([self._centers, center[None]])
         self._bases = np.concatenate([self._bases, basis[None]])
         self._radii = np.append(self._radii, radius)
+        self._are_clear = np.append(self._are_clear, disk.is_clear)
         self._polygons.append(polygon)
         self._dead_ends.append([])
         self._open.append(number)
@@ -324,10 +411,10 @@ class _Cover:
         self._polygons[i] = _cut(polygon, self._radii[i], x, height, radius, label)
         self._open.append(i)
 
-    def _overlaps(
+    def _near_charts(
         self, center: np.ndarray, basis: np.ndarray, radius: float
     ) -> _Overlaps:
-        """The charts on the same sheet that overlap a disk about ``center`` (n,)."""
+        """The charts that overlap a disk about ``center`` (n,), or lie above it."""
         offset = self._problem.domain.difference(self._centers, center)
         distance = np.linalg.norm(offset, axis=1)
         near = np.flatnonzero(distance < radius + self._radii)
@@ -340,6 +427,26 @@ class _Cover:
         cosines = cosines_between_planes(self._bases[near], basis)
         same_sheet = is_low & (cosines[:, -1] > AGREE)
         return _Overlaps(near[same_sheet], x[same_sheet], height[same_sheet])
+
+    def _on_sheet(
+        self, center: np.ndarray, basis: np.ndarray, is_clear: bool, near: _Overlaps
+    ) -> _Overlaps:
+        """Those of the charts whose centres are on the sheet of the solution ``center``
+        (n,): above its plane ``basis`` the sheet leads to them."""
+        is_open = ~(self._are_clear[near.numbers] & is_clear)
+        if not np.any(is_open):
+            return near
+        numbers = near.numbers[is_open]
+        starts = np.tile(center, (len(numbers), 1))
+        planes = np.tile(basis, (len(numbers), 1, 1))
+        ends, are_reached = follow_sheets(
+            self._problem, starts, planes, near.positions[is_open]
+        )
+        is_same = self._are_same(ends, self._centers[numbers], planes)
+        self._undecided += int(np.count_nonzero(~are_reached))
+        is_on_sheet = np.ones(len(near.numbers), dtype=bool)
+        is_on_sheet[is_open] = ~are_reached | is_same
+        return near.part(is_on_sheet)
 
 
 def _cut(

@@ -109,7 +109,7 @@ def _surfaces(atlas: Atlas) -> str:
         charts = surface.charts
         count, area = NONE, NONE
         if charts is not None:
-            count, area = str(len(charts)), f"{charts.area:.6g}"
+            count, area = str(len(charts)), charts.area_words
         rows.append((surface.name, str(surface.dimension), count, area, surface.note))
     heads = ("name", "dimension", "charts", "area", "remark")
     return section("Surfaces", heads, rows, SHOWN)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bifurc.atlas import Atlas
+from bifurc.atlas import Atlas, samples_beyond_charts
 from bifurc.completeness import Level
 from bifurc.decisions import closes_to_rounding
 from bifurc.singular.point import Kind
@@ -15,7 +15,7 @@ def verdict_of(atlas: Atlas) -> str:
     if atlas.provenance.interrupted:
         return f"The search was interrupted; by then it had found {_counts(atlas)}."
     if atlas.forms or atlas.surfaces:
-        return f"The solutions are {_counts(atlas)}."
+        return f"The solutions are {_counts(atlas)}.{remark_on_charts(atlas)}"
     if atlas.completeness.level is Level.OUT_OF_TIME:
         seconds = atlas.provenance.settings.budget
         return (
@@ -44,6 +44,14 @@ def verdict_of(atlas: Atlas) -> str:
         "There is no solution within the bounds: the equations are missed by "
         f"{atlas.closure_gap:.3g} of their magnitude at the median start."
     )
+
+
+def remark_on_charts(atlas: Atlas) -> str:
+    """What to add where charts ran out before surfaces were covered."""
+    if not any(surface.is_short_of_charts for surface in atlas.surfaces):
+        return ""
+    starts = count_of(samples_beyond_charts(atlas.surfaces), "start")
+    return f" Charts ran out: {starts} on surfaces lie beyond them."
 
 
 def has_only_open_points(atlas: Atlas) -> bool:

@@ -158,7 +158,7 @@ class SearchOptions:
     ``starts`` is the number of random starts, ``seed`` that of their generator,
     ``tolerance`` that of the curves, ``budget`` the most seconds; ``certify``: whether
     forms get certificates; ``boxes``: into how many the bounds of equations are divided
-    at most.
+    at most; ``charts``: with how many surfaces are covered at most.
     """
 
     starts: int = 200
@@ -167,6 +167,7 @@ class SearchOptions:
     budget: float = math.inf
     certify: bool = True
     boxes: int = 20_000
+    charts: int = 1500
 
     def settings(self) -> SearchSettings:
         """The settings of the search; raises `bifurc.ProblemError`."""
@@ -178,6 +179,7 @@ class SearchOptions:
             budget=self.budget,
             certify=self.certify,
             boxes=self.boxes,
+            charts=self.charts,
             tracing=tracing,
         )
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
+from itertools import chain
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -47,7 +48,7 @@ class Pattern(NamedTuple):
     @property
     def pins(self) -> int:
         """The number of pins."""
-        return 1 + max(max(pins) for pins in self.bodies)
+        return 1 + max(chain.from_iterable(self.bodies), default=-1)
 
     @property
     def is_square(self) -> bool:

@@ -432,6 +432,10 @@ def _panels(
 def _normal(corners: np.ndarray) -> np.ndarray:
     """The unit normal (3,) of a face with these corners (k, 3), on the side from which
     they run counterclockwise; 0 where it has no area."""
+    size = float(np.abs(corners).max())
+    if size == 0.0:
+        return np.zeros(3)
+    corners = corners / size  # squares of lengths stay within doubles
     spokes = corners - corners[0]
     double_area = np.cross(spokes[:-1], spokes[1:]).sum(axis=0)
     length = float(np.linalg.norm(double_area))

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from bifurc.domain import Domain
-from bifurc.function_problem import NumericalProblem
+from bifurc.function_problem import FunctionProblem, NumericalProblem
 from bifurc.problem import Problem
 
 
@@ -86,6 +86,17 @@ def two_spheres(distance: float) -> Level:
         return along_x, 2 * y * (left + right), 2 * z * (left + right)
 
     return Level(lambda *u: np.prod(factors(*u), axis=0), gradient, 2.0)
+
+
+def spheres(center: np.ndarray, radius: float, other: np.ndarray, other_radius: float):
+    """Two spheres, each about a centre (3,) with a radius."""
+
+    def product(u: np.ndarray) -> np.ndarray:
+        first = (u - center) @ (u - center) - radius**2
+        second = (u - other) @ (u - other) - other_radius**2
+        return np.array([first * second])
+
+    return FunctionProblem(product, [(-1.5, 1.5)] * 3)
 
 
 def seeds(problem: Problem, count: int = 20) -> np.ndarray:

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
-from bifurc.atlas import Event, Form, MeetingPoint, Surface
+from bifurc.atlas import Event, Form, MeetingPoint, Surface, samples_beyond_charts
 from bifurc.branch import Branch, Outcome
 from bifurc.completeness import Doubt
 from bifurc.curves.misclosure import misclosure_at
@@ -39,6 +39,7 @@ from bifurc.search.own_units.unit_problem import UnitProblem
 from bifurc.search.records import RigidAssembly, TracedBranch
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
+from bifurc.surfaces.chart_atlas import Covering
 from bifurc.system import relative_gaps
 
 RIM = 1e-4  # scales from a rim at which starts end where F vanishes slowly towards it
@@ -53,13 +54,15 @@ def doubts_of(
     surfaces: Sequence[Surface],
     of_surfaces: Problem | None = None,
 ) -> Iterator[Doubt]:
-    """One doubt for each thing that doubles do not decide: surfaces that may be
-    curves, curves that may be surfaces, stretches of forms that are not certified, ends
-    of forms at nothing known, singular points of no certain kind.
+    """One doubt for each thing that is not decided: surfaces for which charts ran out,
+    surfaces that may be curves, curves that may be surfaces, stretches of forms that
+    are not certified, ends of forms at nothing known, singular points of no certain
+    kind.
 
     The ``forms`` are those of the branches ``traced``. Solutions on the ``surfaces``
     are regular ones of the problem ``of_surfaces``, where it is another one.
     """
+    yield from _doubts_of_covering(surfaces)
     for surface in surfaces:
         missed = _misclosure(of_surfaces or problem, surface)
         samples = surface.samples[:MOST_SAMPLES]
@@ -85,6 +88,17 @@ def doubts_of(
     ]
     if double:
         yield SearchDoubt.DOUBLE_SOLUTIONS.doubt(points=double)
+
+
+def _doubts_of_covering(surfaces: Sequence[Surface]) -> Iterator[Doubt]:
+    """Whether charts ran out, or could not tell sheets apart."""
+    if any(surface.is_short_of_charts for surface in surfaces):
+        starts = samples_beyond_charts(surfaces)
+        yield SearchDoubt.CHARTS_RAN_OUT.doubt(starts=starts)
+    for surface in surfaces:
+        charts = surface.charts
+        if charts is not None and charts.outcome is Covering.UNDECIDED:
+            yield SearchDoubt.SHEETS_TOGETHER.doubt(surface.name)
 
 
 def doubts_of_near_misses(problem: Problem, misses: Sequence[Event]) -> Iterator[Doubt]:

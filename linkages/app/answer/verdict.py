@@ -14,7 +14,7 @@ from bifurc.atlas import Atlas, NearMotion
 from bifurc.completeness import Completeness, Level
 from bifurc.decisions import closes_to_rounding
 from bifurc.singular.point import Kind
-from bifurc.systems.verdict import has_only_open_points
+from bifurc.systems.verdict import has_only_open_points, remark_on_charts
 from bifurc.tables import count_of
 from linkages.app.exit_codes import ExitCode
 from linkages.app.reports.entry_parameters import member_text
@@ -111,7 +111,7 @@ def _mobile(atlas: Atlas) -> str:
     sentence = f"The linkage moves with mobility {dimension}"
     if atlas.forms:
         sentence += f", and has {forms} of mobility 1"
-    return f"{sentence}.{_within_tolerance(atlas)}"
+    return f"{sentence}.{_within_tolerance(atlas)}{remark_on_charts(atlas)}"
 
 
 def _within_tolerance(atlas: Atlas) -> str:

@@ -232,9 +232,10 @@ def report(atlases: Sequence[Atlas], as_json: bool, is_whole: bool) -> None:
     several one with "parts"."""
     from linkages.app.answer.document import make_document
     from linkages.app.output import say, say_json
-    from linkages.app.texts.summary import make_screen, make_summary
 
     if not as_json:
+        from linkages.app.texts.summary import make_screen, make_summary
+
         make = make_summary if is_whole else make_screen
         say("\n\n\n".join(make(atlas) for atlas in atlases))
         return

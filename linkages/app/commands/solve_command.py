@@ -37,6 +37,13 @@ if TYPE_CHECKING:
     help="Divide the bounds of two to four unknowns into so many boxes at most, to prove "
     "that nothing is missing; 0 for none.",
 )
+@click.option(
+    "--charts",
+    default=1500,
+    show_default=True,
+    type=click.IntRange(0, 1_000_000),
+    help="Cover surfaces of solutions with so many charts at most; 0 for none.",
+)
 @options.figure_options
 @options.search_options
 @options.verbose_option
@@ -47,6 +54,7 @@ def solve_command(
     as_json: bool,
     no_certify: bool,
     boxes: int,
+    charts: int,
     figures: options.FigureOptions,
     search: options.SearchOptions,
 ) -> None:
@@ -78,7 +86,8 @@ def solve_command(
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
         atlas = explore_system(
-            system, replace(search, certify=not no_certify, boxes=boxes)
+            system,
+            replace(search, certify=not no_certify, boxes=boxes, charts=charts),
         )
         summary = make_summary(atlas)
         try:

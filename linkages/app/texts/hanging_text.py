@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from bifurc.tables import count_of
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.structure.hanging import HangingJoint
-from linkages.structure.structure import Structure
+
+if TYPE_CHECKING:
+    # they import networkx, which a loop does not need
+    from linkages.structure.hanging import HangingJoint
+    from linkages.structure.structure import Structure
 
 SHOWN = 12  # joints beyond this number are only counted
 NAMED = 4  # bodies that one of them carries beyond this number are only counted

@@ -257,7 +257,7 @@ def _surface_row(surface: Surface) -> tuple[str, ...]:
     charts = surface.charts
     if charts is None:
         return (name, dimension, "-", "-", "none: only sampled", surface.note)
-    count, area = str(len(charts)), f"{charts.area:.6g}"
+    count, area = str(len(charts)), charts.area_words
     return (name, dimension, count, area, charts.outcome.value, surface.note)
 
 

@@ -142,3 +142,23 @@ def test_boxes_prove_that_nothing_is_missing(tmp_path) -> None:
         levels.append(json.loads(result.stdout)["completeness"]["level"])
     assert levels == ["estimated", "certified"]
     assert solve(file, "--boxes", -1).exit_code == 2
+
+
+def test_charts_that_ran_out_are_said_first_and_more_of_them_can_be_had(
+    tmp_path,
+) -> None:
+    file = tmp_path / "sphere.toml"
+    file.write_text(
+        'equations = ["x^2 + y^2 + z^2 = 1"]\n'
+        "[unknowns]\nx = [-2, 2]\ny = [-2, 2]\nz = [-2, 2]\n"
+    )
+    few = solve(file, "--charts", 20)
+    assert "1 surface. Charts ran out: " in few.stdout.splitlines()[1]
+    assert "more than" in few.stdout
+    document = json.loads(solve(file, "--charts", 20, "--json").stdout)
+    assert "Charts ran out" in document["verdict"]
+    (doubt,) = document["completeness"]["doubts"]
+    assert doubt["kind"] == "charts ran out"
+    assert 0 < doubt["data"]["starts"] <= 200
+    assert "Charts ran out" not in solve(file, "--charts", 1000).stdout
+    assert solve(file, "--charts", -1).exit_code == 2
