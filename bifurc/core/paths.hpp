@@ -41,6 +41,9 @@ constexpr double closed = 1e-7;        // gap of a way round the end that is clo
 constexpr double agreement = 1e-7;     // of two means, over their size
 constexpr double solved = 1e-10;       // residual of a mean, over 1 + its size
 constexpr double growth = 1.1;         // by which the way round an end at infinity grows
+// What is left of a path that has an end at infinity. Where parameters are of different sizes, a path
+// may run away until what is left is as small as the least of them, and come back.
+constexpr double rest_at_infinity = 1e-11;
 
 }  // namespace paths
 
@@ -207,7 +210,7 @@ public:
                 continue;
             }
             out.winding = circuit.winding;
-            if (circuit.extent > paths::growth * before.extent) {
+            if (t.real() < paths::rest_at_infinity && circuit.extent > paths::growth * before.extent) {
                 out.end = PathEnd::at_infinity;
                 return out;
             }

@@ -24,6 +24,7 @@ from bifurc.limits import current_deadline
 from bifurc.paths.family import Family, complex_normal
 from bifurc.paths.follow import PathEnd, Paths, copy_of, follow_paths
 from bifurc.paths.monodromy import GenericSolutions, solve_generic
+from linkages.decisions import is_short_bar
 
 SEED = 24  # of the generic member from which paths begin
 MOST_ASSEMBLIES = 200  # complex ones of a generic member, which take 15 s
@@ -74,8 +75,17 @@ def all_assemblies(
     paths = follow_paths(
         group.family, fibre.solutions, fibre.parameters, last, deadline
     )
+    if np.any(paths.ends == PathEnd.AT_INFINITY):
+        _require_no_short_bar(own)
     places = [group.places(end, last) for end in _real_ends(paths)]
     return np.array(places).reshape(-1, pattern.pins)
+
+
+def _require_no_short_bar(own: Sequence[Places]) -> None:
+    """Raise `UnfollowedError` where paths may come back that seem to end at infinity."""
+    squares = np.array([abs(pins[1] - pins[0]) ** 2 for pins in own])
+    if is_short_bar(float(squares.min() / squares.max())):
+        raise UnfollowedError("a bar is so short that paths seem to end at infinity")
 
 
 def _real_ends(paths: Paths) -> np.ndarray:
@@ -91,7 +101,8 @@ def _real_ends(paths: Paths) -> np.ndarray:
     ends = paths.regular
     count = len(ends)
     # z and w change places
-    conjugates = ends.reshape(count, -1, 2)[:, :, ::-1].conj().reshape(ends.shape)
+    pairs = ends.reshape(count, ends.shape[1] // 2, 2)
+    conjugates = pairs[:, :, ::-1].conj().reshape(ends.shape)
     partners = copy_of(np.concatenate([ends, conjugates]))[count:]
     if np.any(partners >= count):
         raise UnfollowedError("an assembly has no conjugate one")

@@ -32,10 +32,10 @@ from linkages.parameters.members import Members
 from linkages.subject import subject_at
 from linkages.values import GeometryError
 
-MEMBERS = 8  # that are mapped over the range at first
-OFF_CENTRE = (
-    0.618  # of their spacing: members next to the ends or the middle are special
-)
+MEMBERS = 24  # that are mapped over the range at first
+LOOKED_AT = 3  # every one of so many of them is looked at more closely
+# of their spacing: members at the ends or in the middle are special
+OFF_CENTRE, OFF_END = 0.618, 0.02
 HALVINGS = 12  # of an interval whose ends have different maps
 BESIDE = 1e-3  # of the range, or less: how far from a value maps are compared
 NULLITY = 2  # at a crossing of two curves
@@ -127,19 +127,32 @@ class _SpecialSearch:
         low, high = self.members.problem.parameters.bounds[0].tolist()
         return low, high
 
+    @property
+    def apart(self) -> float:
+        """How far apart neighbouring maps are at most, the ends of the range among
+        them."""
+        return float(np.diff(sorted([*self.range, *self.shapes])).max())
+
     def look_over_range(self) -> None:
         """Look at members over the whole range."""
         low, high = self.range
-        for k in range(MEMBERS):
-            self.look_at(low + (high - low) * (k + OFF_CENTRE) / MEMBERS)
+        places = [OFF_END, *(k + OFF_CENTRE for k in range(MEMBERS)), MEMBERS - OFF_END]
+        for k, place in enumerate(places):
+            value = low + (high - low) * place / MEMBERS
+            self.look_at(value, closely=k % LOOKED_AT == 0)
 
-    def look_at(self, value: float) -> None:
-        """Map the member at a value, and look for changes from there."""
+    def look_at(self, value: float, closely: bool = True) -> None:
+        """Map the member at a value, and look for changes from there; where not
+        ``closely`` only from near misses."""
         if value in self.shapes:
             return
         atlas = self._map(value)
-        self.shapes[value] = None if atlas is None else shape_of(atlas)
+        self.shapes[value] = _shape_or_none(atlas)
         if atlas is None:
+            return
+        for event in atlas.near_misses:
+            self._from(event.u, value)
+        if not closely:
             return
         for u in _weakest_places(atlas):
             self._from(u, value)
@@ -169,7 +182,7 @@ class _SpecialSearch:
         return replace(
             change,
             before=None if step is None else self.shapes[value - step],
-            at=None if atlas is None else shape_of(atlas),
+            at=_shape_or_none(atlas),
             after=None if step is None else self.shapes[value + step],
             point=None if atlas is None else _kind_at(atlas, change.u),
         )
@@ -233,11 +246,12 @@ class _SpecialSearch:
 
 @dataclass(frozen=True, eq=False)
 class SpecialValues:
-    """The ``changes`` that were found, in order, and whether the search ``is_whole``: not
-    ended by Ctrl-C or a deadline."""
+    """The ``changes`` that were found, in order, whether the search ``is_whole``: not
+    ended by Ctrl-C or a deadline, and how far ``apart`` maps were made at most."""
 
     changes: tuple[MapChange, ...]
     is_whole: bool
+    apart: float
 
 
 def special_values(
@@ -249,7 +263,8 @@ def special_values(
     ``members`` changes.
 
     Between two neighbouring changes all maps that were made are alike. What shows on none
-    of them, as a form that is there over a short range only, is not among the changes.
+    of them, as a form that is there over a short range only, is among the changes only
+    where its equations were solved from a map nearby.
     """
     search = _SpecialSearch(
         members, settings or SearchSettings(certify=False), deadline
@@ -261,7 +276,7 @@ def special_values(
     except (KeyboardInterrupt, _TimeIsOver):
         is_whole = False
     changes = sorted(search.changes, key=lambda change: change.value)
-    return SpecialValues(tuple(map(search.compared, changes)), is_whole)
+    return SpecialValues(tuple(map(search.compared, changes)), is_whole, search.apart)
 
 
 def _settle(search: _SpecialSearch) -> None:
@@ -317,11 +332,15 @@ def shape_of(atlas: Atlas) -> MapShape:
     )
 
 
+def _shape_or_none(atlas: Atlas | None) -> MapShape | None:
+    return None if atlas is None else shape_of(atlas)
+
+
 def _weakest_places(atlas: Atlas) -> list[np.ndarray]:
-    """Configurations (n,) from which a bifurcation is looked for: near misses, the place of
-    each form that is nearest to losing rank, as on an oval that shrinks to a point, and
-    one on each near motion, from which forms come."""
-    places = [event.u for event in atlas.near_misses]
+    """Configurations (n,) from which a bifurcation is looked for beside near misses: the
+    place of each form that is nearest to losing rank, as on an oval that shrinks to a
+    point, and one on each near motion, from which forms come."""
+    places = []
     if atlas.forms:
         closure = subject_at(atlas).closure
         for form in atlas.forms:

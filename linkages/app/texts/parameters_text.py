@@ -198,6 +198,12 @@ def describe_changes(members: Members, refusal: str, special: SpecialValues) -> 
             ("above", change.after),
         ):
             lines.append(f"  {where}: {_shape_text(shape)}")
+    apart = _shown(parameter, special.apart)
+    lines += [
+        "",
+        f"Maps were made at most {apart} apart: a change that is undone within that may be "
+        "missing.",
+    ]
     return "\n".join(lines)
 
 
@@ -225,6 +231,7 @@ def changes_document(members: Members, special: SpecialValues) -> dict[str, Any]
     return {
         "parameter": parameter.name,
         "is_whole": special.is_whole,
+        "apart": special.apart,
         "changes": [
             {
                 "value": change.value,

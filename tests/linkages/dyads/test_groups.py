@@ -114,6 +114,36 @@ def test_assemblies_that_move_are_not_said_to_be_all():
         assemblies_of_bars(bars, lengths_of(bars, places))
 
 
+# frameworks in which all paths run away from the assemblies until as little is left as
+# the square of the short bar
+WITH_A_SHORT_BAR = {
+    "between free points": (77, (2, 3)),
+    "that stands": (227, (0, 2)),
+}
+
+
+@pytest.mark.parametrize("short", [1e-2, 1e-3, 1e-4, 1e-5, 1e-6])
+@pytest.mark.parametrize("name", WITH_A_SHORT_BAR)
+def test_a_short_bar_hides_no_assembly(name, short):
+    seed, (start, end) = WITH_A_SHORT_BAR[name]
+    bars, places = random_framework(np.random.default_rng(seed), 7)
+    places[end] = places[start] + short
+    swapped = np.arange(7)
+    swapped[[1, 2]] = 2, 1
+    if bars[0] == (0, 2):
+        bars = [tuple(swapped[list(bar)].tolist()) for bar in bars]
+        places = places[swapped]
+    lengths = lengths_of(bars, places)
+    try:
+        known = assemblies_of_bars(bars, lengths)
+    except UnfollowedError:
+        assert short < 1e-4
+        return
+    there = (places - places[0]) * lengths[0] / (places[1] - places[0])
+    assert np.abs(known - there).max(axis=1).min() < 1e-9
+    assert len(known) % 2 == 0
+
+
 # --- mechanisms -----------------------------------------------------------------------
 
 

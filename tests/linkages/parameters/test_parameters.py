@@ -167,6 +167,37 @@ def test_a_bennett_linkage_bifurcates_where_its_links_are_alike():
     assert change.point is Kind.BIFURCATION
 
 
+def test_a_change_that_is_soon_undone_is_found():
+    """Two forms are one over a twentieth of the range."""
+    chosen = members("bricard-line-symmetric", alpha12=(0.7, 1.6))
+    lengths = {"a12": 2.1, "a23": 2.8, "a34": 1.253888687478674}
+    twists = {"alpha23": np.pi / 4, "alpha34": 2.8797932657906435}
+    offsets = {"R1": 0.2, "R2": -0.682505124799208, "R3": -0.5}
+    chosen = replace(chosen, values={**chosen.values, **lengths, **twists, **offsets})
+    special = special_values(chosen)
+    values = [change.value for change in special.changes]
+    assert np.allclose(values, [0.90057696114, 0.94472832424, 1.20470227958])
+    for change in special.changes:
+        counts = {change.before.components, change.after.components}
+        assert (counts, change.at.bifurcations) == ({1, 2}, 1)
+    assert special.apart < 0.9 / 20
+
+
+def test_the_ends_of_a_range_are_looked_at():
+    """Within a twentieth of the range from its end two components become one."""
+    chosen = members("double-subtractive-goldberg-type-i", beta=(0.27, 1.9))
+    chosen.values.update(
+        a=0.3451516184155181,
+        alpha=1.0801720252447473,
+        beta=1.8727705633702771,
+        gamma=0.7351186613145371,
+        delta=1.5023917441008614,
+    )
+    first, *_ = special_values(chosen).changes
+    assert 0.277 < first.value < 0.31
+    assert (first.before.components, first.after.components) == (2, 1)
+
+
 def test_nothing_is_special_where_nothing_changes():
     assert not special_values(members("bennett", alpha=(0.75, 1.2))).changes
 
@@ -185,12 +216,12 @@ def test_ctrl_c_keeps_what_was_found(monkeypatch):
     def interrupted(*arguments, **options):
         atlas = map_linkage(*arguments, **options)
         made.append(atlas)
-        if len(made) < 8:
+        if len(made) < 20:
             return atlas
         return replace(atlas, provenance=replace(atlas.provenance, interrupted=True))
 
     monkeypatch.setattr("linkages.parameters.special.map_linkage", interrupted)
     special = special_values(members("bennett", alpha=(0.3, 1.2)))
-    assert len(made) == 8
+    assert len(made) == 20
     assert not special.is_whole
     assert len(special.changes) == 1
