@@ -32,6 +32,12 @@ class ParametrisedProblem:
         """Number of parameters."""
         return len(self.parameters.names)
 
+    @property
+    def sizes(self) -> np.ndarray:
+        """Sizes (n + q,) of the unknowns and the parameters: a quarter of what their bounds
+        leave, without these a part of the period or the scale."""
+        return np.concatenate([_sizes(self.domain), _sizes(self.parameters)])
+
     def jacobian(self, u: np.ndarray, p: np.ndarray) -> np.ndarray:
         """F_u (m, n) at u (n,) and p (q,)."""
         point = np.concatenate([u, p])[None]
@@ -70,6 +76,15 @@ class ParametrisedProblem:
         return ParametrisedProblem(
             tape, _part(problem.domain, slice(n)), _part(problem.domain, slice(n, None))
         )
+
+
+def _sizes(domain: Domain) -> np.ndarray:
+    """The typical size (n,) of each unknown of a domain."""
+    widths = np.diff(domain.bounds, axis=1)[:, 0]
+    of_circles = np.where(
+        np.isfinite(domain.periods), domain.periods / (2.0 * np.pi), domain.scale
+    )
+    return np.where(np.isfinite(widths), 0.25 * widths, of_circles)
 
 
 def _part(domain: Domain, part: slice) -> Domain:

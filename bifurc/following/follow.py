@@ -36,14 +36,11 @@ class FollowedPoint:
 
     def unknowns(self, s: np.ndarray | float) -> np.ndarray:
         """u (..., n) at arclengths s (...)."""
-        points: np.ndarray = self.branch(s)[..., : self.problem.parametrised.n]
-        return points
+        return self.problem.place(self.branch(s))[0]
 
     def parameters(self, s: np.ndarray | float) -> np.ndarray:
         """p (..., q) at arclengths s (...)."""
-        n, q = self.problem.parametrised.n, self.problem.parametrised.q
-        points: np.ndarray = self.branch(s)[..., n : n + q]
-        return points
+        return self.problem.place(self.branch(s))[1]
 
 
 def follow_singular_point(

@@ -36,7 +36,8 @@ class PlaceKind(Enum):
 @dataclass(frozen=True, eq=False)
 class FollowedPlace:
     """A place of a followed curve: its ``kind``, the arclength ``s``, the unknowns ``u``
-    (n,), the parameters ``p`` (q,), and the ``error``: how far off these may be, in doubles.
+    (n,), the parameters ``p`` (q,), and the ``error``: how far off the latter may be, in
+    doubles.
     Where one ``parameter`` (from 0) turns back, whether that ``is_minimum``."""
 
     kind: PlaceKind
@@ -73,7 +74,6 @@ def places_on(
 def _place(
     problem: SingularPointProblem, branch: Branch, s: float, kind: PlaceKind
 ) -> FollowedPlace:
-    n, q = problem.parametrised.n, problem.parametrised.q
     point = branch(s)
     # where two points meet, their tangents do, and the equations lose rank at that place
     # alone: how well it is known shows beside it
@@ -82,7 +82,9 @@ def _place(
     steepest = max(float(sigma[:, -2].max()), ROUNDING)
     size = 1.0 + float(np.abs(point).max())
     error = (ROUNDING * size + branch.max_residual) / steepest
-    return FollowedPlace(kind, s, point[:n], point[n : n + q], error)
+    u, p = problem.place(point)
+    largest = float(problem.sizes[problem.parametrised.n :].max())
+    return FollowedPlace(kind, s, u, p, error * largest)
 
 
 def _turns(
@@ -123,10 +125,11 @@ def _of_eigenvalues(
 ) -> list[FollowedPlace]:
     """The places at which a function of the matrices F_u (k, n, n) is zero."""
     parametrised = problem.parametrised
-    n, total = parametrised.n, parametrised.n + parametrised.q
+    n = parametrised.n
 
     def along(s: np.ndarray) -> np.ndarray:
-        points = np.ascontiguousarray(branch(s)[:, :total])
+        # in the user's units: others of the equations have other eigenvalues
+        points = np.concatenate(problem.place(branch(s)), axis=1)
         return function(parametrised.tape.compiled.jacobians(points)[:, :, :n])
 
     zeros = zeros_along(branch, along).zeros

@@ -206,23 +206,23 @@ class _SpecialSearch:
             self.members.problem, u, np.array([value]), nullity
         )
         points, gaps = problem.project(problem.start[None])
-        n = self.members.problem.n
-        found = float(points[0, n])
+        (place,), (parameters,) = problem.place(points)
+        found = float(parameters[0])
         low, high = self.range
         if not (is_start_solved(float(gaps[0])) and low < found < high):
             return
         sigma, _ = null_spaces(problem, points)
         if not np.any(is_null(sigma[0])):
-            error = ROUNDING * (1.0 + abs(found)) / float(sigma[0, -1])
-            self._add(MapChange(found, error, ChangeKind.SINGULAR, points[0, :n]))
+            size = float(problem.sizes[-1])
+            error = ROUNDING * (size + abs(found)) / float(sigma[0, -1])
+            self._add(MapChange(found, error, ChangeKind.SINGULAR, place))
             return
-        self._follow(points[0, :n], points[0, n : n + 1], nullity)
+        self._follow(place, parameters, nullity)
 
     def _follow(self, u: np.ndarray, p: np.ndarray, nullity: int) -> None:
         """Follow a bifurcation that is there over a range; where the parameter turns back,
         the map changes."""
-        point = np.concatenate([u, p])
-        if any(_runs_through(curve, point) for curve in self.curves):
+        if any(_runs_through(curve, u, p) for curve in self.curves):
             return
         try:
             curve = follow_singular_point(
@@ -350,10 +350,11 @@ def _weakest_places(atlas: Atlas) -> list[np.ndarray]:
     return places + [motion.sample for motion in atlas.near_motions]
 
 
-def _runs_through(curve: FollowedPoint, point: np.ndarray) -> bool:
-    """Whether a followed curve passes a point (n + q,), whatever the null space."""
-    count = len(point)
-    samples = curve.branch.sample(SAMPLES)[:, :count]
-    periods = curve.problem.domain.periods[:count]
+def _runs_through(curve: FollowedPoint, u: np.ndarray, p: np.ndarray) -> bool:
+    """Whether a followed curve passes ``u`` (n,) at ``p`` (q,), whatever the null
+    space."""
+    point = np.concatenate([u, p]) / curve.problem.sizes
+    samples = curve.branch.sample(SAMPLES)[:, : len(point)]
+    periods = curve.problem.domain.periods[: len(point)]
     gaps = np.linalg.norm(torus.difference(samples, point, periods), axis=1)
     return bool(gaps.min() <= curve.branch.length / SAMPLES)

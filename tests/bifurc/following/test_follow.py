@@ -19,7 +19,8 @@ def recorded(function, unknowns, parameters, width=3.0):
 
 def places(followed, kind):
     found = [place for place in followed.places if place.kind is kind]
-    return sorted(place.p.tolist() for place in found)
+    # by the last parameter: symmetric places have the same first one, but for rounding
+    return sorted((place.p.tolist() for place in found), key=lambda p: p[-1])
 
 
 # --- folds over two parameters --------------------------------------------------------
@@ -40,6 +41,25 @@ def test_the_folds_of_a_cubic_lie_on_its_discriminant_and_end_in_a_cusp():
     (cusp,) = [one for one in followed.places if one.kind is PlaceKind.CUSP]
     assert np.abs([*cusp.p, *cusp.u]).max() < 1e-12
     assert cusp.error < 1e-11
+
+
+@pytest.mark.parametrize("size", [1.9e-3, 1.0, 145.0])
+@pytest.mark.parametrize("steepness", [1e-3, 1.0, 323.0])
+def test_a_cusp_is_found_in_any_units(size, steepness):
+    # u in ``size``, and equations in ``steepness``
+    def function(u, p):
+        x, a, b = u[0] / size, p[0] / (3 * size), p[1] * size
+        return np.stack([steepness * (x**3 + a * x + b)])
+
+    bounds = [(-9 * size, 9 * size), (-3 / size, 3 / size)]
+    problem = ParametrisedProblem.recorded(function, [(-3 * size, 3 * size)], bounds)
+    start = np.array([-0.75 * 3 * size, 0.25 / size])
+    followed = follow_singular_point(problem, np.array([0.5 * size]), start, nullity=1)
+    (cusp,) = [one for one in followed.places if one.kind is PlaceKind.CUSP]
+    assert np.abs(cusp.p / (3 * size, 1 / size)).max() < 1e-10
+    ends = [followed.parameters(s) for s in (0.0, followed.branch.length)]
+    assert {np.sign(end[1]) for end in ends} == {-1.0, 1.0}
+    assert [end[0] for end in ends] == pytest.approx([ends[0][0]] * 2, rel=1e-6)
 
 
 # Catalytic oxidation of CO (Bykov, Yablonskii and Kim 1978), in q2 and k
