@@ -69,8 +69,10 @@ class _Page:
         candidates = []
         for factor in REACH_FACTORS:
             for direction in DIRECTIONS:
-                step = REACH * factor - 4 + half * np.abs(direction)
-                candidates.append(_Box(mark + step * direction, half))
+                # the near side or corner of the name is so far from the mark
+                side = np.sign(np.round(direction, 9))
+                offset = (REACH * factor - 4) * direction + half * side
+                candidates.append(_Box(mark + offset, half))
         costs = [
             self._cost(box) + ORDER_COST * order for order, box in enumerate(candidates)
         ]
@@ -206,8 +208,11 @@ def _page(axes: Axes, scale: float) -> _Page:
     corners = np.array([[frame.x0, frame.y0], [frame.x1, frame.y1]]) * scale
     curves = [np.empty((0, 2))]
     for line in axes.lines:
-        rows = np.asarray(line.get_xydata())
-        curves.append(_filled(_on_page(axes, rows, scale)))
+        rows = _on_page(axes, np.asarray(line.get_xydata()), scale)
+        is_drawn = (
+            line.get_linestyle() != "None"
+        )  # else it is marks, with nothing between
+        curves.append(_filled(rows) if is_drawn else rows)
     return _Page(corners, np.concatenate(curves))
 
 

@@ -13,7 +13,6 @@ from bifurc.function_problem import EXACT_HESSIAN, NumericalProblem
 from bifurc.parametrised import ParametrisedProblem
 from bifurc.system import Accuracy
 
-
 BESIDE, PROBES = 0.3, 15  # sizes of the unknowns, points at which F' is looked at
 
 
