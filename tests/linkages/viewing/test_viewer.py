@@ -138,7 +138,8 @@ BORDER = """() => {
 }"""
 NUMBERS_OUTSIDE = """() => {
   const space = document.querySelector('.bv-space').getBoundingClientRect();
-  return [...document.querySelectorAll('.bv-joint-number')].filter((number) => {
+  const shown = '.bv-joint-number:not(.bv-hidden)';  // where there is no room some are not
+  return [...document.querySelectorAll(shown)].filter((number) => {
     const box = number.getBoundingClientRect();
     return box.top < space.top || box.bottom > space.bottom
       || box.left < space.left || box.right > space.right;
