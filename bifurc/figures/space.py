@@ -89,10 +89,7 @@ def _draw_forms(
             continue
         shown = _shown(points[:, list(indices)], scales)
         is_jump = np.any(np.abs(np.diff(shown, axis=0)) > half, axis=1)
-        for column, scale in zip(shown.T, scales, strict=True):
-            if scale.is_periodic:
-                low, high = scale.limits
-                column[(column < low) | (column > high)] = np.nan
+        shown[~_are_in_frame(shown, scales)] = np.nan
         rows = np.insert(shown, np.flatnonzero(is_jump) + 1, np.nan, axis=0)
         axes.plot(*rows.T, linewidth=1.6, label=curve.name, **curve.style.line)
 
@@ -101,17 +98,17 @@ def _spots(points: np.ndarray, scales: Sequence[Scale]) -> np.ndarray:
     """Where points (k, 3) are shown (m, 3): on both faces of the frame where they lie on
     one, and nowhere where they lie outside of it."""
     copies = [copies_in_frame(p, scales) for p in place_in_frame(points, scales)]
-    return _in_frame(np.concatenate(copies), scales)
+    shown = np.concatenate(copies)
+    return shown[_are_in_frame(shown, scales).all(axis=1)]
 
 
-def _in_frame(shown: np.ndarray, scales: Sequence[Scale]) -> np.ndarray:
-    """Those of the points (k, 3), as they are shown, that lie in the frame."""
-    is_inside = np.ones(len(shown), dtype=bool)
-    for column, scale in zip(shown.T, scales, strict=True):
-        if scale.is_periodic:
-            low, high = scale.limits
-            is_inside &= (low <= column) & (column <= high)
-    return shown[is_inside]
+def _are_in_frame(shown: np.ndarray, scales: Sequence[Scale]) -> np.ndarray:
+    """Which coordinates of points (k, 3), as they are shown, lie in the frame: all of
+    those without a period."""
+    endless = (-np.inf, np.inf)
+    limits = [scale.limits if scale.is_periodic else endless for scale in scales]
+    low, high = np.array(limits).T
+    return np.asarray((low <= shown) & (shown <= high))
 
 
 def _draw_points(
@@ -126,7 +123,7 @@ def _draw_points(
     picked = list(indices)
     for surface in selection.surfaces(atlas):
         shown = place_in_frame(surface.samples[:, picked], scales)
-        shown = _in_frame(shown, scales)
+        shown = shown[_are_in_frame(shown, scales).all(axis=1)]
         axes.plot(*shown.T, ".", color="0.6", markersize=2, zorder=1)
     for marked in marked_points(atlas, selection):
         places = _spots(np.array(marked.points)[:, picked], scales).T

@@ -37,8 +37,7 @@ class PlaceKind(Enum):
 class FollowedPlace:
     """A place of a followed curve: its ``kind``, the arclength ``s``, the unknowns ``u``
     (n,), the parameters ``p`` (q,), and the ``error``: how far off the latter may be, in
-    doubles.
-    Where one ``parameter`` (from 0) turns back, whether that ``is_minimum``."""
+    doubles. Where one ``parameter`` (from 0) turns back, whether that ``is_minimum``."""
 
     kind: PlaceKind
     s: float
