@@ -10,8 +10,8 @@ SECTOR = np.radians(70)  # angle of the parallelograms
 
 
 def miura(columns: int, rows: int, fold: float = 0.0) -> dict[str, Any]:
-    """A flat sheet of parallelograms, straight creases along x, zigzags along y, with
-    fold angles where ``fold`` (rad), that of the zigzags, is not 0.
+    """A sheet of parallelograms, straight creases along x, zigzags along y, assigned as it folds, with
+    fold angles where ``fold`` (rad, 0 or more), that of the zigzags, is not 0.
 
     The half tangents of the fold angles at a vertex have the cosine of the sector angle
     as their ratio (Schenk and Guest 2013).
@@ -25,17 +25,21 @@ def miura(columns: int, rows: int, fold: float = 0.0) -> dict[str, Any]:
     faces, edges, letters, angles = [], [], [], []
 
     def edge(
-        first: tuple[int, int], second: tuple[int, int], is_inner: bool, angle: float
+        first: tuple[int, int],
+        second: tuple[int, int],
+        is_inner: bool,
+        sign: int,
+        angle: float,
     ) -> None:
         edges.append([place[first][0], place[second][0]])
-        letters.append(("V" if angle >= 0 else "M") if is_inner else "B")
-        angles.append(float(np.degrees(angle)) if is_inner else 0.0)
+        letters.append(("V" if sign > 0 else "M") if is_inner else "B")
+        angles.append(float(np.degrees(sign * angle)) if is_inner else 0.0)
 
     for i, j in place:
         if i < columns:
-            edge((i, j), (i + 1, j), 0 < j < rows, -((-1) ** (i + j)) * straight)
+            edge((i, j), (i + 1, j), 0 < j < rows, -((-1) ** (i + j)), straight)
         if j < rows:
-            edge((i, j), (i, j + 1), 0 < i < columns, (-1) ** i * fold)
+            edge((i, j), (i, j + 1), 0 < i < columns, (-1) ** i, fold)
         if i < columns and j < rows:
             corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
             faces.append([place[corner][0] for corner in corners])

@@ -54,6 +54,7 @@ from bifurc.search.tracing import Tracer
 from bifurc.seeds import Seeds
 from bifurc.settings import SearchSettings
 from bifurc.singular.classify import classify_from_nearby
+from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.point import Kind
 
 log = logging.getLogger(__name__)
@@ -65,6 +66,7 @@ SLOW_REACH = 0.5  # how far from these, over the scale, a singular point may lie
 SORTING = 0.3  # of the time that is left, to tell on what seeds lie
 ROUNDS_IN_BOXES = 3  # each of them followed up
 MOST_TIMES = 16  # as many random starts as are asked for are drawn
+LEAST_SAMPLED = 3  # dimension of a component that charts do not cover
 
 # What a step leads to, one after another: starts of branches, which are traced with
 # all that hangs on them, and then the seeds of which nothing is known yet, before the
@@ -375,9 +377,17 @@ class Search:
             audit = judge(findings.branches, seconds)
             findings.set_audit(audit)
             solutions, gaps = self.problem.project(audit.starts)
-            solutions = solutions[is_start_solved(gaps)]
+            solutions = self._off_known_components(solutions[is_start_solved(gaps)])
             self._add_seeds(findings.book.seeds.with_constructed(solutions))
             yield []
+
+    def _off_known_components(self, solutions: np.ndarray) -> np.ndarray:
+        """Those of the solutions (k, n) that are no more samples of what is known to
+        have dimension 3 or more: there, curves through each of them have no end."""
+        if max(self.findings.components.seeds, default=0) < LEAST_SAMPLED:
+            return solutions
+        local = local_dimensions(self.problem, solutions, self.run.deadline)
+        return solutions[local.dimension < LEAST_SAMPLED]
 
     def audit_in_boxes(self) -> Starts:
         """Divide the bounds of exact equations into boxes, and trace the arcs that show

@@ -110,7 +110,7 @@ class CutMotions:
         is_known = atlas.completeness.level in (Level.PROVED, Level.CERTIFIED)
         if is_known and audit is not None and stretches.are_all:
             level, inner = Level.CERTIFIED, audit.claims
-        first = replace(inner[0], words=f"of them: {inner[0].words}")
+        first = replace(inner[0], words=f"without limits, {inner[0].words}")
         cut = LinkageClaim.CUT_AT_LIMITS.claim(Scope.MOTIONS, level)
         claims = (cut, first, *inner[1:])
         if np.any(is_missed):

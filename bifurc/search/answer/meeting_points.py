@@ -104,7 +104,7 @@ def _within_bounds(problem: Problem, point: SingularPoint) -> SingularPoint:
     """The point with those of its half-branches only that do not leave the bounds there,
     where it lies in them."""
     domain = problem.domain
-    if not len(point.half_branches) or point.dimension > 1:
+    if not len(point.half_branches):
         return point
     reach = domain.slack + point.error
     low, high = domain.bounds.T

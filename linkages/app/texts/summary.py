@@ -3,6 +3,7 @@ what of it stands on the first screen."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -40,6 +41,7 @@ SCREEN_ROWS = 4  # rigid assemblies and near motions on it
 DETAILS = ("smallest s.v.", "residual", "rank", "error", "mobility")
 NEAR_MOTIONS = "Near motions (the loop nearly closes)"
 REASONS = "the reasons: --verbose"
+IN_BRACKETS = re.compile(r" ?\([^()]*\)")
 
 
 def make_screen(atlas: Atlas) -> str:
@@ -149,8 +151,11 @@ def certainty_in_short(completeness: Completeness) -> str:
 
 
 def _head(text: str) -> str:
-    """A statement without what follows its colon."""
-    return text.partition(":")[0]
+    """A statement without what stands in brackets or follows its colon."""
+    bare = text
+    while (shorter := IN_BRACKETS.sub("", bare)) != bare:
+        bare = shorter
+    return bare.partition(":")[0]
 
 
 def make_summary(atlas: Atlas) -> str:

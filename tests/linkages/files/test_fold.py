@@ -11,6 +11,7 @@ import linkages
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
 from bifurc.system import jacobian_at
+from linkages.app.texts.summary import certainty_in_short
 from linkages.closure.closure import Closure
 from linkages.file import LinkageFileError
 from linkages.mechanisms.subject import mechanism_from, mechanism_subject
@@ -418,6 +419,41 @@ def test_the_flat_state_in_a_corner_of_the_assignment_is_in_no_doubt(tmp_path):
     assert not atlas.completeness.doubts
     lone = linkages.map_linkage(read(tmp_path, flat_vertex("VVVV")))
     assert [point.kind for point in lone.points] == [Kind.ISOLATED]
+
+
+def test_a_flat_sheet_folds_one_way_as_assigned_and_is_in_no_doubt(tmp_path):
+    atlas = linkages.map_linkage(read(tmp_path, miura(3, 3)))
+    assert [form.name for form in atlas.forms] == ["Form 1 (as assigned)"]
+    kinds = [point.kind for point in atlas.points]
+    assert (
+        kinds == [Kind.DIMENSION_CHANGE] * 2
+    )  # of which no surface is within the limits
+    assert not atlas.completeness.doubts
+
+
+def test_a_vertex_of_six_creases_has_three_freedoms_within_its_assignment(tmp_path):
+    corners = [
+        [-1.0, -1.0],
+        [1.0, -1.0],
+        [1.0, 0.0],
+        [1.0, 1.0],
+        [-1.0, 1.0],
+        [-1.0, 0.0],
+    ]
+    around = [1, 2, 3, 4, 5, 6]
+    rim = list(zip(around, [*around[1:], 1], strict=True))
+    waterbomb = {
+        "vertices_coords": [[0.0, 0.0], *corners],
+        "edges_vertices": [*([0, k] for k in around), *map(list, rim)],
+        "edges_assignment": [*"VVMVVM", *"BBBBBB"],
+        "faces_vertices": [[0, *side] for side in rim],
+    }
+    atlas = linkages.map_linkage(read(tmp_path, waterbomb))
+    assert [surface.dimension for surface in atlas.surfaces] == [3]
+    assert not atlas.forms
+    in_short = certainty_in_short(atlas.completeness)
+    assert in_short.count("(") == in_short.count(")") == 2
+    assert "; without limits, " in in_short
 
 
 def test_faces_come_from_edges_where_they_are_not_given(tmp_path):
