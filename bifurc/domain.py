@@ -65,6 +65,11 @@ class Domain:
         outside: np.ndarray = np.maximum(self.excess(points), 0.0)
         return is_in_bounds(outside, self.scale)
 
+    def are_at_bounds(self, points: np.ndarray) -> np.ndarray:
+        """Which points (k, n) lie in a bound, or beyond one (k,)."""
+        at_bounds: np.ndarray = self.excess(points) >= -self.slack
+        return at_bounds
+
     def difference(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         """a - b (..., n) with periodic unknowns taken to within half a period of 0."""
         return torus.difference(a, b, self.periods)

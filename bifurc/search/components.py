@@ -106,8 +106,10 @@ def components_of_seeds(
     doubtful = np.flatnonzero(may_be_null(values[:, problem.n - 2]))
     local = local_dimensions(problem, points[doubtful], deadline)
     for dimension in np.unique(local.dimension[local.dimension >= 2]):
-        is_regular = (local.nullity == dimension) | (dimension > 2)
-        numbers = doubtful[(local.dimension == dimension) & is_regular]
+        # of singular points at a bound, what leaves the region may be all of it
+        is_sample = (dimension > 2) & ~problem.domain.are_at_bounds(points[doubtful])
+        is_sample |= local.nullity == dimension
+        numbers = doubtful[(local.dimension == dimension) & is_sample]
         if len(numbers):
             components.seeds[int(dimension)] = numbers.tolist()
     if 2 not in components.seeds and not problem.domain.is_large:

@@ -374,10 +374,12 @@ def _separate_surfaces(problem: Problem, points: np.ndarray) -> Section:
     those on surfaces its dimension.
 
     A curve may be shaky, and a solution of higher nullity on it; the dimension of the
-    nearby solutions decides.
+    nearby solutions decides. Surfaces outside the region do not count.
     """
     sigma = singular_values(problem, points)
     is_of_higher_nullity = is_null(sigma[:, -2])
+    counts = problem.domain.are_inside(points) | ~is_of_higher_nullity
+    points, is_of_higher_nullity = points[counts], is_of_higher_nullity[counts]
     candidates = np.flatnonzero(is_of_higher_nullity)
     stride = max(1, len(candidates) // MOST_TESTED)
     sample = candidates[::stride]
