@@ -174,7 +174,7 @@ def test_points_of_usual_steps_are_counted_in_our_time():
 
 
 def test_a_sparse_problem_is_left_to_methods_with_sparse_matrices():
-    case = bratu(300)
+    case = bratu(150)
     assert case.sparse
     assert np.allclose(
         case.problem.jacobians(case.start[None] + 0.1)[0],
