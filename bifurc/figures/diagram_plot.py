@@ -56,7 +56,7 @@ def plot_diagram(
 ) -> Figure:
     """The bifurcation diagram of an atlas in the plane of two quantities.
 
-    Each is the name of an unknown, "|x|" for the size of the unknown x, "|u|" for the
+    Each is the name of an unknown, its symbol of sympy, "|x|" for the size of the unknown x, "|u|" for the
     Euclidean norm of all unknowns but the parameter, or a function of the unknowns
     (n,); ``horizontal`` is the parameter where nothing is said. Stable stretches are
     solid, unstable ones dashed, neutral ones dotted; where no stability is known all
