@@ -232,6 +232,16 @@ class FunctionProblem(EquationProblem):
     Raises `ProblemError` for bounds out of order, for a function that gives no finite
     vector, for a ``jacobian`` that is not its derivative, and for a period that is none
     of the function.
+
+    >>> import bifurc, numpy as np
+    >>> problem = bifurc.FunctionProblem(
+    ...     lambda u, p: [p * np.exp(u[0]) - u[0]], {"x": (0, 5)}, parameters={"p": (0, 1)}
+    ... )
+    >>> str(problem.recording)
+    'recorded (3 operations)'
+    >>> (fold,) = bifurc.explore(problem, parameter="p").diagram.folds
+    >>> fold.u.round(9).tolist()  # at x = 1 and p = 1/e
+    [1.0, 0.367879441]
     """
 
     has_exact_constants = False  # they are the doubles that the function computes with

@@ -55,6 +55,15 @@ def diagram_of(
     where it takes the value, or each of several. The name of an unknown, its symbol, or an
     expression of sympy may stand for a function. Raises `ProblemError` for a parameter
     that is no unknown, and for events of another kind.
+
+    >>> import bifurc
+    >>> cusp = bifurc.FunctionProblem(lambda u: [u[0] ** 3 - u[0] - u[1]], [(-2, 2), (-3, 3)])
+    >>> atlas = bifurc.explore(cusp)
+    >>> diagram = bifurc.diagram_of(cusp, atlas, "u2", {"one": ("u1", 1.0)})
+    >>> [round(float(fold.u[1]), 9) for fold in diagram.folds]
+    [0.384900179, -0.384900179]
+    >>> [event.u[0].round(12).item() for event in diagram.events("one")]
+    [1.0]
     """
     check_type("problem", problem, Problem)
     check_type("atlas", atlas, Atlas)

@@ -43,6 +43,14 @@ class SymbolicProblem(TapeProblem):
     are in the order of the unknowns, or by these, as for `FunctionProblem`. At high precision the
     numbers in the expressions are exact: a third is a third. Raises `ProblemError` that
     names the expression and the symbol or the function which cannot be used.
+
+    >>> import bifurc, sympy
+    >>> x, p = sympy.symbols("x p")
+    >>> bounds = {x: (-3, 3), p: (-3, 3)}
+    >>> problem = bifurc.SymbolicProblem([sympy.Eq(x**2 + p**2, 4)], [x, p], bounds)
+    >>> atlas = bifurc.explore(problem, parameter=p)
+    >>> sorted(fold.u[1].round(12).item() for fold in atlas.diagram.folds)
+    [-2.0, 2.0]
     """
 
     has_exact_constants = True

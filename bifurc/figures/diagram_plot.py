@@ -62,6 +62,14 @@ def plot_diagram(
     solid, unstable ones dashed, neutral ones dotted; where no stability is known all
     are solid. It is drawn into ``ax``, or with a legend into a ``figure`` or a part of
     one, or into a new one. Raises `ProblemError` for a quantity that is not there.
+
+    >>> import bifurc
+    >>> problem = bifurc.FunctionProblem(
+    ...     lambda u, p: [p * u[0] - u[0] ** 3], {"x": (-2, 2)}, parameters={"p": (-1, 3)}
+    ... )
+    >>> figure = bifurc.plot_diagram(bifurc.explore(problem, parameter="p"), "p", "|x|")
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('p', '|x|')
     """
     check_type("atlas", atlas, Atlas)
     if horizontal is None:

@@ -64,6 +64,14 @@ def explore(
     so. With a ``parameter``, the name of an unknown, or ``events``, functions of the
     unknowns, the atlas holds a diagram; see `diagram_of`, also for ``is_flow``. Raises
     `ProblemError` for settings or a seed that cannot be used.
+
+    >>> import bifurc
+    >>> problem = bifurc.FunctionProblem(
+    ...     lambda u, p: [p * u[0] - u[0] ** 3], {"x": (-2, 2)}, parameters={"p": (-1, 3)}
+    ... )
+    >>> atlas = bifurc.explore(problem, parameter="p")
+    >>> len(atlas.forms), len(atlas.bifurcations), atlas.diagram.branchings[0].kind.value
+    (2, 1, 'supercritical pitchfork')
     """
     check_type("problem", problem, Problem)
     check_type("settings", settings, SearchSettings)

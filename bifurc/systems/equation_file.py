@@ -115,6 +115,20 @@ def read_equations(
     ``values`` replace those of the parameters in the file. Nothing in the file is run.
     Raises `EquationFileError` for a file that cannot be read, and for anything wrong in
     it, with the name of the entry.
+
+    >>> import bifurc, pathlib
+    >>> text = '''
+    ... equations = ["x^2 + y^2 = r^2"]
+    ... [unknowns]
+    ... x = [-3, 3]
+    ... y = [-3, 3]
+    ... [parameters]
+    ... r = 1
+    ... '''
+    >>> _ = pathlib.Path("circle.toml").write_text(text)
+    >>> (form,) = bifurc.read_equations("circle.toml", {"r": 2}).explore().forms
+    >>> form.branch.closed, round(form.branch.length, 9)
+    (True, 12.566370614)
     """
     return EquationFile.read(path).system(values or {})
 
