@@ -29,6 +29,7 @@ extensions = [
     "docs.generator.docstrings",
     "docs.generator.mathml",
     "docs.generator.public_names",
+    "docs.generator.words",
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 root_doc = "index"

@@ -6,6 +6,7 @@ from html import escape
 from pathlib import Path
 
 from docutils import nodes
+from pygments.lexers.special import TextLexer
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
@@ -131,4 +132,5 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.add_directive("drawn", DrawnFile)
     app.add_directive("linkage-gallery", LinkageGallery)
     app.add_directive("mermaid", FlowChart)
+    app.add_lexer("csv", TextLexer)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

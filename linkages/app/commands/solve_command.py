@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     type=options.AxisWords(),
     metavar="X,Y",
     default=(),
-    help="Draw the diagram over these two: unknowns, |x| for the size of x, or |u| for "
+    help="Draw the diagram over these two: unknowns, `|x|` for the size of x, or `|u|` for "
     "the norm of all but the parameter; needs --out.",
 )
 @options.figure_options
@@ -73,7 +73,7 @@ def solve_command(
     \b
     Examples:
       bifurc solve reaction.toml --out out/reaction
-      bifurc solve reaction.toml --out out/reaction --axes "p,|x|"
+      bifurc solve reaction.toml --out out/reaction --axes p,x
       bifurc solve reaction.toml --param B=12 --json
     """
     from bifurc.systems.document import make_document
