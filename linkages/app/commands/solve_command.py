@@ -49,8 +49,8 @@ if TYPE_CHECKING:
     type=options.AxisWords(),
     metavar="X,Y",
     default=(),
-    help="Draw the diagram over these two: unknowns, `|x|` for the size of x, or `|u|` for "
-    "the norm of all but the parameter; needs --out.",
+    help="Draw the diagram over these two: unknowns, one between bars for its size, or u "
+    "between bars for the norm of all but the parameter; needs --out.",
 )
 @options.figure_options
 @options.search_options
