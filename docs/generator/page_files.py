@@ -20,7 +20,9 @@ def files_of(page: str) -> dict[str, str]:
         if language not in FORMATS:
             continue
         comment = NAMED.match(text)
-        if not name and comment is None:
+        if comment is not None:
+            name = comment[1]
+        if not name:
             raise ValueError(f"a block of {language} has no name: {text[:60]!r}")
-        files[name or comment[1]] = text
+        files[name] = text
     return files
