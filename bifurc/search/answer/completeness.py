@@ -54,9 +54,7 @@ def _claims(findings: Findings, provenance: Provenance, left: int) -> tuple[Clai
         budget = provenance.settings.budget
         level = Level.OUT_OF_TIME
         out_of_time = SearchClaim.OUT_OF_TIME
-        return (
-            out_of_time.claim(Scope.SEARCH, level, budget=float(budget), left=left),
-        )
+        return (out_of_time.claim(Scope.SEARCH, level, budget=budget, left=left),)
     if provenance.interrupted:
         return (SearchClaim.INTERRUPTED.claim(Scope.SEARCH, Level.INTERRUPTED),)
     if findings.audit is None:
