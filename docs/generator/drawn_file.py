@@ -59,4 +59,4 @@ def pictures_html(name: str, kinds: Sequence[str], folder: str) -> str:
         f"<figcaption>{PICTURES[kind][1]}</figcaption></figure>"
         for kind in kinds
     ]
-    return f'<div class="linkage-pictures">\n{"".join(figures)}\n</div>'
+    return f'<div class="linkage-pictures drawn-pictures">\n{"".join(figures)}\n</div>'
