@@ -12,7 +12,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # Processes share the cores: threads of BLAS in each would only compete.
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: map test test-exhaustive test-fragile test-processors lint studies gallery bench docs pages dist viewer viewer-packages chromium clean
+.PHONY: map test test-exhaustive test-fragile test-processors lint studies gallery bench docs pages picture dist viewer viewer-packages chromium clean
 
 map: .venv/ready  ## the main job: one linkage to its complete transition map
 	$(BIN)/bifurc map $(LINKAGE) --out out/$(LINKAGE)
@@ -79,6 +79,10 @@ pages: .venv/ready-to-test  ## the pages of the docs that come out of the code, 
 	$(BIN)/python -m studies.pages
 	$(BIN)/python -m studies.page_sizes --page
 	$(BIN)/python -m studies.margins --members 2 --near 60 --page
+
+picture: .venv/ready  ## the moving picture of the README, made anew
+	$(BIN)/bifurc animate special-double-subtractive-goldberg --route "Form I" "Bennett 4R" --count 60 --size 3.4x2.6 \
+	  --out docs/static/linkage.gif
 
 dist: .venv/ready  ## sdist and wheel into dist/
 	$(BIN)/python -m pip install --quiet build

@@ -4,11 +4,17 @@ allowed."""
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bifurc.errors import ProblemError
+
+if TYPE_CHECKING:
+    import sympy
+
+Name: TypeAlias = "str | sympy.Symbol"
 
 
 def check_type(name: str, value: object, kind: type) -> None:
@@ -16,6 +22,11 @@ def check_type(name: str, value: object, kind: type) -> None:
     if not isinstance(value, kind):
         article = "an" if kind.__name__[0] in "AEIOU" else "a"
         raise ProblemError(name, repr(value), f"{article} {kind.__name__}")
+
+
+def name_of(given: object) -> object:
+    """The name of a symbol of sympy; anything else as it is."""
+    return str(given) if getattr(given, "is_Symbol", False) is True else given
 
 
 def check_callable(name: str, value: object) -> None:

@@ -207,10 +207,12 @@ def completeness_document(completeness: Completeness) -> dict[str, Any]:
 
 
 class _Count(int):
-    """A number that "{forms:form}" shows with its noun: 1 form, 2 forms."""
+    """A number that "{forms:form}" shows with its noun: 1 form, 2 forms; any other number
+    may be whole, too."""
 
     def __format__(self, noun: str) -> str:
-        return count_of(self, noun) if noun else str(int(self))
+        is_noun = noun[:1].isalpha()
+        return count_of(self, noun) if is_noun else format(int(self), noun)
 
 
 def _shown(data: Mapping[str, Any]) -> dict[str, Any]:

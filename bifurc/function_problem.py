@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, cast
 
 import numpy as np
 
-from bifurc.checks import check_callable, floats_of
+from bifurc.checks import Name, check_callable, check_type, floats_of, name_of
 from bifurc.decisions import (
     is_bearable_noise,
     is_derivative,
@@ -48,6 +48,8 @@ from bifurc.system import (
 if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
     from scipy.sparse import sparray
+
+Bounds: TypeAlias = Sequence[Sequence[float]] | Mapping[Name, Sequence[float]]
 
 PROBES = 7  # points at which a function is tried out and its derivatives are measured
 MOST_TRIALS = (
@@ -190,6 +192,17 @@ class _FirstPoints(NamedTuple):
     probes: np.ndarray
 
 
+@dataclass(frozen=True)
+class _OfAllUnknowns:
+    """A ``function`` of unknowns (n,) and parameters, each a number, as one of all."""
+
+    function: Callable[..., Any]
+    n: int
+
+    def __call__(self, point: np.ndarray) -> Any:
+        return self.function(point[: self.n], *point[self.n :])
+
+
 class FunctionProblem(EquationProblem):
     """A problem from a plain Python callable ``function``: (n,) -> (m,).
 
@@ -208,28 +221,51 @@ class FunctionProblem(EquationProblem):
     where its bounds are one period or more apart, or infinite; bounds that are closer
     are limits on the circle. An unknown without bounds or a period is followed as far
     as a hundred times the size of the solutions that are reached from starts about 0;
-    `bounds` holds what was taken. Raises `ProblemError` for bounds out of order, for a function
-    that gives no finite vector, for a ``jacobian`` that is not its derivative, and for
-    a period that is none of the function.
+    `bounds` holds what was taken. Bounds, units and periods may be given by the names of
+    the unknowns, and a symbol of sympy stands for its name.
+
+    With the bounds of ``parameters`` by their names the function is F(u, p, ...) of
+    unknowns u (n,) and one number for each parameter, and so is a ``jacobian``, with
+    derivatives (m, n + q) by the unknowns and then the parameters. They are unknowns of
+    the problem as the others are, behind these.
+
+    Raises `ProblemError` for bounds out of order, for a function that gives no finite
+    vector, for a ``jacobian`` that is not its derivative, and for a period that is none
+    of the function.
+
+    >>> import bifurc, numpy as np
+    >>> problem = bifurc.FunctionProblem(
+    ...     lambda u, p: [p * np.exp(u[0]) - u[0]], {"x": (0, 5)}, parameters={"p": (0, 1)}
+    ... )
+    >>> str(problem.recording)
+    'recorded (3 operations)'
+    >>> (fold,) = bifurc.explore(problem, parameter="p").diagram.folds
+    >>> fold.u.round(9).tolist()  # at x = 1 and p = 1/e
+    [1.0, 0.367879441]
     """
 
     has_exact_constants = False  # they are the doubles that the function computes with
 
     def __init__(
         self,
-        function: Callable[[np.ndarray], Sequence[float] | np.ndarray],
-        bounds: Sequence[Sequence[float]],
+        function: Callable[..., Sequence[float] | np.ndarray],
+        bounds: Bounds,
         *,
-        jacobian: Callable[[np.ndarray], np.ndarray | sparray] | None = None,
-        names: Sequence[str] | None = None,
-        units: Sequence[str] | None = None,
-        periods: Sequence[float] | None = None,
+        parameters: Mapping[Name, Sequence[float]] | None = None,
+        jacobian: Callable[..., np.ndarray | sparray] | None = None,
+        names: Sequence[Name] | None = None,
+        units: Sequence[str] | Mapping[Name, str] | None = None,
+        periods: Sequence[float] | Mapping[Name, float] | None = None,
         is_recorded: bool = True,
     ):
         check_callable("function", function)
         if jacobian is not None:
             check_callable("jacobian", jacobian)
-        self.domain = _described_domain(bounds, names, units, periods)
+        self.domain = _described_domain(bounds, names, units, periods, parameters)
+        if parameters:
+            n = self.n - len(parameters)
+            function = _OfAllUnknowns(function, n)
+            jacobian = jacobian and _OfAllUnknowns(jacobian, n)
         self.equations = Equations(function, jacobian, 0, NOT_RECORDED)
         points, probes = self._first_points()
         m = len(self.equations.value(probes[0]))
@@ -474,21 +510,42 @@ def accuracy_of(equations: Equations) -> Accuracy:
 
 
 def _described_domain(
-    bounds: Sequence[Sequence[float]],
-    names: Sequence[str] | None,
-    units: Sequence[str] | None,
-    periods: Sequence[float] | None,
+    bounds: Bounds,
+    names: Sequence[Name] | None,
+    units: Sequence[str] | Mapping[Name, str] | None,
+    periods: Sequence[float] | Mapping[Name, float] | None,
+    parameters: Mapping[Name, Sequence[float]] | None,
 ) -> Domain:
-    """The unknowns as the user describes them; raises `ProblemError`."""
-    ends = _checked_bounds(bounds)
+    """The unknowns as the user describes them, and behind them the parameters; raises
+    `ProblemError`."""
+    domain = _domain_of_unknowns(bounds, names, units, periods)
+    if parameters is not None:
+        domain = _with_parameters(domain, parameters)
+    if len(set(domain.names)) < len(domain.names):
+        raise ProblemError("names", domain.names, "all different")
+    finite = np.column_stack(_finite_bounds(domain))
+    return replace(domain, scale=_quarter_of_width(finite))
+
+
+def _domain_of_unknowns(
+    bounds: Bounds,
+    names: Sequence[Name] | None,
+    units: Sequence[str] | Mapping[Name, str] | None,
+    periods: Sequence[float] | Mapping[Name, float] | None,
+) -> Domain:
+    """The unknowns without parameters."""
+    if names is None and isinstance(bounds, Mapping):
+        names = list(bounds)
+    given_names = () if names is None else _checked_texts("names", names)
+    ends = _checked_bounds(_in_order("bounds", bounds, given_names))
     n = len(ends)
-    default_names = [f"u{i + 1}" for i in range(n)]
-    own_names = _checked_texts("names", default_names if names is None else names)
-    own_units = _checked_texts("units", [""] * n if units is None else units)
-    if len(set(own_names)) < len(own_names):
-        raise ProblemError("names", own_names, "all different")
-    endless = np.full(n, np.inf)
-    own_periods = endless if periods is None else floats_of("periods", periods)
+    own_names = given_names if names is not None else _default_names(n)
+    given_units = [""] * n if units is None else units
+    own_units = _checked_texts("units", _in_order("units", given_units, own_names, ""))
+    given_periods = np.full(n, np.inf) if periods is None else periods
+    own_periods = floats_of(
+        "periods", _in_order("periods", given_periods, own_names, np.inf)
+    )
     sizes = {
         "names": len(own_names),
         "units": len(own_units),
@@ -502,9 +559,47 @@ def _described_domain(
         allowed = "positive, inf where an unknown has none"
         raise ProblemError("periods", own_periods.tolist(), allowed)
     ends = _without_limits_of_circles(ends, own_periods)
-    domain = Domain(own_names, own_units, own_periods, ends)
-    finite = np.column_stack(_finite_bounds(domain))
-    return replace(domain, scale=_quarter_of_width(finite))
+    return Domain(own_names, own_units, own_periods, ends)
+
+
+def _with_parameters(
+    domain: Domain, parameters: Mapping[Name, Sequence[float]]
+) -> Domain:
+    """A domain with parameters behind its unknowns, by their names with their bounds."""
+    check_type("parameters", parameters, dict)
+    if not parameters:
+        return domain
+    names = _checked_texts("names of the parameters", list(parameters))
+    bounds = _checked_bounds(list(parameters.values()), "bounds of the parameters")
+    q = len(names)
+    return Domain(
+        domain.names + names,
+        domain.units + ("",) * q,
+        np.append(domain.periods, np.full(q, np.inf)),
+        np.concatenate([domain.bounds, bounds]),
+    )
+
+
+def _default_names(n: int) -> tuple[str, ...]:
+    return tuple(f"u{i + 1}" for i in range(n))
+
+
+def _in_order(what: str, given: Any, names: Sequence[str], usual: object = None) -> Any:
+    """What is ``given`` by the names of unknowns in the order of these, with what is
+    ``usual`` for those left out; anything but a dictionary as it is. Raises
+    `ProblemError` for a name that is none of them, and for one that must not be left
+    out."""
+    if not isinstance(given, Mapping):
+        return given
+    by_name = {name_of(key): value for key, value in given.items()}
+    for name in by_name:
+        if name not in names:
+            allowed = f"one of the unknowns {', '.join(names)}"
+            raise ProblemError(what, repr(name), allowed)
+    for name in names:
+        if name not in by_name and usual is None:
+            raise ProblemError(f"{what}[{name!r}]", "missing", "given")
+    return [by_name.get(name, usual) for name in names]
 
 
 def _quarter_of_width(bounds: np.ndarray) -> float:
@@ -539,15 +634,17 @@ def _largest_known(values: np.ndarray) -> np.ndarray:
     return largest
 
 
-def _checked_bounds(bounds: Sequence[Sequence[float]]) -> np.ndarray:
+def _checked_bounds(
+    bounds: Sequence[Sequence[float]], what: str = "bounds"
+) -> np.ndarray:
     """The bounds as an array (n, 2)."""
-    checked = floats_of("bounds", bounds)
+    checked = floats_of(what, bounds)
     allowed = "rows of (low, high) with low < high"
     if checked.ndim != 2 or checked.shape[1] != 2:
-        raise ProblemError("bounds", checked.tolist(), allowed)
+        raise ProblemError(what, checked.tolist(), allowed)
     low, high = checked.T
     if not np.all(low < high):
-        raise ProblemError("bounds", checked.tolist(), allowed)
+        raise ProblemError(what, checked.tolist(), allowed)
     return checked
 
 
@@ -562,12 +659,14 @@ def _without_limits_of_circles(bounds: np.ndarray, periods: np.ndarray) -> np.nd
     return np.where(is_circle[:, None], [-np.inf, np.inf], bounds)
 
 
-def _checked_texts(name: str, texts: Sequence[str]) -> tuple[str, ...]:
-    """The ``texts`` as a tuple; raises `ProblemError` for anything but texts."""
-    is_row = isinstance(texts, Sequence) and not isinstance(texts, str)
+def _checked_texts(name: str, given: Sequence[Name]) -> tuple[str, ...]:
+    """What is ``given`` as texts; raises `ProblemError` for anything but texts, and symbols
+    that stand for them."""
+    is_row = isinstance(given, Sequence) and not isinstance(given, str)
+    texts = tuple(name_of(one) for one in given) if is_row else ()
     if not is_row or not all(isinstance(text, str) for text in texts):
-        raise ProblemError(name, repr(texts), "texts, one for each unknown")
-    return tuple(texts)
+        raise ProblemError(name, repr(given), "texts, one for each unknown")
+    return cast(tuple[str, ...], texts)
 
 
 def _spectral_norm(matrix: np.ndarray | sparray) -> float:

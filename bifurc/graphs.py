@@ -41,6 +41,14 @@ def transition_graph(atlas: Atlas) -> nx.MultiGraph:
     A bifurcation that one form passes more than once is a loop on that form. Surfaces
     are nodes as well, with their ``dimension``, joined to the forms that meet them and
     to the surfaces with which they share a singular point.
+
+    >>> import bifurc, linkages
+    >>> graph = bifurc.transition_graph(linkages.map_linkage(linkages.load("rhombus")))
+    >>> for form, other, data in graph.edges(data=True):
+    ...     print(form, "-", other, "at", data["bifurcation"])
+    rhombus form - folded form (joints 2,4 inactive) at B1
+    rhombus form - folded form (joints 1,3 inactive) at B2
+    folded form (joints 2,4 inactive) - folded form (joints 1,3 inactive) at B3
     """
     check_type("atlas", atlas, Atlas)
     graph = nx.MultiGraph()
@@ -79,6 +87,13 @@ def arc_graph(atlas: Atlas) -> nx.MultiGraph:
 
     Node attributes: ``kind``, ``u`` (n,). Edge attributes: `ArcAttributes`. A closed
     form that passes no singular point is a loop on a node of its own.
+
+    >>> import bifurc, linkages
+    >>> graph = bifurc.arc_graph(linkages.map_linkage(linkages.load("kite")))
+    >>> sorted(graph.nodes)
+    ['B1', 'B2']
+    >>> sorted({data["form"] for _, _, data in graph.edges(data=True)})
+    [0, 1]
     """
     check_type("atlas", atlas, Atlas)
     graph = nx.MultiGraph()

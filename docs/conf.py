@@ -29,6 +29,7 @@ extensions = [
     "docs.generator.docstrings",
     "docs.generator.mathml",
     "docs.generator.public_names",
+    "docs.generator.words",
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 root_doc = "index"
@@ -93,7 +94,7 @@ WIDE = ("figures", "performance", "stability", "negative_controls", "page_sizes"
 html_theme_options = {
     "logo": {"text": "bifurc"},
     "navbar_align": "left",
-    "header_links_before_dropdown": 6,
+    "header_links_before_dropdown": 7,
     "show_toc_level": 2,
     "show_nav_level": 1,
     "navigation_depth": 3,

@@ -98,6 +98,12 @@ def loop_from_axes(
     The loop's ``rounding`` says how far off lengths and offsets are, where that is more
     than doubles of the size of the linkage are: as points are far from the origin, or as
     some were taken as zero.
+
+    >>> import linkages, numpy as np
+    >>> directions = np.array([[1, 0, 1], [0, 1, 1], [-1, 0, 1.2], [0, -1, 1.5]])
+    >>> loop, angles = linkages.loop_from_axes(points=directions, directions=directions)
+    >>> np.degrees(loop.arrays.twists).round(4).tolist()
+    [60.0, -57.0973, 50.2679, 53.9601]
     """
     given = _axes(points, directions)
     axes = given.counted_from_first()

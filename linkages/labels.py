@@ -70,7 +70,12 @@ def subject_of(loop: Loop) -> dict[str, Any]:
 
 def loop_of(atlas: Atlas) -> Loop:
     """The loop that an atlas is of. Raises `NoLinkageError` where it is of something
-    else, also of a mechanism that is a single loop: its unknowns are others."""
+    else, also of a mechanism that is a single loop: its unknowns are others.
+
+    >>> import linkages
+    >>> linkages.loop_of(linkages.map_linkage(linkages.load("bennett"))).name
+    'bennett'
+    """
     check_type("atlas", atlas, Atlas)
     subject = atlas.subject
     if "mechanism" in subject:

@@ -27,6 +27,10 @@ def load(source: str | Path, **parameters: float) -> Linkage | Mechanism:
     `LinkageFileError` for a file that cannot be used, `UnknownParameterError` for a
     parameter that the family does not have, and `GeometryError` for values that make no
     linkage.
+
+    >>> import linkages
+    >>> linkages.load("bennett", a=1.0, alpha=1.5, beta=0.5).loop.n
+    4
     """
     if not isinstance(source, str | Path):
         allowed = "a name of the catalogue or the path of a file"
@@ -45,7 +49,12 @@ def load(source: str | Path, **parameters: float) -> Linkage | Mechanism:
 
 def load_linkage(source: str | Path, **parameters: float) -> Linkage:
     """What `load` returns, where that is a single loop; raises `GeometryError` for a
-    mechanism as well."""
+    mechanism as well.
+
+    >>> import linkages
+    >>> linkages.load_linkage("four-bar", d=3.4).loop.arrays.lengths.tolist()
+    [1.0, 2.4, 2.0, 3.4]
+    """
     linkage = load(source, **parameters)
     if not isinstance(linkage, Linkage):
         allowed = "a single loop of revolute joints, given as a table or as axes"

@@ -41,6 +41,11 @@ class Loop:
     lengths may be, as coordinates far from the origin were rounded; 0 where that is not
     known. Raises `GeometryError` for unequal or wrong numbers of entries, for entries that are not finite numbers, and
     for twists of over a thousand turns.
+
+    >>> import linkages, numpy as np
+    >>> loop = linkages.Loop([1, 0.5, 1, 0.5], np.radians([90, 30, 90, 30]), [0, 0, 0, 0])
+    >>> linkages.map_linkage(loop).forms[0].branch.closed
+    True
     """
 
     lengths: tuple[Number, ...]

@@ -33,6 +33,16 @@ def map_linkage(
     has its ``certificate``, unless the settings say otherwise. Raises `GeometryError`
     for anything but a linkage or a mechanism, and for a loop with lengths whose squares
     leave the range of doubles.
+
+    >>> import linkages
+    >>> atlas = linkages.map_linkage(linkages.load("rhombus"))
+    >>> for form in atlas.forms:
+    ...     print(form.name, round(form.branch.length, 6), form.branch.winding)
+    rhombus form 12.566371 [ 1 -1  1 -1]
+    folded form (joints 2,4 inactive) 8.885766 [ 1  0 -1  0]
+    folded form (joints 1,3 inactive) 8.885766 [ 0  1  0 -1]
+    >>> [point.name for point in atlas.bifurcations], str(atlas.completeness.level)
+    (['B1', 'B2', 'B3'], 'proved')
     """
     subject = as_subject(linkage)
     found = explore(subject.traced, settings=settings, seed=seed, progress=progress)

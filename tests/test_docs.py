@@ -3,8 +3,8 @@ the picture is true.
 
 A console block holds `$ bifurc ...` lines, each with the output that must follow: line
 by line, "..." for any lines, the beginning of a line for the whole of it. A comment
-"exit code N" behind a command is what it ends with. TOML blocks that begin with a
-comment "NAME.toml" are written to that file first.
+"exit code N" behind a command is what it ends with. Blocks that are files are written
+to these first (docs/generator/page_files.py).
 """
 
 import re
@@ -17,6 +17,7 @@ import pytest
 from click.testing import CliRunner
 
 from bifurc.graphs import transition_graph
+from docs.generator.page_files import BLOCK, files_of
 from linkages.app.cli import main
 from linkages.linkage import load
 from linkages.mapping import map_linkage
@@ -24,13 +25,12 @@ from tests.linkages.app.sweep.same_process import pool_at_once
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
-BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 
 def blocks(page, language):
     return [
         text
-        for kind, text in BLOCK.findall(page.read_text(encoding="utf-8"))
+        for kind, _, text in BLOCK.findall(page.read_text(encoding="utf-8"))
         if kind == language
     ]
 
@@ -67,10 +67,8 @@ def test_the_examples_of_a_page_do_what_it_says(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     matplotlib.use("Agg")
     monkeypatch.setattr("linkages.app.sweep.run.open_pool", pool_at_once)
-    for text in blocks(page, "toml"):
-        name = re.match(r"# (\S+\.toml)\n", text)
-        assert name, "the first line of a TOML block names its file"
-        Path(name[1]).write_text(text, encoding="utf-8")
+    for name, text in files_of(page.read_text(encoding="utf-8")).items():
+        Path(name).write_text(text, encoding="utf-8")
     for text in blocks(page, "console"):
         for arguments, code, expected in console_examples(text):
             result = CliRunner().invoke(main, arguments)

@@ -91,6 +91,14 @@ def trace_branch(
     correction across it brings the relative residual below ``closing``, and where it
     is followed when the ``deadline`` has passed. Raises `ProblemError` for a start or
     direction of the wrong shape.
+
+    >>> import bifurc, numpy as np
+    >>> circle = bifurc.FunctionProblem(lambda u: [u @ u - 1], [(-2, 2), (-2, 2)])
+    >>> branch = bifurc.trace_branch(circle, np.array([1.0, 0.1]))
+    >>> branch.closed, round(branch.length / np.pi, 12)
+    (True, 2.0)
+    >>> bool(np.abs(np.linalg.norm(branch.sample(1000), axis=1) - 1).max() < 1e-12)
+    True
     """
     check_type("problem", problem, Problem)
     check_type("settings", settings, TraceSettings)

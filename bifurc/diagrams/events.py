@@ -8,13 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple, TypeAlias, cast
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias, cast
 
 import numpy as np
 
 from bifurc.atlas import Atlas, Form
 from bifurc.branch import Branch
-from bifurc.checks import check_callable, check_finite, check_type, floats_of
+from bifurc.checks import (
+    check_callable,
+    check_finite,
+    check_type,
+    floats_of,
+    name_of,
+)
 from bifurc.decisions import is_event_all_along, is_same_turn
 from bifurc.diagrams.diagram import DiagramPoint
 from bifurc.diagrams.turnings import unknown_sizes
@@ -24,15 +30,25 @@ from bifurc.problem import Problem
 from bifurc.singular.point import Kind
 from bifurc.torus import wrap, wrapped_periods
 
+if TYPE_CHECKING:
+    import sympy
+
+    from bifurc.checks import Name
+
 SAMPLES, BESIDE = 32, 0.1  # places on a branch, so far, over their sizes, off it
 LOST = 1e-14  # of the values of a function: what rounding makes of them
 FINEST = 1e-3  # of the largest gain: turns that have a common part have a larger one
 UnknownsToNumber: TypeAlias = Callable[[np.ndarray], float]
 # By their names: a function whose zeros are looked for, or a function and what it shall
-# be equal to, one value or several. In place of a function the name of an unknown.
-EventRequests: TypeAlias = Mapping[
-    str, UnknownsToNumber | tuple[UnknownsToNumber | str, float | Sequence[float]]
-]
+# be equal to, one value or several. In place of a function the name of an unknown, or an
+# expression of sympy.
+EventRequests: TypeAlias = """Mapping[
+    Name,
+    UnknownsToNumber
+    | Name
+    | sympy.Expr
+    | tuple[UnknownsToNumber | Name | sympy.Expr, float | Sequence[float]],
+]"""
 ROUND_CIRCLES = 16  # places on each form at which a function is seen round the circles
 SHOWN = 3  # jumps that a remark names
 
@@ -102,7 +118,8 @@ def events_of(requests: EventRequests, names: Sequence[str]) -> list[EventFuncti
     """What the user asked for, one function for each value; raises `ProblemError`."""
     check_type("events", requests, dict)
     events = []
-    for label, request in requests.items():
+    for key, request in requests.items():
+        label = cast(str, name_of(key))
         check_type("name of an event", label, str)
         has_value = isinstance(request, tuple)
         if has_value and len(cast(tuple[object, ...], request)) != 2:
@@ -121,7 +138,12 @@ def events_of(requests: EventRequests, names: Sequence[str]) -> list[EventFuncti
 def _function_of(
     function: object, label: str, names: Sequence[str]
 ) -> UnknownsToNumber:
-    """A function, or the unknown that stands for one by its name."""
+    """A function; that of an expression of sympy, or of an unknown by its name."""
+    function = name_of(function)
+    if hasattr(function, "free_symbols"):
+        from bifurc.equations.symbolic import function_of  # it imports sympy
+
+        return function_of(function, f"events[{label!r}]", names)
     if isinstance(function, str):
         if function not in names:
             allowed = f"a function or one of the unknowns {', '.join(names)}"

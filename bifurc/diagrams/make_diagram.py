@@ -8,7 +8,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from bifurc.atlas import Atlas
-from bifurc.checks import check_type
+from bifurc.checks import Name, check_type, name_of
 from bifurc.decisions import is_same_point
 from bifurc.diagrams.diagram import (
     Branching,
@@ -40,21 +40,30 @@ from bifurc.torus import wrap, wrapped_periods
 def diagram_of(
     problem: Problem,
     atlas: Atlas,
-    parameter: str | None = None,
+    parameter: Name | None = None,
     events: EventRequests | None = None,
     *,
     is_flow: bool = True,
 ) -> Diagram:
     """What happens along the forms of an atlas of a problem as a parameter changes.
 
-    ``parameter`` is the name of an unknown. Where there are as many equations as other
+    ``parameter`` is the name of an unknown, or its symbol of sympy. Where there are as many equations as other
     unknowns, they are taken as the right-hand sides of u' = F(u), the first for the
     first of the others, and so on; with ``is_flow`` False they are not, and there is no
     stability. ``events`` are functions of the unknowns (n,) by
     their names, of which the zeros are looked for; with (function, value) the places
-    where it takes the value, or each of several. The name of an unknown may stand for a
-    function. Raises `ProblemError` for a parameter that is no unknown, and for events
-    of another kind.
+    where it takes the value, or each of several. The name of an unknown, its symbol, or an
+    expression of sympy may stand for a function. Raises `ProblemError` for a parameter
+    that is no unknown, and for events of another kind.
+
+    >>> import bifurc
+    >>> cusp = bifurc.FunctionProblem(lambda u: [u[0] ** 3 - u[0] - u[1]], [(-2, 2), (-3, 3)])
+    >>> atlas = bifurc.explore(cusp)
+    >>> diagram = bifurc.diagram_of(cusp, atlas, "u2", {"one": ("u1", 1.0)})
+    >>> [round(float(fold.u[1]), 9) for fold in diagram.folds]
+    [0.384900179, -0.384900179]
+    >>> [event.u[0].round(12).item() for event in diagram.events("one")]
+    [1.0]
     """
     check_type("problem", problem, Problem)
     check_type("atlas", atlas, Atlas)
@@ -75,7 +84,7 @@ def diagram_of(
     stretches = tuple(stretch for one in along for stretch in one.stretches)
     points = _named(problem, [*turnings.folds, *hopf_points, *found])
     return Diagram(
-        parameter=parameter,
+        parameter=problem.domain.names[index],
         points=points,
         stretches=stretches,
         branchings=_branchings(atlas, index, turnings, stretches),
@@ -85,7 +94,8 @@ def diagram_of(
 
 def parameter_index(names: Sequence[str], parameter: object) -> int:
     """The index of the unknown called ``parameter``; raises `ProblemError` with the
-    nearest name where there is none."""
+    nearest name where there is none. A symbol of sympy stands for its name."""
+    parameter = name_of(parameter)
     if parameter not in names:
         near = difflib.get_close_matches(str(parameter), names, n=1)
         hint = f" (the nearest is {near[0]})" if near else ""

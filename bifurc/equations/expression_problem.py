@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,11 +11,12 @@ import numpy as np
 from bifurc.equations.program import Program
 from bifurc.equations.recording import Recording
 from bifurc.equations.tape import Tape, TapeWriter, real_values
-from bifurc.function_problem import FunctionProblem
+from bifurc.function_problem import Bounds, FunctionProblem
 
 if TYPE_CHECKING:
     import mpmath
 
+    from bifurc.checks import Name
     from bifurc.system import PreciseResidual
 
 
@@ -49,11 +50,11 @@ class TapeProblem(FunctionProblem):
     def __init__(
         self,
         tape: Tape,
-        bounds: Sequence[Sequence[float]],
+        bounds: Bounds,
         *,
         names: Sequence[str],
-        units: Sequence[str] | None = None,
-        periods: Sequence[float] | None = None,
+        units: Sequence[str] | Mapping[Name, str] | None = None,
+        periods: Sequence[float] | Mapping[Name, float] | None = None,
     ):
         self._tape = tape
         function = TapeFunction(tape)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import sympy
 
-from bifurc.equations.expression_problem import TapeProblem
+from bifurc.equations.expression_problem import FirstOutput, TapeProblem
 from bifurc.equations.tape import (
     FUNCTIONS,
     Operation,
@@ -21,6 +21,8 @@ from bifurc.errors import ProblemError
 if TYPE_CHECKING:
     import mpmath
 
+    from bifurc.checks import Name
+    from bifurc.function_problem import Bounds
     from bifurc.system import PreciseResidual
 
 # of one number, by their names in sympy
@@ -38,9 +40,17 @@ class SymbolicProblem(TapeProblem):
     """The problem that sympy ``expressions`` in the ``unknowns`` are zero.
 
     An expression may be an equation `sympy.Eq`. ``bounds`` (n, 2) and ``periods`` (n,)
-    are in the order of the unknowns, as for `FunctionProblem`. At high precision the
+    are in the order of the unknowns, or by these, as for `FunctionProblem`. At high precision the
     numbers in the expressions are exact: a third is a third. Raises `ProblemError` that
     names the expression and the symbol or the function which cannot be used.
+
+    >>> import bifurc, sympy
+    >>> x, p = sympy.symbols("x p")
+    >>> bounds = {x: (-3, 3), p: (-3, 3)}
+    >>> problem = bifurc.SymbolicProblem([sympy.Eq(x**2 + p**2, 4)], [x, p], bounds)
+    >>> atlas = bifurc.explore(problem, parameter=p)
+    >>> sorted(fold.u[1].round(12).item() for fold in atlas.diagram.folds)
+    [-2.0, 2.0]
     """
 
     has_exact_constants = True
@@ -49,17 +59,24 @@ class SymbolicProblem(TapeProblem):
         self,
         expressions: Sequence[Any],
         unknowns: Sequence[sympy.Symbol],
-        bounds: Sequence[Sequence[float]],
+        bounds: Bounds,
         *,
-        periods: Sequence[float] | None = None,
-        units: Sequence[str] | None = None,
+        periods: Sequence[float] | Mapping[Name, float] | None = None,
+        units: Sequence[str] | Mapping[Name, str] | None = None,
     ):
         self.unknowns = _checked_unknowns(unknowns)
-        self.expressions = _checked_expressions(expressions, self.unknowns)
+        labelled = {f"expressions[{i}]": one for i, one in enumerate(expressions)}
+        checked = {
+            label: _checked_expression(label, one, self.unknowns)
+            for label, one in labelled.items()
+        }
+        self.expressions = list(checked.values())
+        if not self.expressions:
+            raise ProblemError("expressions", "[]", "one expression or more")
         names = [symbol.name for symbol in self.unknowns]
         if len(bounds) != len(names):
             raise ProblemError("number of bounds", len(bounds), f"{len(names)}")
-        tape = _tape_of(self.expressions, self.unknowns)
+        tape = _tape_of(checked, self.unknowns)
         super().__init__(tape, bounds, names=names, units=units, periods=periods)
 
     def precise_residual(self) -> PreciseResidual:
@@ -71,6 +88,18 @@ class SymbolicProblem(TapeProblem):
             return real_values(function(unknowns))
 
         return residual
+
+
+def function_of(expression: object, label: str, names: Sequence[str]) -> FirstOutput:
+    """A sympy ``expression``, or what the left of a `sympy.Eq` is more than the right, as a
+    function of the unknowns (n,) with these ``names``; raises `ProblemError`, in which it
+    is called ``label``."""
+    symbols = {
+        symbol.name: symbol for symbol in getattr(expression, "free_symbols", ())
+    }
+    unknowns = [symbols.get(name, sympy.Symbol(name)) for name in names]
+    checked = _checked_expression(label, expression, unknowns)
+    return FirstOutput(_tape_of({label: checked}, unknowns))
 
 
 # --- checks ---------------------------------------------------------------------------
@@ -89,30 +118,24 @@ def _checked_unknowns(unknowns: Sequence[sympy.Symbol]) -> list[sympy.Symbol]:
     return symbols
 
 
-def _checked_expressions(
-    expressions: Sequence[Any], unknowns: Sequence[sympy.Symbol]
-) -> list[sympy.Expr]:
-    """The expressions that are to be zero; each in the ``unknowns`` only."""
-    checked = []
-    for i, given in enumerate(expressions):
-        try:
-            expression = sympy.sympify(given, strict=True)
-        except sympy.SympifyError:
-            allowed = "a sympy expression"
-            raise ProblemError(f"expressions[{i}]", repr(given), allowed) from None
-        if isinstance(expression, sympy.Equality):
-            expression = _difference(expression.lhs, expression.rhs)
-        if not isinstance(expression, sympy.Expr):
-            raise ProblemError(f"expressions[{i}]", given, "an expression or Eq")
-        foreign = sorted(expression.free_symbols - set(unknowns), key=str)
-        if foreign:
-            names = ", ".join(symbol.name for symbol in unknowns)
-            allowed = f"in the unknowns {names} only; it holds the symbol {foreign[0]}"
-            raise ProblemError(f"expressions[{i}]", expression, allowed)
-        checked.append(expression)
-    if not checked:
-        raise ProblemError("expressions", "[]", "one expression or more")
-    return checked
+def _checked_expression(
+    label: str, given: object, unknowns: Sequence[sympy.Symbol]
+) -> sympy.Expr:
+    """What is to be zero, in the ``unknowns`` only; errors call it ``label``."""
+    try:
+        expression = sympy.sympify(given, strict=True)
+    except sympy.SympifyError:
+        raise ProblemError(label, repr(given), "a sympy expression") from None
+    if isinstance(expression, sympy.Equality):
+        expression = _difference(expression.lhs, expression.rhs)
+    if not isinstance(expression, sympy.Expr):
+        raise ProblemError(label, given, "an expression or Eq")
+    foreign = sorted(expression.free_symbols - set(unknowns), key=str)
+    if foreign:
+        names = ", ".join(symbol.name for symbol in unknowns)
+        allowed = f"in the unknowns {names} only; it holds the symbol {foreign[0]}"
+        raise ProblemError(label, expression, allowed)
+    return expression
 
 
 def _difference(left: sympy.Expr, right: sympy.Expr) -> sympy.Expr:
@@ -126,20 +149,21 @@ def _difference(left: sympy.Expr, right: sympy.Expr) -> sympy.Expr:
 
 
 def _tape_of(
-    expressions: Sequence[sympy.Expr], unknowns: Sequence[sympy.Symbol]
+    expressions: Mapping[str, sympy.Expr], unknowns: Sequence[sympy.Symbol]
 ) -> Tape:
-    """The tape of the expressions; what they have in common is evaluated once."""
+    """The tape of the expressions, by what errors call them; what they have in common is
+    evaluated once."""
     translation = _Translation(unknowns)
     outputs = []
-    for i, expression in enumerate(expressions):
+    for label, expression in expressions.items():
         try:
             outputs.append(translation.slot_of(expression))
         except _Untranslatable as error:
             allowed = f"of functions that can be evaluated; it holds {error}"
-            raise ProblemError(f"expressions[{i}]", expression, allowed) from None
+            raise ProblemError(label, expression, allowed) from None
         except TooLong:
             allowed = "of fewer operations"
-            raise ProblemError(f"expressions[{i}]", "too long", allowed) from None
+            raise ProblemError(label, "too long", allowed) from None
     writer = translation.writer
     return writer.tape(writer.where_all_is_defined(outputs))
 

@@ -56,12 +56,20 @@ def plot_diagram(
 ) -> Figure:
     """The bifurcation diagram of an atlas in the plane of two quantities.
 
-    Each is the name of an unknown, "|x|" for the size of the unknown x, "|u|" for the
+    Each is the name of an unknown, its symbol of sympy, "|x|" for the size of the unknown x, "|u|" for the
     Euclidean norm of all unknowns but the parameter, or a function of the unknowns
     (n,); ``horizontal`` is the parameter where nothing is said. Stable stretches are
     solid, unstable ones dashed, neutral ones dotted; where no stability is known all
     are solid. It is drawn into ``ax``, or with a legend into a ``figure`` or a part of
     one, or into a new one. Raises `ProblemError` for a quantity that is not there.
+
+    >>> import bifurc
+    >>> problem = bifurc.FunctionProblem(
+    ...     lambda u, p: [p * u[0] - u[0] ** 3], {"x": (-2, 2)}, parameters={"p": (-1, 3)}
+    ... )
+    >>> figure = bifurc.plot_diagram(bifurc.explore(problem, parameter="p"), "p", "|x|")
+    >>> figure.axes[0].get_xlabel(), figure.axes[0].get_ylabel()
+    ('p', '|x|')
     """
     check_type("atlas", atlas, Atlas)
     if horizontal is None:

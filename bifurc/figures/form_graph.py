@@ -43,6 +43,12 @@ def plot_form_graph(
 
     Surfaces that meet a form or another surface are grey boxes. It is drawn into
     ``ax``, or into a ``figure`` or a part of one, or into a new one.
+
+    >>> import bifurc, linkages
+    >>> atlas = linkages.map_linkage(linkages.load("rhombus"))
+    >>> figure = bifurc.plot_form_graph(atlas)
+    >>> sorted(text.get_text() for text in figure.axes[0].texts)[:3]
+    ['B1', 'B2', 'B3']
     """
     with drawing_style():
         rim = _rim(atlas, selection)

@@ -12,6 +12,7 @@ import numpy as np
 from bifurc import torus
 from bifurc.atlas import Atlas
 from bifurc.branch import Branch
+from bifurc.checks import name_of
 from bifurc.errors import ProblemError
 from bifurc.figures.quantities import shown_unit
 
@@ -79,7 +80,7 @@ def indices_of(
 ) -> list[int]:
     """The indices of ``count`` unknowns from their names or their numbers, which the
     user gave as ``name``; raises `ProblemError`."""
-    indices = [_index_of(atlas, unknown) for unknown in unknowns]
+    indices = [_index_of(atlas, name_of(unknown)) for unknown in unknowns]
     known = [index for index in indices if index is not None]
     if not len(set(known)) == len(indices) == count:
         names = ", ".join(atlas.names)
@@ -90,10 +91,12 @@ def indices_of(
     return known
 
 
-def _index_of(atlas: Atlas, unknown: str | int) -> int | None:
+def _index_of(atlas: Atlas, unknown: object) -> int | None:
     """The index of an unknown from its name or its number; None where there is none."""
     if isinstance(unknown, str):
         return atlas.names.index(unknown) if unknown in atlas.names else None
+    if not isinstance(unknown, int):
+        return None
     return unknown - 1 if 1 <= unknown <= len(atlas.names) else None
 
 

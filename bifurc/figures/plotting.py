@@ -69,6 +69,12 @@ def plot_transition_map(
     the torus. It is drawn into ``ax``, whose lines are then named for a legend, or with
     a legend into a ``figure`` or a part of one, or into a new one. Raises
     `ProblemError` for what are not two of the unknowns.
+
+    >>> import bifurc, linkages
+    >>> atlas = linkages.map_linkage(linkages.load("rhombus"))
+    >>> figure = bifurc.plot_transition_map(atlas, joints=(1, 3))
+    >>> [(axes.get_xlabel(), axes.get_ylabel()) for axes in figure.axes]
+    [('θ₁ (deg)', 'θ₃ (deg)')]
     """
     check_type("atlas", atlas, Atlas)
     if joints is None:
@@ -101,6 +107,12 @@ def plot_joint_angles(
 
     ``input_joint`` is a name or a number from 1. Raises `ProblemError` where there is
     no such unknown.
+
+    >>> import bifurc, linkages
+    >>> atlas = linkages.map_linkage(linkages.load("rhombus"))
+    >>> figure = bifurc.plot_joint_angles(atlas, input_joint=2)
+    >>> [axes.get_ylabel() for axes in figure.axes]
+    ['θ₁ (deg)', 'θ₃ (deg)', 'θ₄ (deg)']
     """
     (first,) = indices_of(atlas, "input_joint", [input_joint], 1)
     others = [i for i in range(len(atlas.names)) if i != first] or [first]

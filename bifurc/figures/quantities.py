@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.checks import name_of
 from bifurc.errors import ProblemError
 from bifurc.torus import wrap
 
-AxisRequest: TypeAlias = "str | Callable[[np.ndarray], float]"
+if TYPE_CHECKING:
+    from bifurc.checks import Name
+
+AxisRequest: TypeAlias = "Name | Callable[[np.ndarray], float]"
 NORM = "|u|"
 SIZE = "size"  # the unit of an unknown that counts characteristic lengths
 LENGTHS = "lengths"  # what stands for the user's unit of length
@@ -66,14 +70,16 @@ def quantity_of(atlas: Atlas, request: AxisRequest) -> Quantity:
     (n,); unknowns with a period count from half of it below 0 to half above. Raises
     `ProblemError` for anything else.
     """
+    request = name_of(request)
     if callable(request):
         label = getattr(request, "__name__", "function")
         quantity = Quantity(label, _each(request, label))
         _check_is_seen(atlas, quantity)
         return quantity
     names = list(atlas.names)
+    check_axis(request, names)
     if request in names:
-        index = names.index(request)
+        index = names.index(str(request))
         factor, unit = shown_unit(atlas, index)
         label = f"{request} ({unit})" if unit else str(request)
         period = float(atlas.periods[index])
@@ -84,19 +90,29 @@ def quantity_of(atlas: Atlas, request: AxisRequest) -> Quantity:
             factor * period,
             factor * middle,
         )
-    inner = request[1:-1] if isinstance(request, str) else ""
-    if isinstance(request, str) and request == f"|{inner}|" and inner in names:
-        index = names.index(inner)
-        return Quantity(f"|{inner}|", lambda points: np.abs(points[:, index]))
-    if request == NORM:
-        parameter = atlas.diagram.parameter if atlas.diagram else ""
-        rest = [i for i, name in enumerate(names) if name != parameter]
-        periods = atlas.periods[rest]
-        return Quantity(NORM, lambda points: _norms(points[:, rest], periods))
+    if request in _sizes(names):
+        index = _sizes(names).index(str(request))
+        return Quantity(str(request), lambda points: np.abs(points[:, index]))
+    parameter = atlas.diagram.parameter if atlas.diagram else ""
+    rest = [i for i, name in enumerate(names) if name != parameter]
+    periods = atlas.periods[rest]
+    return Quantity(NORM, lambda points: _norms(points[:, rest], periods))
+
+
+def check_axis(request: object, names: Sequence[str]) -> None:
+    """Raise `ProblemError` unless an axis shows one of the unknowns of these names, the
+    size of one or their norm."""
+    if request in (*names, *_sizes(names), NORM):
+        return
     near = difflib.get_close_matches(str(request), names, n=1)
     hint = f" (the nearest is {near[0]})" if near else ""
     allowed = f"{NORM}, a function, or one of the unknowns {', '.join(names)}{hint}"
     raise ProblemError("axis", repr(request), allowed)
+
+
+def _sizes(names: Sequence[str]) -> list[str]:
+    """What asks for the sizes of the unknowns."""
+    return [f"|{name}|" for name in names]
 
 
 def _norms(points: np.ndarray, periods: np.ndarray) -> np.ndarray:

@@ -73,6 +73,12 @@ def save_atlas(
     It holds ``more`` variables for the reader, from which no atlas is read.
     There is never a half-written file under ``path``. Raises `OSError` that names
     ``path`` where it cannot be written.
+
+    >>> import bifurc, linkages
+    >>> atlas = linkages.map_linkage(linkages.load("bennett"))
+    >>> path = bifurc.save_atlas(atlas, "bennett.nc")
+    >>> bifurc.load_atlas("bennett.nc").forms[0].name
+    'Bennett form'
     """
     check_type("atlas", atlas, Atlas)
     frame = atlas_frame(atlas)
@@ -100,6 +106,11 @@ def load_atlas(path: str | os.PathLike[str]) -> Atlas:
 
     Raises `FileNotFoundError`, and `AtlasFileError` for a file that is damaged, is not
     NetCDF or holds no atlas.
+
+    >>> import bifurc, linkages
+    >>> path = bifurc.save_atlas(linkages.map_linkage(linkages.load("kite")), "kite.nc")
+    >>> [form.name for form in bifurc.load_atlas("kite.nc").forms]
+    ['kite form', 'folded form (joints 1,3 inactive)']
     """
     import xarray as xr
 
@@ -150,6 +161,11 @@ def to_dataset(atlas: Atlas) -> xr.Dataset:
     points at which the singular values were taken, denser where the curve bends more.
     Entries of ``atlas.subject`` become variables along ``joint`` and attributes
     called ``linkage_...``, or after the ``kind`` of the subject.
+
+    >>> import bifurc, linkages
+    >>> dataset = bifurc.to_dataset(linkages.map_linkage(linkages.load("bennett")))
+    >>> dataset.sizes["form"], dataset.sizes["joint"]
+    (1, 4)
     """
     import xarray as xr
 
@@ -261,7 +277,13 @@ def _subject_variables(atlas: Atlas, frame: Frame) -> dict[str, Variable]:
 
 def from_dataset(dataset: xr.Dataset) -> Atlas:
     """The atlas that `to_dataset` stored; raises `AtlasFileError` that says what is
-    missing or wrong."""
+    missing or wrong.
+
+    >>> import bifurc, linkages
+    >>> atlas = linkages.map_linkage(linkages.load("bennett"))
+    >>> bifurc.from_dataset(bifurc.to_dataset(atlas)).forms[0].name
+    'Bennett form'
+    """
     import xarray as xr
 
     check_type("dataset", dataset, xr.Dataset)

@@ -58,6 +58,14 @@ def follow_singular_point(
     A crossing of two curves has nullity 2; a fold along a parameter, which is then one of
     p, has nullity 1. Raises `FollowError` where there is no such point, where it is there
     for these values of the parameters alone, and where it has freedoms to spare.
+
+    >>> import bifurc, numpy as np
+    >>> cubic = bifurc.ParametrisedProblem.recorded(
+    ...     lambda u, p: [u[0] ** 3 + p[0] * u[0] + p[1]], [(-3, 3)], [(-3, 3)] * 2
+    ... )
+    >>> folds = bifurc.follow_singular_point(cubic, [0.5], [-0.75, 0.25], nullity=1)
+    >>> [place.kind.value for place in folds.places]
+    ['cusp']
     """
     problem = SingularPointProblem(parametrised, u, p, nullity)
     starts, gaps = problem.project(problem.start[None])

@@ -84,6 +84,15 @@ def trace_large_branch(
     be corrected to a solution, for a jacobian that is
     not the derivative at the start or along the curve, and where
     the solver is so poor that the first systems are not solved.
+
+    >>> import bifurc, numpy as np
+    >>> def bratu(x):  # u'' + p exp(u) = 0 by differences, the parameter last
+    ...     walls = np.concatenate([[0.0], x[:-1], [0.0]])
+    ...     return 100**2 * (walls[2:] - 2 * walls[1:-1] + walls[:-2]) + x[-1] * np.exp(x[:-1])
+    >>> problem = bifurc.LargeProblem(bratu, 100, bounds=(0, 4))
+    >>> branch = bifurc.trace_large_branch(problem, np.zeros(100))
+    >>> [round(float(fold.parameter), 5) for fold in branch.folds]
+    [3.51365]
     """
     check_type("problem", problem, LargeProblem)
     check_type("settings", settings, LargeSettings)

@@ -136,6 +136,12 @@ def find_route(
     period about zero). Raises `RouteError` for an unknown name, a configuration on no
     form or surface, a component that is only sampled, or where no route exists, and
     `ProblemError` for anything but an atlas, a problem and a count of at least 2.
+
+    >>> import bifurc, linkages
+    >>> atlas = linkages.map_linkage(linkages.load("rhombus"))
+    >>> route = bifurc.find_route(atlas, "rhombus form", "joints 1,3")
+    >>> [(leg.form, leg.at) for leg in route.legs], route.path.shape
+    ([('rhombus form', 'B2'), ('folded form (joints 1,3 inactive)', '')], (401, 4))
     """
     routes = find_routes(
         atlas, start, goal, 1, count=count, problem=problem, wishes=wishes
@@ -154,7 +160,15 @@ def find_routes(
     wishes: Wishes = NONE,
 ) -> list[Route]:
     """Up to ``best`` ways, the best first, all else as in `find_route`; they differ in
-    the arcs that they take."""
+    the arcs that they take.
+
+    >>> import bifurc, linkages
+    >>> atlas = linkages.map_linkage(linkages.load("rhombus"))
+    >>> for route in bifurc.find_routes(atlas, "rhombus form", "joints 1,3", best=2):
+    ...     print(round(route.length, 6), [leg.at for leg in route.legs])
+    5.363034 ['B2', '']
+    9.805917 ['B1', 'B3', '']
+    """
     check_type("atlas", atlas, Atlas)
     if problem is not None:
         check_type("problem", problem, Problem)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.atlas import Atlas, Provenance
-from bifurc.checks import check_callable, check_type
+from bifurc.checks import Name, check_callable, check_type
 from bifurc.diagrams.diagram import Diagram
 from bifurc.diagrams.events import EventRequests, events_of
 from bifurc.diagrams.make_diagram import diagram_of, parameter_index
@@ -48,7 +48,7 @@ def explore(
     seed: int = 0,
     seeds: Seeds | None = None,
     progress: Callable[[str, int], None] | None = None,
-    parameter: str | None = None,
+    parameter: Name | None = None,
     events: EventRequests | None = None,
     is_flow: bool = True,
 ) -> Atlas:
@@ -64,6 +64,14 @@ def explore(
     so. With a ``parameter``, the name of an unknown, or ``events``, functions of the
     unknowns, the atlas holds a diagram; see `diagram_of`, also for ``is_flow``. Raises
     `ProblemError` for settings or a seed that cannot be used.
+
+    >>> import bifurc
+    >>> problem = bifurc.FunctionProblem(
+    ...     lambda u, p: [p * u[0] - u[0] ** 3], {"x": (-2, 2)}, parameters={"p": (-1, 3)}
+    ... )
+    >>> atlas = bifurc.explore(problem, parameter="p")
+    >>> len(atlas.forms), len(atlas.bifurcations), atlas.diagram.branchings[0].kind.value
+    (2, 1, 'supercritical pitchfork')
     """
     check_type("problem", problem, Problem)
     check_type("settings", settings, SearchSettings)
@@ -108,7 +116,7 @@ def _check_seeds(problem: Problem, seed: int, seeds: Seeds | None) -> None:
 def _diagram_in_time(
     problem: Problem,
     atlas: Atlas,
-    parameter: str | None,
+    parameter: Name | None,
     events: EventRequests | None,
     is_flow: bool,
 ) -> Diagram:
@@ -120,7 +128,8 @@ def _diagram_in_time(
         remark = (
             "the time ended before folds, events, stability and Hopf points were known"
         )
-        return Diagram(parameter or "", (), (), (), (remark,))
+        named = "" if parameter is None else str(parameter)
+        return Diagram(named, (), (), (), (remark,))
 
 
 class _Request(NamedTuple):

@@ -115,27 +115,63 @@ def read_equations(
     ``values`` replace those of the parameters in the file. Nothing in the file is run.
     Raises `EquationFileError` for a file that cannot be read, and for anything wrong in
     it, with the name of the entry.
+
+    >>> import bifurc, pathlib
+    >>> text = '''
+    ... equations = ["x^2 + y^2 = r^2"]
+    ... [unknowns]
+    ... x = [-3, 3]
+    ... y = [-3, 3]
+    ... [parameters]
+    ... r = 1
+    ... '''
+    >>> _ = pathlib.Path("circle.toml").write_text(text)
+    >>> (form,) = bifurc.read_equations("circle.toml", {"r": 2}).explore().forms
+    >>> form.branch.closed, round(form.branch.length, 9)
+    (True, 12.566370614)
     """
-    path = Path(path)
-    content = _parsed(path)
-    try:
-        return _Reading(path, content, dict(values or {})).system()
-    except _Refusal as refusal:
-        raise EquationFileError(path, str(refusal)) from None
-    except ProblemError as error:
-        raise EquationFileError(path, str(error)) from None
+    return EquationFile.read(path).system(values or {})
+
+
+@dataclass(frozen=True)
+class EquationFile:
+    """What a file of equations holds: its ``content``, decimals as texts."""
+
+    path: Path
+    content: Content
+
+    @staticmethod
+    def read(path: Path | str) -> EquationFile:
+        """The file at a path; raises `EquationFileError` where it cannot be read."""
+        path = Path(path)
+        try:
+            return EquationFile(path, read_toml(path, parse_float=str))
+        except TextFileError as error:
+            raise EquationFileError(path, error.reason) from None
+
+    @property
+    def is_of_equations(self) -> bool:
+        """Whether it has what a file of equations must have, and no other file has."""
+        return all(key in self.content for key in REQUIRED)
+
+    @property
+    def constants(self) -> list[str]:
+        """The names of the constants that can have other values."""
+        table = self.content.get("parameters", {})
+        return list(table) if isinstance(table, dict) else []
+
+    def system(self, values: Mapping[str, float]) -> EquationSystem:
+        """The system with these ``values`` of constants; raises `EquationFileError`."""
+        try:
+            return _Reading(self.path, self.content, dict(values)).system()
+        except _Refusal as refusal:
+            raise EquationFileError(self.path, str(refusal)) from None
+        except ProblemError as error:
+            raise EquationFileError(self.path, str(error)) from None
 
 
 class _Refusal(Exception):
     """Something wrong in the file."""
-
-
-def _parsed(path: Path) -> Content:
-    """What the file holds, decimals as texts."""
-    try:
-        return read_toml(path, parse_float=str)
-    except TextFileError as error:
-        raise EquationFileError(path, error.reason) from None
 
 
 class _Unknown(NamedTuple):

@@ -1,4 +1,4 @@
-"""What pages can show besides text: a linkage, the gallery, a flow chart."""
+"""What pages can show besides text: a linkage, a file drawn, the gallery, a flow chart."""
 
 from __future__ import annotations
 
@@ -6,13 +6,17 @@ from html import escape
 from pathlib import Path
 
 from docutils import nodes
+from pygments.lexers.special import TextLexer
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
+from docs.generator.drawn_file import draw_file, pictures_html
 from docs.generator.exploration import read_record, record_file
 from docs.generator.flow_chart import chart_svg, read_chart
 from docs.generator.gallery import cards_of, gallery_html, search_html
+from docs.generator.page_files import files_of
 from docs.generator.pictures import drawing_of, map_of
+from docs.generator.places import EXTRA
 from linkages.catalogue import catalogue
 
 GENERATOR = sorted(Path(__file__).parent.glob("*.py"))
@@ -69,6 +73,25 @@ class LinkageView(Raw):
         return self.html(view_html(name, read_record(name).counts, self.root))
 
 
+class DrawnFile(Raw):
+    """Pictures of a file that the page shows: ``{drawn} FILE KIND ...``."""
+
+    required_arguments = 1
+    final_argument_whitespace = True
+
+    def run(self) -> list[nodes.Node]:
+        """The pictures, side by side."""
+        name, *kinds = self.arguments[0].split()
+        page = self.env.docname
+        text = Path(self.env.doc2path(page)).read_text(encoding="utf-8")
+        folder = f"drawn/{page}"
+        try:
+            draw_file(name, files_of(text)[name], kinds, EXTRA / folder)
+        except KeyError as error:
+            raise self.error(f"there is no {error} to draw on this page") from None
+        return self.html(pictures_html(name, kinds, f"{self.root}{folder}"))
+
+
 class LinkageGallery(Raw):
     """Cards of linkages: ``{linkage-gallery} NAME ...``; without names those of the
     whole catalogue, with fields to search them."""
@@ -106,6 +129,8 @@ class FlowChart(Raw):
 def setup(app: Sphinx) -> dict[str, bool]:
     """Add the directives."""
     app.add_directive("linkage", LinkageView)
+    app.add_directive("drawn", DrawnFile)
     app.add_directive("linkage-gallery", LinkageGallery)
     app.add_directive("mermaid", FlowChart)
+    app.add_lexer("csv", TextLexer)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,5 +1,5 @@
-"""Docstrings are plain English with code in backticks: other marks of
-reStructuredText mean nothing in them."""
+"""Docstrings are plain English with code in backticks, and examples at a prompt: other
+marks of reStructuredText mean nothing in them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,11 @@ def escape_marks(line: str) -> str:
 def _escape(
     app: Sphinx, what: str, name: str, thing: object, options: object, lines: list[str]
 ) -> None:
-    lines[:] = [escape_marks(line) for line in lines]
+    is_example = False
+    for i, line in enumerate(lines):
+        is_example = bool(line.strip()) and (is_example or line.startswith(">>>"))
+        if not is_example:
+            lines[i] = escape_marks(line)
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class FigureAxes:
     """What figures are drawn over: two or three unknowns for the transition map, one
-    for the singular values, each numbered from 1; the usual ones where nothing is said.
+    for the singular values, each numbered from 1, two quantities for the diagram, each as
+    `bifurc.plot_diagram` takes it; the usual ones where nothing is said.
 
     ``window`` are the first and the last angle, degrees, ``overlay`` points of the
     user's, as in `bifurc.figures.selection.Selection`.
@@ -40,6 +41,7 @@ class FigureAxes:
     singular_values: int | None = None
     window: tuple[float, float] | None = None
     overlay: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    diagram: tuple[str, ...] = ()
 
 
 def figure_axes(
@@ -212,5 +214,12 @@ def _figures_over(
             plot_singular_values_against,
             unknown=over.singular_values,
             selection=selection,
+        )
+    if over.diagram:
+        from bifurc.figures.diagram_plot import plot_diagram
+
+        horizontal, vertical = over.diagram
+        others["diagram"] = partial(
+            plot_diagram, horizontal=horizontal, vertical=vertical
         )
     return others

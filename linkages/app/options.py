@@ -81,10 +81,18 @@ class JointWords(click.ParamType[tuple[str, ...]]):
     of them, as a tuple."""
 
     name = "joints"
+    numbered = "names, or numbers from 1"
 
     def __init__(self, least: int, most: int):
         self.least = least
         self.most = most
+
+    @property
+    def how_many(self) -> str:
+        """How many of them there must be, in words."""
+        if self.least == self.most:
+            return {1: "one joint", 2: f"two {self.name}"}[self.most]
+        return f"{self.least} to {self.most} {self.name}"
 
     def convert(
         self,
@@ -98,16 +106,23 @@ class JointWords(click.ParamType[tuple[str, ...]]):
         words = tuple(word.strip() for word in value.split(","))
         is_list = all(words) and len(words) == len(set(words))
         if not is_list or not self.least <= len(words) <= self.most:
-            how_many = f"{self.least} to {self.most} joints"
-            if self.least == self.most == 1:
-                how_many = "one joint"
             self.fail(
-                f"{value!r} does not name {how_many}; write names, or numbers from 1, "
+                f"{value!r} does not name {self.how_many}; write {self.numbered}, "
                 "all different, with commas between them.",
                 param,
                 ctx,
             )
         return words
+
+
+class AxisWords(JointWords):
+    """What two axes of a diagram show, as a tuple."""
+
+    name = "axes"
+    numbered = "unknowns, |x| for the size of x, or |u| for the norm of all of them"
+
+    def __init__(self) -> None:
+        super().__init__(2, 2)
 
 
 POSITIVE = NumberRange(min=0, min_open=True, allows_infinity=True)

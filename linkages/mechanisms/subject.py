@@ -43,7 +43,19 @@ def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
 def mechanism_of(atlas: Atlas) -> Mechanism | None:
     """The mechanism that an atlas is of; None where it is of a loop that was given as
     such, or of something else. Raises `NoLinkageError` where it is damaged, or in the
-    angles of a Denavit-Hartenberg table, as single loops were once."""
+    angles of a Denavit-Hartenberg table, as single loops were once.
+
+    >>> import linkages
+    >>> def pin(name, body, other, x, y):
+    ...     return linkages.Joint(name, "revolute", (body, other), (x, y, 0), (0, 0, 1))
+    >>> mechanism = linkages.Mechanism(
+    ...     (pin("A", "frame", "crank", 0, 0), pin("B", "crank", "rod", 1, 0),
+    ...      pin("C", "rod", "rocker", 4, 2), pin("D", "frame", "rocker", 4, 0)),
+    ...     name="crank and rocker",
+    ... )
+    >>> linkages.mechanism_of(linkages.map_linkage(mechanism)).name
+    'crank and rocker'
+    """
     values = atlas.subject.get("mechanism")
     if values is None:
         return None

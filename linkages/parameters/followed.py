@@ -45,7 +45,18 @@ def follow_points(
     members: Members, points: Sequence[MeetingPoint], deadline: Deadline | None = None
 ) -> list[Followed]:
     """What becomes of the ``points`` of the map of the member from which the free
-    parameters move."""
+    parameters move.
+
+    >>> import linkages
+    >>> from linkages.catalogue import entry
+    >>> family = entry("kite")
+    >>> members = linkages.Members(family, family.defaults, {"a": (0.5, 1.8)})
+    >>> atlas = linkages.map_linkage(members.load(members.start))
+    >>> for followed in linkages.follow_points(members, atlas.bifurcations):
+    ...     print(followed.point.name, followed.comparison.members, followed.curve.places)
+    B1 50 ()
+    B2 50 ()
+    """
     followed = []
     for point in points:
         nullity = members.problem.n - point.point.rank

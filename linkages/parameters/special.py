@@ -265,6 +265,13 @@ def special_values(
     Between two neighbouring changes all maps that were made are alike. What shows on none
     of them, as a form that is there over a short range only, is among the changes only
     where its equations were solved from a map nearby.
+
+    >>> import linkages
+    >>> from linkages.catalogue import entry
+    >>> family = entry("four-bar")
+    >>> members = linkages.Members(family, family.defaults, {"d": (3.0, 3.7)})
+    >>> [round(change.value, 12) for change in linkages.special_values(members).changes]
+    [3.4]
     """
     search = _SpecialSearch(
         members, settings or SearchSettings(certify=False), deadline

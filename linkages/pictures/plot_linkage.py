@@ -55,6 +55,11 @@ def plot_linkage(
     sliders; others with the axes of their joints. It is drawn into ``ax``, or into a
     ``figure`` or a part of one, or into a new one. Raises `ProblemError` for a form
     that is not there, and `linkages.NoLinkageError` where the atlas is of no linkage.
+
+    >>> import linkages
+    >>> figure = linkages.plot_linkage(linkages.map_linkage(linkages.load("four-bar")))
+    >>> len(figure.axes)
+    1
     """
     check_type("atlas", atlas, Atlas)
     place = place_of(atlas, form, s)

@@ -95,6 +95,13 @@ def isolated_assemblies(loop: Loop, seconds: float = np.inf) -> Assemblies:
 
     After about so many ``seconds`` no further path is followed. Raises `GeometryError`
     for a loop of more than six joints.
+
+    >>> import linkages, numpy as np
+    >>> twists = np.radians([90, 40, 70, 60, 80, 50])
+    >>> loop = linkages.Loop([1, 0.9, 1.1, 0.8, 1.2, 0.7], twists, [0.1, 0, 0.2, 0, 0.1, 0])
+    >>> assemblies = linkages.isolated_assemblies(loop)
+    >>> assemblies.configurations.shape, assemblies.complete
+    ((6, 6), True)
     """
     if not isinstance(loop, Loop):
         raise GeometryError("loop", type(loop).__name__, "a Loop, such as linkage.loop")

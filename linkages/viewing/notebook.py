@@ -23,6 +23,11 @@ def view(atlas: Atlas) -> LinkageWidget:
     Its traits ``form`` and ``position`` (arclength, rad) follow what is seen, and lead
     it. Raises `NoLinkageError` where the atlas is not of a linkage, and `ImportError`
     without anywidget, which the extra ``jupyter`` installs.
+
+    >>> import linkages
+    >>> widget = linkages.view(linkages.map_linkage(linkages.load("bennett")))
+    >>> widget.form
+    'Bennett form'
     """
     check_type("atlas", atlas, Atlas)
     document = make_view_document(atlas)

@@ -145,3 +145,11 @@ def test_nothing_is_decided_by_a_sentence(package):
         tree = ast.parse(path.read_text(encoding="utf-8"))
         asking = [node.lineno for node in ast.walk(tree) if asks_a_statement(node)]
         assert not asking, path
+
+
+@pytest.mark.parametrize("budget", [25, 25.0])
+def test_a_number_of_seconds_may_be_whole(budget):
+    claim = SearchClaim.OUT_OF_TIME.claim(
+        Scope.SEARCH, Level.OUT_OF_TIME, budget=budget, left=4
+    )
+    assert claim.text == "the budget of 25 s was used up with 4 starts not looked at"

@@ -270,3 +270,48 @@ def test_imaginary_parts_that_are_dropped_are_noticed_in_any_units(size):
 def test_a_derivative_that_is_finite_nowhere_is_said():
     with pytest.raises(ProblemError, match=r"derivative of the function: nan"):
         FunctionProblem(lambda u: [u[1] + np.arcsin(u[0] / u[0])], BOX)
+
+
+def test_a_function_of_unknowns_and_parameters_is_that_of_all_of_them():
+    def rates(u, p, k):
+        return [p * (1 - u[0]) * np.exp(u[1]) - u[0], p + k * u[1]]
+
+    def jacobian(u, p, k):
+        rate = (1 - u[0]) * np.exp(u[1])
+        return np.array(
+            [[-p * np.exp(u[1]) - 1, p * rate, rate, 0], [0, k, 1, u[1]]], dtype=float
+        )
+
+    parameters = {"p": (0, 0.16), "k": (1, 2)}
+    for given in (None, jacobian):
+        problem = FunctionProblem(
+            rates, {"x": (0, 1), "y": (0, 8)}, parameters=parameters, jacobian=given
+        )
+        assert problem.domain.names == ("x", "y", "p", "k")
+        assert problem.domain.bounds.tolist() == [[0, 1], [0, 8], [0, 0.16], [1, 2]]
+        point = np.array([[0.3, 2.0, 0.1, 1.5]])
+        assert problem.residuals(point)[0] == pytest.approx(
+            rates(point[0, :2], 0.1, 1.5), abs=1e-15
+        )
+        assert problem.jacobians(point)[0] == pytest.approx(
+            jacobian(point[0, :2], 0.1, 1.5), abs=1e-14
+        )
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        ({"bounds": {"x": (0, 1), "z": (0, 1)}, "names": "xy"}, "bounds: 'z' is not"),
+        ({"bounds": {"x": (0, 1)}, "names": ["x", "y"]}, r"bounds\['y'\]: missing"),
+        ({"periods": {"y": 1}}, "periods: 'y' is not allowed; it must be one of .* u1"),
+        ({"parameters": {"u1": (0, 1)}}, "names: .* must be all different"),
+        ({"parameters": {"p": (1, 0)}}, "bounds of the parameters"),
+        ({"parameters": [(0, 1)]}, "parameters: .* must be a dict"),
+    ],
+)
+def test_names_of_unknowns_and_parameters_that_do_not_fit_are_refused(arguments, words):
+    arguments = {"bounds": BOX, **arguments}
+    if arguments.get("names") == "xy":
+        arguments["names"] = ["x", "y"]
+    with pytest.raises(ProblemError, match=words):
+        FunctionProblem(lambda u, *p: circle(u), **arguments)

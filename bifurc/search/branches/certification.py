@@ -109,7 +109,16 @@ def finer_settings(settings: TraceSettings) -> Iterator[TraceSettings]:
 
 def certify_atlas(problem: Problem, atlas: Atlas) -> Atlas:
     """The atlas with a certificate on every form, from singular point to singular
-    point."""
+    point.
+
+    >>> import bifurc, linkages
+    >>> loop = linkages.load("bennett").loop
+    >>> uncertified = bifurc.SearchSettings(certify=False)
+    >>> atlas = linkages.map_linkage(loop, settings=uncertified)
+    >>> certified = bifurc.certify_atlas(linkages.Closure(loop), atlas)
+    >>> atlas.forms[0].certificate is None, certified.forms[0].certificate.holds
+    (True, True)
+    """
     check_type("problem", problem, Problem)
     check_type("atlas", atlas, Atlas)
     if atlas.names != problem.domain.names:

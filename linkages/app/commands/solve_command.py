@@ -44,6 +44,14 @@ if TYPE_CHECKING:
     type=click.IntRange(0, 1_000_000),
     help="Cover surfaces of solutions with so many charts at most; 0 for none.",
 )
+@click.option(
+    "--axes",
+    type=options.AxisWords(),
+    metavar="X,Y",
+    default=(),
+    help="Draw the diagram over these two: unknowns, one between bars for its size, or u "
+    "between bars for the norm of all but the parameter; needs --out.",
+)
 @options.figure_options
 @options.search_options
 @options.verbose_option
@@ -55,6 +63,7 @@ def solve_command(
     no_certify: bool,
     boxes: int,
     charts: int,
+    axes: tuple[str, ...],
     figures: options.FigureOptions,
     search: options.SearchOptions,
 ) -> None:
@@ -64,24 +73,19 @@ def solve_command(
     \b
     Examples:
       bifurc solve reaction.toml --out out/reaction
+      bifurc solve reaction.toml --out out/reaction --axes p,x
       bifurc solve reaction.toml --param B=12 --json
     """
     from bifurc.systems.document import make_document
     from bifurc.systems.equation_file import read_equations
     from bifurc.systems.summary import make_summary
     from bifurc.systems.verdict import verdict_of
-    from linkages.app.output import (
-        require_folder,
-        require_out,
-        say,
-        say_json,
-        say_written,
-        writing_to,
-    )
+    from linkages.app import output
 
     system = read_equations(equations, _values(parameters))
-    require_out(out)
-    require_folder(out)
+    _check_axes(axes, system)
+    output.require_out(out)
+    output.require_folder(out)
     paths: list[Path] = []
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
@@ -92,25 +96,33 @@ def solve_command(
         summary = make_summary(atlas)
         try:
             if as_json:
-                say_json(make_document(atlas))
+                output.say_json(make_document(atlas))
             else:
-                say(summary)
+                output.say(summary)
         finally:  # where nothing can be shown, there are still the files
             if out is not None:
                 from linkages.app.files import write_data
 
-                with writing_to(out):
+                with output.writing_to(out):
                     paths = write_data(atlas, out, summary)
     if out is not None:
-        from linkages.app.files import write_figures
-
-        with writing_to(out):
-            paths += write_figures(atlas, out, options=figures)
-        say_written(paths, out)
+        paths += _write_figures(atlas, out, axes, figures)
+        output.say_written(paths, out)
     code = exit_code_of(atlas)
     if as_json and code is not ExitCode.DONE:
         click.echo(verdict_of(atlas), err=True)
     click.get_current_context().exit(code)
+
+
+def _write_figures(
+    atlas: Atlas, out: Path, axes: tuple[str, ...], figures: options.FigureOptions
+) -> list[Path]:
+    """The paths of the figures, the diagram over these ``axes``."""
+    from linkages.app.files import FigureAxes, write_figures
+    from linkages.app.output import writing_to
+
+    with writing_to(out):
+        return write_figures(atlas, out, FigureAxes(diagram=axes), figures)
 
 
 def explore_system(system: EquationSystem, search: options.SearchOptions) -> Atlas:
@@ -135,6 +147,15 @@ def exit_code_of(atlas: Atlas) -> ExitCode:
     if is_open or atlas.completeness.level is Level.OUT_OF_TIME:
         return ExitCode.NOTHING_KNOWN
     return ExitCode.DOES_NOT_MOVE
+
+
+def _check_axes(axes: tuple[str, ...], system: EquationSystem) -> None:
+    """Raise `bifurc.ProblemError` for an axis that shows nothing of the system."""
+    if axes:
+        from bifurc.figures.quantities import check_axis
+
+        for axis in axes:
+            check_axis(axis, system.problem.domain.names)
 
 
 def _values(texts: tuple[str, ...]) -> dict[str, float]:

@@ -22,8 +22,8 @@ MOST_WORKERS = 10_000
     multiple=True,
     metavar="NAME=FIRST:LAST:COUNT",
     help=(
-        "Grid of a parameter, or NAME=VALUE for one value, "
-        "or NAME=LOW:HIGH with --random; angles in degrees."
+        "Grid of a parameter, or of a constant of equations, or NAME=VALUE for one "
+        "value, or NAME=LOW:HIGH with --random; angles of linkages in degrees."
     ),
 )
 @click.option(
@@ -79,8 +79,9 @@ def sweep_command(
     starts: int,
     seed: int,
 ) -> None:
-    """Map many members of a family or a network, or a mechanism with joints held at
-    many values, and write a summary of each over the grid.
+    """Map many members of a family or a network, a mechanism with joints held at many
+    values, or equations with many values of their constants, and write a summary of each
+    over the grid.
 
     A journal beside the dataset (OUT.journal) keeps every finished member: the same
     command run again after an interruption, even a kill, goes on where it stopped.
@@ -92,6 +93,7 @@ def sweep_command(
       bifurc sweep bennett --random 5000 --scheduler tcp://127.0.0.1:8786
       bifurc sweep four-bennett-network --lock 2=40 --lock 6=-170:170:35
       bifurc sweep five_bar.toml --lock A=-180:175:72
+      bifurc sweep reaction.toml --param B=5:20:61
     """
     from bifurc.tables import count_of
     from linkages.app.sweep.plan import read_plan

@@ -155,7 +155,9 @@ Entry: TypeAlias = FinishedMember | WrittenBlock
 
 # a value that is no number is left out of a line, others are not
 _COUNTS = {name for name, field in FIELDS.items() if np.dtype(field.dtype).kind != "f"}
-_ALWAYS = _COUNTS - {"mobility"}  # journals of earlier versions are without it
+# not in journals of earlier versions, and not without a diagram
+_SOMETIMES = {"mobility", "folds", "hopf_points", "events"}
+_ALWAYS = _COUNTS - _SOMETIMES
 
 
 def read_entries(journal: Journal, plan: Plan) -> Iterator[Entry]:

@@ -20,11 +20,9 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.graphs import arc_graph, transition_graph
 from bifurc.settings import SearchSettings
+from bifurc.systems.equation_file import EquationFileError
 from linkages.app.answer.verdict import is_without_gaps
 from linkages.app.sweep.subjects import JointName, Member, MemberSource
-from linkages.labels import FormLabels
-from linkages.mapping import map_linkage
-from linkages.subject import subject_at
 from linkages.values import GeometryError
 
 # values of `FIELDS` by name, and the message of a member that was refused or failed
@@ -86,11 +84,11 @@ def map_member(
     began = time.process_time()
     try:
         member = subject.member(values)
-    except (GeometryError, ArithmeticError) as error:
+    except (GeometryError, EquationFileError, ArithmeticError) as error:
         return {"status": int(Status.REFUSED), "message": str(error)}
     settings = SearchSettings(prove=False, starts=starts)
     try:
-        atlas = map_linkage(member.linkage, settings=settings, seed=seed)
+        atlas = member.atlas(settings, seed)
     except GeometryError as error:  # such as for locks that leave nothing to move
         return {"status": int(Status.REFUSED), "message": str(error)}
     # one bad member must not end a sweep of thousands; the journal keeps the reason
@@ -105,17 +103,18 @@ def map_member(
 
         save_atlas(atlas, Path(atlas_path))
     record: Record = {"status": int(Status.MAPPED)}
-    record |= summarise(atlas)
+    record |= summarise(atlas, member)
     record["inactive_joints"] = _forms_without(atlas, member, subject.joints)
     record["seconds"] = time.process_time() - began
     return record
 
 
-def summarise(atlas: Atlas) -> Record:
-    """The values of `FIELDS` that an atlas alone tells; not-a-number is left out."""
+def summarise(atlas: Atlas, member: Member) -> Record:
+    """The values of `FIELDS` that the atlas of a member tells; not-a-number is left
+    out."""
     lengths = [form.branch.length for form in atlas.forms]
     gaps = [event.value for event in atlas.near_misses]
-    residuals = [FormLabels.of(form).max_residual for form in atlas.forms]
+    residuals = [member.closure(form) for form in atlas.forms]
     routes = _route_lengths(atlas)
     record: Record = {
         "mobility": atlas.mobility,
@@ -137,6 +136,10 @@ def summarise(atlas: Atlas) -> Record:
         "missed_probability": atlas.completeness.missed_probability,
         "complete": int(is_without_gaps(atlas.completeness)),
     }
+    if atlas.diagram is not None:
+        record["folds"] = len(atlas.diagram.folds)
+        record["hopf_points"] = len(atlas.diagram.hopf_points)
+        record["events"] = len(atlas.diagram.events())
     return {key: value for key, value in record.items() if not _is_missing(value)}
 
 
@@ -148,12 +151,9 @@ def _forms_without(
     atlas: Atlas, member: Member, joints: Sequence[JointName]
 ) -> list[int]:
     """For every one of the ``joints`` the number of forms in which it stands still."""
-    subject = subject_at(atlas)
-    names: dict[JointName, JointName] = dict(enumerate(member.joints, start=1))
-    of_forms: list[set[JointName]] = []
-    for form in range(len(atlas.forms)):
-        still = subject.still_joints(atlas, form)
-        of_forms.append({names.get(one, one) for one in still} | {*member.replaced})
+    of_forms = [
+        member.still_joints(atlas, number) for number in range(len(atlas.forms))
+    ]
     return [sum(joint in still for still in of_forms) for joint in joints]
 
 

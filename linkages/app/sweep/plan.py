@@ -1,5 +1,5 @@
-"""What a sweep runs through: the members of a family, a network or a mechanism, on a grid
-of parameters and locks or drawn at random."""
+"""What a sweep runs through: the members of a family, a network, a mechanism or of
+equations, on a grid of parameters and locks or drawn at random."""
 
 from __future__ import annotations
 
@@ -170,8 +170,8 @@ def read_plan(
     subject = choose_subject(source, parameters, is_without_centre)
     if locks and not _of_option(subject, LOCK):
         raise CommandError(
-            f"--lock: it takes a network or the file of a mechanism, and {source} is a "
-            "single loop of the catalogue"
+            f"--lock: it takes a network or the file of a mechanism, and {source} has no "
+            "joints that could be locked"
         )
     fixed: dict[str, float] = {}
     spans: dict[str, tuple[float, ...]] = {}
@@ -215,7 +215,7 @@ def _of_option(subject: MemberSource, option: str) -> dict[str, Quantity]:
 
 def _options(subject: MemberSource) -> str:
     """The options behind which the quantities of a subject stand."""
-    options = dict.fromkeys(one.option for one in subject.quantities)
+    options = dict.fromkeys(one.option for one in subject.quantities) or [PARAM]
     return " or ".join(options)
 
 
@@ -253,7 +253,8 @@ def _read(
     key, values = split_parameter(text, option)
     known = _of_option(subject, option)
     if key not in known:
-        allowed = f"name=... with a name out of {', '.join(known)}"
+        names = ", ".join(known) or "none: the file has no constants"
+        allowed = f"name=... with a name out of {names}"
         raise GeometryError(option, repr(text), allowed)
     quantity = known[key]
     numbers = [read_number(key, part, option) for part in values.split(":")]

@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -79,6 +80,16 @@ def _text(plan: Plan) -> str:
     return json.dumps(plan.as_dict())
 
 
+def _fields_without_joints() -> dict[str, Field]:
+    """The variables of equations, whose lengths have the units of their unknowns; an
+    array over no joints there cannot be."""
+    return {
+        name: replace(field, unit="" if field.unit == "rad" else field.unit)
+        for name, field in FIELDS.items()
+        if not field.per_joint
+    }
+
+
 class SweepStore:
     """Zarr arrays for the summaries of all members of a plan; values not yet written
     are missing.
@@ -93,11 +104,12 @@ class SweepStore:
 
         self.plan = plan
         self.joints = len(plan.subject.joints)
+        self.fields = FIELDS if self.joints else _fields_without_joints()
         # what is consolidated is of the arrays that were there before
         self._group: zarr.Group = zarr.open_group(
             path, mode="a", use_consolidated=False
         )
-        is_whole = all(name in self._group for name in FIELDS)
+        is_whole = all(name in self._group for name in self.fields)
         self.is_new = not is_whole or UNSETTLED in self._group.attrs
         if self.is_new:
             self._create()
@@ -112,7 +124,7 @@ class SweepStore:
         """Write the summaries of all members of a block, by index."""
         indices = block.indices.tolist()
         shape = tuple(along.stop - along.start for along in block.region)
-        for name, kind in FIELDS.items():
+        for name, kind in self.fields.items():
             missing = [kind.missing] * self.joints if kind.per_joint else kind.missing
             column = [records[index].get(name, missing) for index in indices]
             values = np.array(column, dtype=kind.dtype)
@@ -142,12 +154,13 @@ class SweepStore:
         self._group.attrs.update(attributes)
         for name, values in plan.axes.items():
             self._create_axis(plan.subject.quantity(name), values)
-        self._create_joints(plan.subject.joints)
+        if self.joints:
+            self._create_joints(plan.subject.joints)
         for name in plan.ranges:
             quantity = plan.subject.quantity(name)
             field = Field("f8", quantity.unit, quantity.meaning)
             self._create_field(name, field)
-        for name, kind in FIELDS.items():
+        for name, kind in self.fields.items():
             self._create_field(name, kind)
         self._consolidate()
 

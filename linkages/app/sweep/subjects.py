@@ -1,5 +1,5 @@
-"""What is swept: a family or a network of the catalogue, or the mechanism of a file; the
-quantities of it that can be varied, and its members at their values."""
+"""What is swept: a family or a network of the catalogue, the mechanism of a file, or its
+equations; the quantities of it that can be varied, and its members at their values."""
 
 from __future__ import annotations
 
@@ -16,10 +16,16 @@ from linkages.app.choice import NO_NETWORK, check_limits, choose_linkage, requir
 from linkages.app.exit_codes import CommandError
 from linkages.catalogue import entry
 from linkages.entry import Linkage, Parameter, ParameterKind
+from linkages.labels import FormLabels
 from linkages.linkage import is_linkage_file, load
+from linkages.mapping import map_linkage
 from linkages.networks.entries import LENGTHS, NETWORKS
+from linkages.subject import subject_at
 
 if TYPE_CHECKING:
+    from bifurc.atlas import Atlas, Form
+    from bifurc.settings import SearchSettings
+    from bifurc.systems.equation_file import EquationFile, EquationSystem
     from linkages.mechanisms.mechanism import Mechanism
 
 JointName: TypeAlias = str | int
@@ -59,6 +65,11 @@ class Quantity:
         name = f"lock_{quote(joint, safe='')}"
         return cls(name, joint, LOCK, is_angle, f"value at which {joint} is locked")
 
+    @classmethod
+    def of_constant(cls, name: str) -> Quantity:
+        """A constant of a file of equations."""
+        return cls(name, name, PARAM, False, f"{name} of the equations")
+
     @property
     def unit(self) -> str:
         """The unit of its values in the dataset; none for lengths, which have that of
@@ -66,8 +77,24 @@ class Quantity:
         return "rad" if self.is_angle else ""
 
 
+class Member(ABC):
+    """What is mapped."""
+
+    @abstractmethod
+    def atlas(self, settings: SearchSettings, seed: int) -> Atlas:
+        """Its map; raises `GeometryError` for what cannot be mapped."""
+
+    @abstractmethod
+    def still_joints(self, atlas: Atlas, form: int) -> set[JointName]:
+        """The joints of the subject that stand still in a form of its map."""
+
+    @abstractmethod
+    def closure(self, form: Form) -> float:
+        """By how much a form misses the equations."""
+
+
 @dataclass(frozen=True)
-class Member:
+class LinkageMember(Member):
     """A linkage or a mechanism that is mapped.
 
     ``joints`` are the names of the joints of a loop, where they have some; ``replaced``
@@ -77,6 +104,33 @@ class Member:
     linkage: Linkage | Mechanism
     joints: tuple[JointName, ...] = ()
     replaced: tuple[JointName, ...] = ()
+
+    def atlas(self, settings: SearchSettings, seed: int) -> Atlas:
+        return map_linkage(self.linkage, settings=settings, seed=seed)
+
+    def still_joints(self, atlas: Atlas, form: int) -> set[JointName]:
+        names: dict[JointName, JointName] = dict(enumerate(self.joints, start=1))
+        still = subject_at(atlas).still_joints(atlas, form)
+        return {names.get(one, one) for one in still} | {*self.replaced}
+
+    def closure(self, form: Form) -> float:
+        return FormLabels.of(form).max_residual
+
+
+@dataclass(frozen=True)
+class EquationMember(Member):
+    """The equations of a file with values of its constants."""
+
+    system: EquationSystem
+
+    def atlas(self, settings: SearchSettings, seed: int) -> Atlas:
+        return self.system.explore(settings=settings, seed=seed)
+
+    def still_joints(self, atlas: Atlas, form: int) -> set[JointName]:
+        return set()
+
+    def closure(self, form: Form) -> float:
+        return form.branch.max_residual
 
 
 class MemberSource(ABC):
@@ -134,7 +188,7 @@ class Family(MemberSource):
 
     def member(self, values: Mapping[str, float]) -> Member:
         """The member with the forms that its source names."""
-        return Member(load(self.name, **values))
+        return LinkageMember(load(self.name, **values))
 
 
 @dataclass(frozen=True)
@@ -172,10 +226,10 @@ class NetworkFamily(MemberSource):
         network = NETWORKS[self.name].build(**self.by_key(PARAM, values))
         mechanism = lock_network(network, self.by_key(LOCK, values))
         if not self.is_without_centre:
-            return Member(mechanism)
+            return LinkageMember(mechanism)
         loop, still = mechanism.without_centre()
         left = tuple(axis for axis in network.plan.ring if axis not in still)
-        return Member(Linkage(loop), left, still)
+        return LinkageMember(Linkage(loop), left, still)
 
 
 @dataclass(frozen=True)
@@ -195,9 +249,7 @@ class FileMechanism(MemberSource):
         from linkages.mechanisms.subject import mechanism_subject
 
         values = mechanism_subject(self.mechanism)["mechanism"]
-        text = json.dumps(values, sort_keys=True)
-        fingerprint = hashlib.sha256(text.encode()).hexdigest()
-        return {"mechanism": self.name, "fingerprint": fingerprint}
+        return {"mechanism": self.name, "fingerprint": _fingerprint(values)}
 
     @cached_property
     def quantities(self) -> Sequence[Quantity]:
@@ -213,16 +265,48 @@ class FileMechanism(MemberSource):
     def member(self, values: Mapping[str, float]) -> Member:
         locks = self.by_key(LOCK, values)
         check_limits(self.mechanism, locks)
-        return Member(self.mechanism.with_locks(locks))
+        return LinkageMember(self.mechanism.with_locks(locks))
+
+
+@dataclass(frozen=True)
+class FileEquations(MemberSource):
+    """The equations called ``name`` that were read from a file, whose constants can be
+    varied."""
+
+    name: str
+    file: EquationFile
+
+    @cached_property
+    def identity(self) -> dict[str, object]:
+        """The name, and a fingerprint of all that the file says."""
+        return {"equations": self.name, "fingerprint": _fingerprint(self.file.content)}
+
+    @cached_property
+    def quantities(self) -> Sequence[Quantity]:
+        return [Quantity.of_constant(name) for name in self.file.constants]
+
+    @property
+    def joints(self) -> tuple[JointName, ...]:
+        return ()
+
+    def member(self, values: Mapping[str, float]) -> Member:
+        """The equations with these constants; raises `EquationFileError`."""
+        return EquationMember(self.file.system(values))
+
+
+def _fingerprint(values: Mapping[str, object]) -> str:
+    """What is the same for the same values that JSON can hold."""
+    text = json.dumps(values, sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def choose_subject(
     text: str, parameters: Sequence[str] = (), is_without_centre: bool = False
 ) -> MemberSource:
     """What is called ``text`` in the catalogue, or is in the file ``text``, which takes
-    no ``parameters``.
+    ``parameters`` where it holds equations only.
 
-    Raises as `choose_linkage`, and `CommandError` for a file with a single loop, and
+    Raises as `choose_linkage`, `EquationFileError`, and `CommandError` for a file with a single loop, and
     for anything but a network without its centre.
     """
     if text in NETWORKS and not is_linkage_file(text):
@@ -232,15 +316,31 @@ def choose_subject(
         if is_without_centre:
             raise CommandError(NO_NETWORK.format(text))
         return Family(text)
-    chosen = choose_linkage(text, parameters)
     if is_without_centre:
         raise CommandError(NO_NETWORK.format(text))
+    equations = _equations_in(text)
+    if equations is not None:
+        return FileEquations(equations.system({}).name, equations)
+    chosen = choose_linkage(text, parameters)
     from linkages.mechanisms.mechanism import Mechanism
 
     refusal = (
         f"{text}: it is a single loop, a table or axes, without parameters and "
         "without joints to lock; a sweep takes a family or a network of the "
-        "catalogue with --param, and a network or the file of a mechanism with "
-        "--lock"
+        "catalogue or a file of equations with --param, and a network or the file of a "
+        "mechanism with --lock"
     )
     return FileMechanism(require_kind(chosen, Mechanism, refusal))
+
+
+def _equations_in(text: str) -> EquationFile | None:
+    """The file called ``text`` where it is one of equations."""
+    if not text.lower().endswith(".toml"):
+        return None
+    from bifurc.systems.equation_file import EquationFile, EquationFileError
+
+    try:
+        file = EquationFile.read(text)
+    except EquationFileError:  # who reads it as a mechanism says what is wrong
+        return None
+    return file if file.is_of_equations else None

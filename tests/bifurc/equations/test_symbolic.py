@@ -101,3 +101,36 @@ def test_the_sides_of_an_equation_are_not_cancelled_where_they_are_not_defined()
 def test_what_cannot_be_used_is_named(expressions, unknowns, message):
     with pytest.raises(ProblemError, match=message):
         SymbolicProblem(expressions, unknowns, BOX)
+
+
+def test_symbols_and_expressions_stand_wherever_names_do():
+    bounds = {Z: (0, 0.16), X: (0, 1), Y: (0, 8)}
+    rate = Z * (1 - X) * sympy.exp(Y)
+    problem = SymbolicProblem([rate - X, 14 * rate - 3 * Y], [X, Y, Z], bounds)
+    events = {
+        "named": ("x", 0.5),
+        "symbol": (X, 0.5),
+        "expression": X - sympy.Rational(1, 2),
+        "equation": sympy.Eq(2 * X, 1),
+        X: (X, 0.25),
+    }
+    diagram = explore(problem, parameter=Z, events=events).diagram
+    assert diagram.parameter == "z" and len(diagram.folds) == 2
+    for label in ("named", "symbol", "expression", "equation"):
+        (event,) = diagram.events(label)
+        assert event.u == pytest.approx([0.5, 7 / 3, np.exp(-7 / 3)], rel=1e-12)
+    assert diagram.events("x")[0].u[0] == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize(
+    "request_, words",
+    [
+        (sympy.Symbol("q"), "events.*'q' is not allowed; it must be a function or one"),
+        (X * sympy.Symbol("q"), "it holds the symbol q"),
+        (sympy.gamma(X), "it holds gamma"),
+    ],
+)
+def test_an_event_that_is_no_function_of_the_unknowns_is_named(request_, words):
+    problem = SymbolicProblem([X - Y], [X, Y], BOX)
+    with pytest.raises(ProblemError, match=words):
+        explore(problem, events={"mine": request_})

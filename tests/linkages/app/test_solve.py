@@ -162,3 +162,26 @@ def test_charts_that_ran_out_are_said_first_and_more_of_them_can_be_had(
     assert 0 < doubt["data"]["starts"] <= 200
     assert "Charts ran out" not in solve(file, "--charts", 1000).stdout
     assert solve(file, "--charts", -1).exit_code == 2
+
+
+def test_the_diagram_is_drawn_over_the_axes_that_are_chosen(
+    path, tmp_path, monkeypatch
+) -> None:
+    drawn = []
+
+    def save_figures(atlas, stage, others, *_):
+        drawn.append(others["diagram"](atlas).axes[0])
+        return []
+
+    monkeypatch.setattr("bifurc.figures.plotting.save_figures", save_figures)
+    result = solve(path, "--axes", "x,|x|", "--out", tmp_path / "out")
+    assert result.exit_code == 0
+    assert (drawn[0].get_xlabel(), drawn[0].get_ylabel()) == ("x", "|x|")
+    for axes, words in (
+        ("x", "does not name two axes"),
+        ("x,q", "axis: 'q' is not allowed; it must be |u|, a function, or one of"),
+    ):
+        result = solve(path, "--axes", axes, "--out", tmp_path / "none")
+        assert (result.exit_code, words in result.stderr) == (2, True), result.stderr
+    result = solve(path, "--axes", "x,p")
+    assert "--axes: figures are only drawn with --out DIR" in result.stderr

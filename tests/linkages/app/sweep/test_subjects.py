@@ -43,6 +43,22 @@ offsets = [0, 0, 0, 0]
 """
 
 
+PITCHFORK = """
+name = "an imperfect pitchfork"
+parameter = "p"
+[unknowns]
+x = [-2, 2]
+p = [-2, 2]
+[parameters]
+h = 0
+low = 0
+[equations]
+rate = "x' = h + p*x - x^3"
+[events]
+one = "x + 0*sqrt(low) = 1"
+"""
+
+
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -310,3 +326,47 @@ def test_a_table_takes_no_locks_and_no_parameters(folder):
         choose_subject("table.toml")
     with pytest.raises(GeometryError, match="left out with a file"):
         choose_subject("table.toml", ["a=1"])
+
+
+@pytest.mark.usefixtures("same_process")
+def test_equations_are_swept_over_their_constants_and_go_on(folder):
+    Path("pitchfork.toml").write_text(PITCHFORK, encoding="utf-8")
+    plan = read_plan("pitchfork.toml", ["h=0:0.1:2", "low=0:-1:2"], starts=10)
+    data = sweep(plan, folder / "a.zarr")
+    assert dict(data.sizes) == {"h": 2, "low": 2}
+    assert data.h.values.tolist() == [0, 0.1]
+    # a constant that leaves an event without a value makes no member
+    assert (data.status.values == [[0, 1]] * 2).all()
+    first = data.sel(low=0)
+    assert first.bifurcations.values.tolist() == [1, 0]
+    assert first.folds.values.tolist() == [0, 1]
+    assert first.forms.values.tolist() == [2, 2]
+    assert first.events.values.tolist() == [1, 1]
+    assert first.closure.values.max() < 1e-12
+    assert "units" not in data.total_length.attrs and "joint" not in data.dims
+
+    lines = journal_path(folder / "a.zarr").read_text().splitlines(keepends=True)
+    half = folder / "half.zarr"
+    journal_path(half).write_text("".join(lines[:3]))
+    assert sweep(plan, half).drop_vars("seconds").equals(data.drop_vars("seconds"))
+    kept = journal_path(half).read_text().splitlines(keepends=True)
+    assert kept[:3] == lines[:3] and len(kept) == len(lines)
+
+    Path("pitchfork.toml").write_text(PITCHFORK.replace("x^3", "x^5"))
+    with pytest.raises(StoreError, match="another sweep"):
+        sweep(read_plan("pitchfork.toml", ["h=0:0.1:2", "low=0:-1:2"]), half)
+
+
+@pytest.mark.parametrize(
+    "options, words",
+    [
+        ({"parameters": ["k=1:2:3"]}, "name=... with a name out of h, low"),
+        ({"parameters": ["h=1"]}, "--param: no grid"),
+        ({"parameters": [], "locks": ["x=1:2:3"]}, "has no joints that could be lock"),
+        ({"parameters": ["h=0:1:2"], "is_without_centre": True}, "takes a network"),
+    ],
+)
+def test_what_equations_do_not_have_is_refused(folder, options, words):
+    Path("pitchfork.toml").write_text(PITCHFORK, encoding="utf-8")
+    with pytest.raises((GeometryError, CommandError), match=words):
+        read_plan("pitchfork.toml", **options)
