@@ -5,11 +5,11 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
-from bifurc.checks import check_callable, floats_of
+from bifurc.checks import check_callable, floats_of, name_of
 from bifurc.decisions import (
     is_bearable_noise,
     is_derivative,
@@ -563,11 +563,13 @@ def _without_limits_of_circles(bounds: np.ndarray, periods: np.ndarray) -> np.nd
 
 
 def _checked_texts(name: str, texts: Sequence[str]) -> tuple[str, ...]:
-    """The ``texts`` as a tuple; raises `ProblemError` for anything but texts."""
+    """The ``texts`` as a tuple, symbols of sympy by their names; raises `ProblemError`
+    for anything but texts."""
     is_row = isinstance(texts, Sequence) and not isinstance(texts, str)
-    if not is_row or not all(isinstance(text, str) for text in texts):
+    row = tuple(map(name_of, texts)) if is_row else ()
+    if not is_row or not all(isinstance(text, str) for text in row):
         raise ProblemError(name, repr(texts), "texts, one for each unknown")
-    return tuple(texts)
+    return cast(tuple[str, ...], row)
 
 
 def _spectral_norm(matrix: np.ndarray | sparray) -> float:

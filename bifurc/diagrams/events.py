@@ -14,7 +14,14 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Form
 from bifurc.branch import Branch
-from bifurc.checks import check_callable, check_finite, check_type, floats_of
+from bifurc.checks import (
+    check_callable,
+    check_finite,
+    check_type,
+    floats_of,
+    index_of_unknown,
+    name_of,
+)
 from bifurc.decisions import is_event_all_along, is_same_turn
 from bifurc.diagrams.diagram import DiagramPoint
 from bifurc.diagrams.turnings import unknown_sizes
@@ -122,13 +129,11 @@ def _function_of(
     function: object, label: str, names: Sequence[str]
 ) -> UnknownsToNumber:
     """A function, or the unknown that stands for one by its name."""
-    if isinstance(function, str):
-        if function not in names:
-            allowed = f"a function or one of the unknowns {', '.join(names)}"
-            raise ProblemError(f"events[{label!r}]", repr(function), allowed)
-        index = names.index(function)
+    what = f"events[{label!r}]"
+    if isinstance(name_of(function), str):
+        index = index_of_unknown(what, function, names, others="a function or ")
         return lambda point: float(point[index])
-    check_callable(f"events[{label!r}]", function)
+    check_callable(what, function)
     return cast(UnknownsToNumber, function)
 
 
