@@ -173,14 +173,14 @@ SEARCHES: list[StatusLine] = []  # that run, the innermost last
 
 
 @contextmanager
-def saying_progress(every: float = EVERY) -> Iterator[None]:
-    """A block in which standard error, where it is no terminal, gets a line every so many
+def saying_progress() -> Iterator[None]:
+    """A block in which standard error, where it is no terminal, gets a line every `EVERY`
     seconds: what the search has found that runs, or else for how long there is work."""
     start = time.monotonic()
     is_over = threading.Event()
 
     def say_again() -> None:
-        while not is_over.wait(every):
+        while not is_over.wait(EVERY):
             working = f"working, {time.monotonic() - start:.0f} s"
             click.echo(SEARCHES[-1].text() if SEARCHES else working, err=True)
 

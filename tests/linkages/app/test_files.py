@@ -117,8 +117,9 @@ def test_results_replace_older_ones(tmp_path):
     assert sorted(path.name for path in written) == names(tmp_path)
 
 
-def test_a_search_says_what_it_does_where_no_terminal_is(capsys):
-    with saying_progress(0.01):
+def test_a_search_says_what_it_does_where_no_terminal_is(capsys, monkeypatch):
+    monkeypatch.setattr("linkages.app.output.EVERY", 0.01)
+    with saying_progress():
         time.sleep(0.1)
         with StatusLine() as status:
             status("forms so far; step: gather seeds", 3)
