@@ -64,7 +64,7 @@ def animate_command(
     \b
     Examples:
       bifurc animate bennett --out bennett.gif
-      bifurc animate altmann --form 1 --form 2 --out altmann.gif --size 3.4x3.4
+      bifurc animate four-bar --form 1 --form 2 --out both.gif --size 3.4x3.4
       bifurc animate out/atlas.nc --route "Form I" "Form II" --out route.mp4
     """
     from bifurc.files.atomic import replace_file
