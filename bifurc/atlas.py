@@ -81,8 +81,8 @@ class MeetingPoint:
     surfaces: tuple[int, ...] = ()
 
     def __repr__(self) -> str:
-        forms = ", ".join(str(form + 1) for form, _ in self.passes)
-        words = [self.kind.value, f"rank {self.point.rank}", f"forms {forms or 'none'}"]
+        forms = ", ".join(f"forms[{form}]" for form, _ in self.passes)
+        words = [self.kind.value, f"rank {self.point.rank}", forms or "no form"]
         if self.surfaces:
             words.append(f"surfaces {', '.join(map(str, self.surfaces))}")
         if self.note:
@@ -106,7 +106,7 @@ class Event:
         kind = f"near miss {self.value:.4g}"
         if self.index >= 0:
             kind = f"dead point of unknown {self.index + 1}"
-        return f"<Event: {kind} on form {self.form + 1} at s = {self.s:.6g}>"
+        return f"<Event: {kind} on forms[{self.form}] at s = {self.s:.6g}>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -305,7 +305,7 @@ class Atlas:
         lines += _first([_point_line(self, p) for p in self.points], "singular points")
         lines += _first([_miss_line(self, e) for e in self.near_misses], "near misses")
         lines += _first([f"  {surface!r}" for surface in self.surfaces], "surfaces")
-        lines += _diagram_lines(self.diagram)
+        lines += _diagram_lines(self)
         lines.append(f"  completeness: {self.completeness.level}>")
         return "\n".join(lines)
 
@@ -396,11 +396,15 @@ def _miss_line(atlas: Atlas, event: Event) -> str:
     return f"  near miss: {event.value:.4g} on {atlas.forms[event.form].name}"
 
 
-def _diagram_lines(diagram: Diagram | None) -> list[str]:
+def _diagram_lines(atlas: Atlas) -> list[str]:
     """Folds, Hopf points and events, a line each."""
-    if diagram is None:
+    if atlas.diagram is None:
         return []
-    return _first([f"  {point!r}" for point in diagram.points], "points")
+    lines = [
+        f"  {point.name}: {point.words} on {atlas.forms[point.form].name}"
+        for point in atlas.diagram.points
+    ]
+    return _first(lines, "points")
 
 
 def _course(branch: Branch) -> str:

@@ -3,18 +3,51 @@ allowed."""
 
 from __future__ import annotations
 
+import difflib
 import math
-from typing import TYPE_CHECKING, TypeAlias
+from collections.abc import Sequence
+from typing import Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bifurc.errors import ProblemError
 
-if TYPE_CHECKING:
-    import sympy
 
-Name: TypeAlias = "str | sympy.Symbol"
+class Symbol(Protocol):
+    """A symbol of sympy, which stands for its name."""
+
+    @property
+    def is_Symbol(self) -> bool:
+        """True for a symbol, False for another expression."""
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+
+
+UnknownName: TypeAlias = "str | Symbol"
+
+
+def name_of(unknown: object) -> object:
+    """The name of an unknown for a sympy symbol, and anything else as it is."""
+    is_symbol = getattr(unknown, "is_Symbol", False)
+    return getattr(unknown, "name", unknown) if is_symbol else unknown
+
+
+def index_of_unknown(
+    what: str, unknown: object, names: Sequence[str], others: str = ""
+) -> int:
+    """The index of an unknown among the ``names`` of all from its name or symbol;
+    raises `ProblemError` with the nearest name, and with what ``others`` are allowed,
+    where there is none."""
+    name = name_of(unknown)
+    if isinstance(name, str) and name in names:
+        return list(names).index(name)
+    near = difflib.get_close_matches(str(name), names, n=1)
+    hint = f" (the nearest is {near[0]})" if near else ""
+    allowed = f"{others}one of the unknowns {', '.join(names)}{hint}"
+    raise ProblemError(what, repr(name), allowed)
 
 
 def check_type(name: str, value: object, kind: type) -> None:
@@ -22,11 +55,6 @@ def check_type(name: str, value: object, kind: type) -> None:
     if not isinstance(value, kind):
         article = "an" if kind.__name__[0] in "AEIOU" else "a"
         raise ProblemError(name, repr(value), f"{article} {kind.__name__}")
-
-
-def name_of(given: object) -> object:
-    """The name of a symbol of sympy; anything else as it is."""
-    return str(given) if getattr(given, "is_Symbol", False) is True else given
 
 
 def check_callable(name: str, value: object) -> None:

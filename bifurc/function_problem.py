@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, cast
 
 import numpy as np
 
-from bifurc.checks import Name, check_callable, check_type, floats_of, name_of
+from bifurc.checks import UnknownName, check_callable, check_type, floats_of, name_of
 from bifurc.decisions import (
     is_bearable_noise,
     is_derivative,
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     # SciPy takes longer to import than a small problem to solve
     from scipy.sparse import sparray
 
-Bounds: TypeAlias = Sequence[Sequence[float]] | Mapping[Name, Sequence[float]]
+Bounds: TypeAlias = Sequence[Sequence[float]] | Mapping[UnknownName, Sequence[float]]
 
 PROBES = 7  # points at which a function is tried out and its derivatives are measured
 MOST_TRIALS = (
@@ -251,11 +251,11 @@ class FunctionProblem(EquationProblem):
         function: Callable[..., Sequence[float] | np.ndarray],
         bounds: Bounds,
         *,
-        parameters: Mapping[Name, Sequence[float]] | None = None,
+        parameters: Mapping[UnknownName, Sequence[float]] | None = None,
         jacobian: Callable[..., np.ndarray | sparray] | None = None,
-        names: Sequence[Name] | None = None,
-        units: Sequence[str] | Mapping[Name, str] | None = None,
-        periods: Sequence[float] | Mapping[Name, float] | None = None,
+        names: Sequence[UnknownName] | None = None,
+        units: Sequence[str] | Mapping[UnknownName, str] | None = None,
+        periods: Sequence[float] | Mapping[UnknownName, float] | None = None,
         is_recorded: bool = True,
     ):
         check_callable("function", function)
@@ -511,10 +511,10 @@ def accuracy_of(equations: Equations) -> Accuracy:
 
 def _described_domain(
     bounds: Bounds,
-    names: Sequence[Name] | None,
-    units: Sequence[str] | Mapping[Name, str] | None,
-    periods: Sequence[float] | Mapping[Name, float] | None,
-    parameters: Mapping[Name, Sequence[float]] | None,
+    names: Sequence[UnknownName] | None,
+    units: Sequence[str] | Mapping[UnknownName, str] | None,
+    periods: Sequence[float] | Mapping[UnknownName, float] | None,
+    parameters: Mapping[UnknownName, Sequence[float]] | None,
 ) -> Domain:
     """The unknowns as the user describes them, and behind them the parameters; raises
     `ProblemError`."""
@@ -529,9 +529,9 @@ def _described_domain(
 
 def _domain_of_unknowns(
     bounds: Bounds,
-    names: Sequence[Name] | None,
-    units: Sequence[str] | Mapping[Name, str] | None,
-    periods: Sequence[float] | Mapping[Name, float] | None,
+    names: Sequence[UnknownName] | None,
+    units: Sequence[str] | Mapping[UnknownName, str] | None,
+    periods: Sequence[float] | Mapping[UnknownName, float] | None,
 ) -> Domain:
     """The unknowns without parameters."""
     if names is None and isinstance(bounds, Mapping):
@@ -563,7 +563,7 @@ def _domain_of_unknowns(
 
 
 def _with_parameters(
-    domain: Domain, parameters: Mapping[Name, Sequence[float]]
+    domain: Domain, parameters: Mapping[UnknownName, Sequence[float]]
 ) -> Domain:
     """A domain with parameters behind its unknowns, by their names with their bounds."""
     check_type("parameters", parameters, dict)
@@ -659,7 +659,7 @@ def _without_limits_of_circles(bounds: np.ndarray, periods: np.ndarray) -> np.nd
     return np.where(is_circle[:, None], [-np.inf, np.inf], bounds)
 
 
-def _checked_texts(name: str, given: Sequence[Name]) -> tuple[str, ...]:
+def _checked_texts(name: str, given: Sequence[UnknownName]) -> tuple[str, ...]:
     """What is ``given`` as texts; raises `ProblemError` for anything but texts, and symbols
     that stand for them."""
     is_row = isinstance(given, Sequence) and not isinstance(given, str)

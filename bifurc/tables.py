@@ -18,6 +18,13 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join(shown)
 
 
+def distinct_heads(names: Sequence[str], others: Iterable[str]) -> list[str]:
+    """Heads of columns for things with ``names`` that a user chose, told apart from the
+    ``others``, which are the program's."""
+    taken = {other.casefold() for other in others}
+    return [f"{name} (unknown)" if name.casefold() in taken else name for name in names]
+
+
 def section(
     title: str,
     heads: Sequence[str],

@@ -272,11 +272,13 @@ class MechanismSubject(Subject):
 
     @property
     def drivers(self) -> list[int]:
-        """The unknowns, by index, of the first joint that is free, and of those with
-        limits, which every slide has."""
+        """The unknowns, by index, of the joint that drives, else of the first that is
+        free, and of those with limits, which every slide has."""
         free = [one for one in self.mechanism.variables if one.label in self.labels]
         limited = [one for one in free if one.limits or not one.motion.is_turn]
-        labels = {one.label for one in [*free[:1], *limited]}
+        driver = self.mechanism.driver
+        drives = [one for one in free if one.label == driver] or free[:1]
+        labels = {one.label for one in [*drives, *limited]}
         return [k for k, label in enumerate(self.labels) if label in labels]
 
     def labelled(self, atlas: Atlas) -> Atlas:

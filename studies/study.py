@@ -3,27 +3,23 @@
 from __future__ import annotations
 
 import difflib
-import threading
-import time
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 
 import click
 
 from bifurc import BifurcError
-
-SECONDS = 20.0  # between two signs of life
+from linkages.app.output import saying_progress
 
 
 class Study(click.Command):
-    """A study: it says on standard error every `SECONDS` for how long it has been at
-    work; an error of the packages and a package that is not installed end it with one
+    """A study: it says on standard error from time to time for how long it has been at
+    work, as commands do; an error of the packages and a package that is not installed end it with one
     line."""
 
     def invoke(self, ctx: click.Context) -> object:
         """Run the study."""
         try:
-            with signs_of_life(ctx.info_name or "study"):
+            with saying_progress():
                 return super().invoke(ctx)
         except BifurcError as error:
             raise click.ClickException(" ".join(str(error).split())) from None
@@ -31,25 +27,6 @@ class Study(click.Command):
             name = (error.name or "").partition(".")[0]
             message = f"{name} is not installed; pip install {name}"
             raise click.ClickException(message) from None
-
-
-@contextmanager
-def signs_of_life(name: str) -> Iterator[None]:
-    """A block during which it is said from time to time for how long it has run."""
-    start = time.monotonic()
-    ended = threading.Event()
-
-    def report() -> None:
-        while not ended.wait(SECONDS):
-            click.echo(f"{name}: {time.monotonic() - start:.0f} s so far", err=True)
-
-    reporter = threading.Thread(target=report, daemon=True)
-    reporter.start()
-    try:
-        yield
-    finally:
-        ended.set()
-        reporter.join()
 
 
 def require_known(option: str, names: Iterable[str], known: Iterable[str]) -> None:

@@ -87,7 +87,6 @@ LONGER = {
     "the parts of a figure, one after the other": [
         "bifurc.figures.diagram_plot._marked",
         "bifurc.figures.planes.choose_plane",
-        "bifurc.figures.quantities.quantity_of",
         "bifurc.figures.singular_values._draw_form_against",
         "linkages.source_figures.assembly_figure.draw",
         "linkages.source_figures.curves_figure._draw_form",

@@ -44,11 +44,16 @@ class DiagramPoint:
     label: str = ""
     error: float = 0.0
 
+    @property
+    def words(self) -> str:
+        """Its kind and its label."""
+        return f"{self.kind.value} {self.label}".rstrip()
+
     def __repr__(self) -> str:
-        what = f"{self.kind.value} {self.label}".rstrip()
-        place = f"form {self.form} at s = {self.s:.6g}"
+        place = f"forms[{self.form}] at s = {self.s:.6g}"
         return (
-            f"<DiagramPoint {self.name!r}: {what} on {place}, value {self.value:.6g}>"
+            f"<DiagramPoint {self.name!r}: {self.words} on {place}, "
+            f"value {self.value:.6g}>"
         )
 
 

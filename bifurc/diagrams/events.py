@@ -19,6 +19,7 @@ from bifurc.checks import (
     check_finite,
     check_type,
     floats_of,
+    index_of_unknown,
     name_of,
 )
 from bifurc.decisions import is_event_all_along, is_same_turn
@@ -33,7 +34,7 @@ from bifurc.torus import wrap, wrapped_periods
 if TYPE_CHECKING:
     import sympy
 
-    from bifurc.checks import Name
+    from bifurc.checks import UnknownName
 
 SAMPLES, BESIDE = 32, 0.1  # places on a branch, so far, over their sizes, off it
 LOST = 1e-14  # of the values of a function: what rounding makes of them
@@ -43,11 +44,11 @@ UnknownsToNumber: TypeAlias = Callable[[np.ndarray], float]
 # be equal to, one value or several. In place of a function the name of an unknown, or an
 # expression of sympy.
 EventRequests: TypeAlias = """Mapping[
-    Name,
+    UnknownName,
     UnknownsToNumber
-    | Name
+    | UnknownName
     | sympy.Expr
-    | tuple[UnknownsToNumber | Name | sympy.Expr, float | Sequence[float]],
+    | tuple[UnknownsToNumber | UnknownName | sympy.Expr, float | Sequence[float]],
 ]"""
 ROUND_CIRCLES = 16  # places on each form at which a function is seen round the circles
 SHOWN = 3  # jumps that a remark names
@@ -139,18 +140,16 @@ def _function_of(
     function: object, label: str, names: Sequence[str]
 ) -> UnknownsToNumber:
     """A function; that of an expression of sympy, or of an unknown by its name."""
+    what = f"events[{label!r}]"
     function = name_of(function)
     if hasattr(function, "free_symbols"):
         from bifurc.equations.symbolic import function_of  # it imports sympy
 
-        return function_of(function, f"events[{label!r}]", names)
+        return function_of(function, what, names)
     if isinstance(function, str):
-        if function not in names:
-            allowed = f"a function or one of the unknowns {', '.join(names)}"
-            raise ProblemError(f"events[{label!r}]", repr(function), allowed)
-        index = names.index(function)
+        index = index_of_unknown(what, function, names, others="a function or ")
         return lambda point: float(point[index])
-    check_callable(f"events[{label!r}]", function)
+    check_callable(what, function)
     return cast(UnknownsToNumber, function)
 
 

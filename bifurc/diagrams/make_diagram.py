@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
 from bifurc.atlas import Atlas
-from bifurc.checks import Name, check_type, name_of
+from bifurc.checks import UnknownName, check_type, index_of_unknown
 from bifurc.decisions import is_same_point
 from bifurc.diagrams.diagram import (
     Branching,
@@ -31,7 +30,6 @@ from bifurc.diagrams.turnings import (
     turnings_of,
     unknown_sizes,
 )
-from bifurc.errors import ProblemError
 from bifurc.problem import Problem
 from bifurc.singular.point import Kind
 from bifurc.torus import wrap, wrapped_periods
@@ -40,14 +38,14 @@ from bifurc.torus import wrap, wrapped_periods
 def diagram_of(
     problem: Problem,
     atlas: Atlas,
-    parameter: Name | None = None,
+    parameter: UnknownName | None = None,
     events: EventRequests | None = None,
     *,
     is_flow: bool = True,
 ) -> Diagram:
     """What happens along the forms of an atlas of a problem as a parameter changes.
 
-    ``parameter`` is the name of an unknown, or its symbol of sympy. Where there are as many equations as other
+    ``parameter`` is an unknown by its name, or by its symbol of sympy. Where there are as many equations as other
     unknowns, they are taken as the right-hand sides of u' = F(u), the first for the
     first of the others, and so on; with ``is_flow`` False they are not, and there is no
     stability. ``events`` are functions of the unknowns (n,) by
@@ -68,11 +66,12 @@ def diagram_of(
     check_type("problem", problem, Problem)
     check_type("atlas", atlas, Atlas)
     check_type("is_flow", is_flow, bool)
-    functions = events_of({} if events is None else events, problem.domain.names)
+    names = problem.domain.names
+    functions = events_of({} if events is None else events, names)
     found, remarks = events_along(problem, atlas, functions)
     if parameter is None:
         return Diagram("", _named(problem, found), (), (), tuple(remarks))
-    index = parameter_index(problem.domain.names, parameter)
+    index = index_of_unknown("parameter", parameter, names)
     turnings = turnings_of(problem, atlas, index)
     has_stability = is_flow and bool(atlas.forms) and has_square_rest(problem)
     along = _stability(problem, atlas, index, turnings.folds, has_stability)
@@ -84,24 +83,12 @@ def diagram_of(
     stretches = tuple(stretch for one in along for stretch in one.stretches)
     points = _named(problem, [*turnings.folds, *hopf_points, *found])
     return Diagram(
-        parameter=problem.domain.names[index],
+        parameter=names[index],
         points=points,
         stretches=stretches,
         branchings=_branchings(atlas, index, turnings, stretches),
         remarks=(*remarks, *_double_hopf_points(atlas, points)),
     )
-
-
-def parameter_index(names: Sequence[str], parameter: object) -> int:
-    """The index of the unknown called ``parameter``; raises `ProblemError` with the
-    nearest name where there is none. A symbol of sympy stands for its name."""
-    parameter = name_of(parameter)
-    if parameter not in names:
-        near = difflib.get_close_matches(str(parameter), names, n=1)
-        hint = f" (the nearest is {near[0]})" if near else ""
-        allowed = f"one of the unknowns {', '.join(names)}{hint}"
-        raise ProblemError("parameter", repr(parameter), allowed)
-    return list(names).index(str(parameter))
 
 
 def _branchings(

@@ -16,7 +16,7 @@ from bifurc.function_problem import Bounds, FunctionProblem
 if TYPE_CHECKING:
     import mpmath
 
-    from bifurc.checks import Name
+    from bifurc.checks import UnknownName
     from bifurc.system import PreciseResidual
 
 
@@ -53,8 +53,8 @@ class TapeProblem(FunctionProblem):
         bounds: Bounds,
         *,
         names: Sequence[str],
-        units: Sequence[str] | Mapping[Name, str] | None = None,
-        periods: Sequence[float] | Mapping[Name, float] | None = None,
+        units: Sequence[str] | Mapping[UnknownName, str] | None = None,
+        periods: Sequence[float] | Mapping[UnknownName, float] | None = None,
     ):
         self._tape = tape
         function = TapeFunction(tape)

@@ -21,7 +21,7 @@ from bifurc.errors import ProblemError
 if TYPE_CHECKING:
     import mpmath
 
-    from bifurc.checks import Name
+    from bifurc.checks import UnknownName
     from bifurc.function_problem import Bounds
     from bifurc.system import PreciseResidual
 
@@ -61,8 +61,8 @@ class SymbolicProblem(TapeProblem):
         unknowns: Sequence[sympy.Symbol],
         bounds: Bounds,
         *,
-        periods: Sequence[float] | Mapping[Name, float] | None = None,
-        units: Sequence[str] | Mapping[Name, str] | None = None,
+        periods: Sequence[float] | Mapping[UnknownName, float] | None = None,
+        units: Sequence[str] | Mapping[UnknownName, str] | None = None,
     ):
         self.unknowns = _checked_unknowns(unknowns)
         labelled = {f"expressions[{i}]": one for i, one in enumerate(expressions)}

@@ -49,16 +49,17 @@ class _Mark(NamedTuple):
 def plot_diagram(
     atlas: Atlas,
     horizontal: AxisRequest | None = None,
-    vertical: AxisRequest = "|u|",
+    vertical: AxisRequest | None = None,
     figure: Canvas | None = None,
     *,
     ax: Axes | None = None,
 ) -> Figure:
     """The bifurcation diagram of an atlas in the plane of two quantities.
 
-    Each is the name of an unknown, its symbol of sympy, "|x|" for the size of the unknown x, "|u|" for the
-    Euclidean norm of all unknowns but the parameter, or a function of the unknowns
-    (n,); ``horizontal`` is the parameter where nothing is said. Stable stretches are
+    Each is an unknown by its name, or by its symbol of sympy, "|x|" for the size of the
+    unknown x, "|u|" for the Euclidean norm of all unknowns but the parameter where no
+    unknown is called u, or a function of the unknowns (n,); where nothing is said,
+    ``horizontal`` is the parameter and ``vertical`` that norm. Stable stretches are
     solid, unstable ones dashed, neutral ones dotted; where no stability is known all
     are solid. It is drawn into ``ax``, or with a legend into a ``figure`` or a part of
     one, or into a new one. Raises `ProblemError` for a quantity that is not there.

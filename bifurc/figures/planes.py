@@ -6,13 +6,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
+from typing import cast
 
 import numpy as np
 
 from bifurc import torus
 from bifurc.atlas import Atlas
 from bifurc.branch import Branch
-from bifurc.checks import name_of
+from bifurc.checks import UnknownName, name_of
 from bifurc.errors import ProblemError
 from bifurc.figures.quantities import shown_unit
 
@@ -76,11 +77,11 @@ class Plane:
 
 
 def indices_of(
-    atlas: Atlas, name: str, unknowns: Sequence[str | int], count: int
+    atlas: Atlas, name: str, unknowns: Sequence[UnknownName | int], count: int
 ) -> list[int]:
     """The indices of ``count`` unknowns from their names or their numbers, which the
     user gave as ``name``; raises `ProblemError`."""
-    indices = [_index_of(atlas, name_of(unknown)) for unknown in unknowns]
+    indices = [_index_of(atlas, unknown) for unknown in unknowns]
     known = [index for index in indices if index is not None]
     if not len(set(known)) == len(indices) == count:
         names = ", ".join(atlas.names)
@@ -91,13 +92,14 @@ def indices_of(
     return known
 
 
-def _index_of(atlas: Atlas, unknown: object) -> int | None:
-    """The index of an unknown from its name or its number; None where there is none."""
-    if isinstance(unknown, str):
-        return atlas.names.index(unknown) if unknown in atlas.names else None
-    if not isinstance(unknown, int):
-        return None
-    return unknown - 1 if 1 <= unknown <= len(atlas.names) else None
+def _index_of(atlas: Atlas, unknown: UnknownName | int) -> int | None:
+    """The index of an unknown from its name, its symbol or its number; None where there
+    is none."""
+    name = name_of(unknown)
+    if isinstance(name, str):
+        return atlas.names.index(name) if name in atlas.names else None
+    is_number = isinstance(name, int | np.integer) and 1 <= name <= len(atlas.names)
+    return int(cast(int, name)) - 1 if is_number else None
 
 
 def plane_of(

@@ -20,7 +20,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bifurc.atlas import Atlas
-from bifurc.checks import check_type
+from bifurc.checks import UnknownName, check_type
 from bifurc.figures.diagram_plot import plot_diagram
 from bifurc.figures.drawing import (
     PanelSettings,
@@ -56,7 +56,7 @@ LEAST_HEIGHT = 1.4  # of the frame of the transition map
 def plot_transition_map(
     atlas: Atlas,
     figure: Canvas | None = None,
-    joints: Sequence[str | int] | None = None,
+    joints: Sequence[UnknownName | int] | None = None,
     *,
     ax: Axes | None = None,
     selection: Selection = EVERYTHING,
@@ -98,7 +98,7 @@ def plot_transition_map(
 def plot_joint_angles(
     atlas: Atlas,
     figure: Canvas | None = None,
-    input_joint: str | int = 1,
+    input_joint: UnknownName | int = 1,
     *,
     selection: Selection = EVERYTHING,
 ) -> Figure:

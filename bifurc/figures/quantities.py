@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias, cast
 
 import numpy as np
 
 from bifurc.atlas import Atlas
-from bifurc.checks import name_of
+from bifurc.checks import UnknownName, index_of_unknown, name_of
 from bifurc.errors import ProblemError
 from bifurc.torus import wrap
 
-if TYPE_CHECKING:
-    from bifurc.checks import Name
-
-AxisRequest: TypeAlias = "Name | Callable[[np.ndarray], float]"
+AxisRequest: TypeAlias = "UnknownName | Callable[[np.ndarray], float]"
 NORM = "|u|"
+MOST_NAMED = 4  # unknowns of a norm that are named in its label
 SIZE = "size"  # the unit of an unknown that counts characteristic lengths
 LENGTHS = "lengths"  # what stands for the user's unit of length
 SAMPLES = 64  # of a form at which it is seen what an axis shows
@@ -62,15 +59,17 @@ class Quantity:
         return values
 
 
-def quantity_of(atlas: Atlas, request: AxisRequest) -> Quantity:
+def quantity_of(atlas: Atlas, request: AxisRequest | None) -> Quantity:
     """What an axis shows.
 
-    ``request`` is the name of an unknown, its name between bars for its size, "|u|" for
-    the Euclidean norm of all unknowns but the parameter, or a function of the unknowns
-    (n,); unknowns with a period count from half of it below 0 to half above. Raises
-    `ProblemError` for anything else.
+    ``request`` is an unknown by its name or symbol, its name between bars for its size,
+    None for the Euclidean norm of all unknowns but the parameter, as "|u|" where no
+    unknown is called u, or a function of the unknowns (n,); unknowns with a period
+    count from half of it below 0 to half above. Raises `ProblemError` for anything else.
     """
-    request = name_of(request)
+    if request is None:
+        return _norm_of(atlas)
+    request = cast(AxisRequest, name_of(request))
     if callable(request):
         label = getattr(request, "__name__", "function")
         quantity = Quantity(label, _each(request, label))
@@ -78,36 +77,41 @@ def quantity_of(atlas: Atlas, request: AxisRequest) -> Quantity:
         return quantity
     names = list(atlas.names)
     check_axis(request, names)
-    if request in names:
-        index = names.index(str(request))
-        factor, unit = shown_unit(atlas, index)
-        label = f"{request} ({unit})" if unit else str(request)
-        period = float(atlas.periods[index])
-        middle = _middle(atlas, index) if np.isfinite(period) else 0.0
-        return Quantity(
-            label,
-            lambda points: factor * points[:, index],
-            factor * period,
-            factor * middle,
-        )
     if request in _sizes(names):
         index = _sizes(names).index(str(request))
         return Quantity(str(request), lambda points: np.abs(points[:, index]))
-    parameter = atlas.diagram.parameter if atlas.diagram else ""
-    rest = [i for i, name in enumerate(names) if name != parameter]
-    periods = atlas.periods[rest]
-    return Quantity(NORM, lambda points: _norms(points[:, rest], periods))
+    if request == NORM:
+        return _norm_of(atlas)
+    index = names.index(str(request))
+    factor, unit = shown_unit(atlas, index)
+    period = float(atlas.periods[index])
+    middle = _middle(atlas, index) if np.isfinite(period) else 0.0
+    return Quantity(
+        f"{names[index]} ({unit})" if unit else names[index],
+        lambda points: factor * points[:, index],
+        factor * period,
+        factor * middle,
+    )
 
 
 def check_axis(request: object, names: Sequence[str]) -> None:
     """Raise `ProblemError` unless an axis shows one of the unknowns of these names, the
     size of one or their norm."""
-    if request in (*names, *_sizes(names), NORM):
-        return
-    near = difflib.get_close_matches(str(request), names, n=1)
-    hint = f" (the nearest is {near[0]})" if near else ""
-    allowed = f"{NORM}, a function, or one of the unknowns {', '.join(names)}{hint}"
-    raise ProblemError("axis", repr(request), allowed)
+    if request not in (*_sizes(names), NORM):
+        index_of_unknown("axis", request, names, others=f"{NORM}, a function, or ")
+
+
+def _norm_of(atlas: Atlas) -> Quantity:
+    """The norm of all unknowns but the parameter; its label names them, so that it is
+    not that of the size of one."""
+    parameter = atlas.diagram.parameter if atlas.diagram else ""
+    rest = [i for i, name in enumerate(atlas.names) if name != parameter]
+    periods = atlas.periods[rest]
+    named = ", ".join(atlas.names[i] for i in rest)
+    label = f"|{named}|" if len(rest) == 1 else f"|({named})|"
+    if len(rest) > MOST_NAMED:
+        label = f"norm of {len(rest)} unknowns"
+    return Quantity(label, lambda points: _norms(points[:, rest], periods))
 
 
 def _sizes(names: Sequence[str]) -> list[str]:

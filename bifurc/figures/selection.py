@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bifurc.atlas import NEAR_DRAWN, Atlas, Event, MeetingPoint, Surface
+from bifurc.checks import UnknownName, name_of
 from bifurc.errors import ProblemError, RouteError
 from bifurc.form_order import listed_numbers
 
@@ -24,13 +25,15 @@ class Selection:
     numbers in tables, from 1; all where there are none.
     ``window`` are the first and the last angle that are shown, in degrees, at most a
     turn. ``overlay`` are points of the user's that are laid over: their values, as axes
-    show them, by the names of the unknowns; it is drawn where both unknowns of a plane
+    show them, by the names or symbols of the unknowns; it is drawn where both unknowns of a plane
     have some.
     """
 
     forms: Sequence[str | int] = ()
     window: tuple[float, float] | None = None
-    overlay: Mapping[str, Sequence[float]] = field(default_factory=dict)
+    overlay: Mapping[str, Sequence[float]] | Mapping[UnknownName, Sequence[float]] = (
+        field(default_factory=dict)
+    )
 
     def __post_init__(self) -> None:
         """Raises `ProblemError` for a window that is none, and for columns of unequal
@@ -97,9 +100,10 @@ class Selection:
     def points_over(self, *names: str) -> np.ndarray | None:
         """The user's points (k, m) over the unknowns of m names; None where there are
         none."""
-        if not set(names) <= set(self.overlay):
+        overlay = {name_of(name): values for name, values in self.overlay.items()}
+        if not set(names) <= set(overlay):
             return None
-        columns = [self.overlay[name] for name in names]
+        columns = [overlay[name] for name in names]
         return np.array(columns, dtype=float).T
 
 

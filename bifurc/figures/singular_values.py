@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullLocator
 
 from bifurc.atlas import Atlas, Event, Form
+from bifurc.checks import UnknownName
 from bifurc.figures.drawing import (
     DegreeLocator,
     columns_of,
@@ -283,7 +284,7 @@ def _power_of_ten(value: float, _: int) -> str:
 
 def plot_singular_values_against(
     atlas: Atlas,
-    unknown: str | int,
+    unknown: UnknownName | int,
     figure: Canvas | None = None,
     *,
     selection: Selection = EVERYTHING,

@@ -12,6 +12,7 @@ from mpl_toolkits.mplot3d import Axes3D, proj3d
 
 from bifurc import torus
 from bifurc.atlas import Atlas, MeetingPoint
+from bifurc.checks import UnknownName
 from bifurc.figures.drawing import (
     OVERLAY,
     DegreeLocator,
@@ -40,7 +41,7 @@ SAME_SPOT = 0.004  # of the picture: points that are closer share a name
 
 def plot_map_in_space(
     atlas: Atlas,
-    unknowns: Sequence[str | int],
+    unknowns: Sequence[UnknownName | int],
     figure: Canvas | None = None,
     *,
     ax: Axes3D | None = None,

@@ -11,10 +11,15 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.atlas import Atlas, Provenance
-from bifurc.checks import Name, check_callable, check_type
+from bifurc.checks import (
+    UnknownName,
+    check_callable,
+    check_type,
+    index_of_unknown,
+)
 from bifurc.diagrams.diagram import Diagram
 from bifurc.diagrams.events import EventRequests, events_of
-from bifurc.diagrams.make_diagram import diagram_of, parameter_index
+from bifurc.diagrams.make_diagram import diagram_of
 from bifurc.errors import ProblemError
 from bifurc.limits import (
     CutOff,
@@ -48,7 +53,7 @@ def explore(
     seed: int = 0,
     seeds: Seeds | None = None,
     progress: Callable[[str, int], None] | None = None,
-    parameter: Name | None = None,
+    parameter: UnknownName | None = None,
     events: EventRequests | None = None,
     is_flow: bool = True,
 ) -> Atlas:
@@ -61,7 +66,7 @@ def explore(
     step, and how many.
     Ctrl-C ends the search early, once it has begun: the atlas holds what was found,
     and its provenance says so. When the budget of time is used up, the completeness and the provenance say
-    so. With a ``parameter``, the name of an unknown, or ``events``, functions of the
+    so. With a ``parameter``, an unknown by its name or symbol, or ``events``, functions of the
     unknowns, the atlas holds a diagram; see `diagram_of`, also for ``is_flow``. Raises
     `ProblemError` for settings or a seed that cannot be used.
 
@@ -78,9 +83,10 @@ def explore(
     if progress is not None:
         check_callable("progress", progress)
     _check_seeds(problem, seed, seeds)
+    names = problem.domain.names
     if parameter is not None:
-        parameter_index(problem.domain.names, parameter)
-    events_of({} if events is None else events, problem.domain.names)
+        parameter = names[index_of_unknown("parameter", parameter, names)]
+    events_of({} if events is None else events, names)
     request = _Request(settings, int(seed), seeds, progress)
     interrupt = HeldInterrupt()
     # beside a rim of where equations are defined there are values that are no numbers
@@ -116,7 +122,7 @@ def _check_seeds(problem: Problem, seed: int, seeds: Seeds | None) -> None:
 def _diagram_in_time(
     problem: Problem,
     atlas: Atlas,
-    parameter: Name | None,
+    parameter: UnknownName | None,
     events: EventRequests | None,
     is_flow: bool,
 ) -> Diagram:

@@ -3,6 +3,7 @@ unknowns."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import chain
 
 import numpy as np
@@ -12,7 +13,7 @@ from bifurc.branch import Branch, Outcome
 from bifurc.diagrams.diagram import Diagram
 from bifurc.singular.point import Kind
 from bifurc.systems.verdict import verdict_of
-from bifurc.tables import section
+from bifurc.tables import distinct_heads, section
 
 SHOWN = 40  # rows of a table; the others are counted
 NONE = "-"
@@ -49,10 +50,12 @@ def _equations(atlas: Atlas) -> str:
     return text
 
 
-def _heads(atlas: Atlas) -> list[str]:
-    """Names of the unknowns with their units."""
+def _heads(atlas: Atlas, others: Sequence[str]) -> list[str]:
+    """Names of the unknowns with their units, told apart from the ``others``, which are
+    the program's."""
     columns = zip(atlas.names, atlas.units, strict=True)
-    return [f"{name} ({unit})" if unit else name for name, unit in columns]
+    heads = [f"{name} ({unit})" if unit else name for name, unit in columns]
+    return distinct_heads(heads, others)
 
 
 def _numbers(point: np.ndarray, size: float = 1.0) -> list[str]:
@@ -128,7 +131,8 @@ def _points(atlas: Atlas) -> str:
         row = [point.name, kind, *_numbers(point.point.u)]
         row += [f"{point.point.error:.0e}", _members(atlas, point), point.note]
         rows.append(row)
-    heads = ["name", "kind", *_heads(atlas), "error", "forms", "remark"]
+    before, after = ("name", "kind"), ("error", "forms", "remark")
+    heads = [*before, *_heads(atlas, before + after), *after]
     return section("Singular points", heads, rows, SHOWN)
 
 
@@ -140,7 +144,7 @@ def _members(atlas: Atlas, point: MeetingPoint) -> str:
 
 def _diagram_points(atlas: Atlas, diagram: Diagram, kind: Kind) -> str:
     """What happens along the forms, of one kind, with the columns of that."""
-    heads = {"unknowns": _heads(atlas)}
+    heads = {"unknowns": _heads(atlas, ("name", *kind.columns, "form"))}
     rows = []
     for point in diagram.points:
         if point.kind is not kind:
@@ -189,7 +193,9 @@ def _stretches(atlas: Atlas, diagram: Diagram) -> str:
                 str(stretch.unstable),
             )
         )
-    heads = ("form", "arclength", diagram.parameter, "stability", "unstable")
+    before, after = ("form", "arclength"), ("stability", "unstable")
+    named = distinct_heads([diagram.parameter], before + after)
+    heads = (*before, *named, *after)
     return section("Stability", heads, rows, SHOWN)
 
 
@@ -198,10 +204,11 @@ def _near_misses(atlas: Atlas) -> str:
     for miss in sorted(atlas.near_misses, key=lambda miss: miss.value):
         row = [*_numbers(miss.u), f"{miss.value:.6g}", f"{miss.error:.0e}"]
         rows.append([*row, atlas.forms[miss.form].name])
-    heads = [*_heads(atlas), "singular value", "error", "form"]
+    own = ("singular value", "error", "form")
+    heads = [*_heads(atlas, own), *own]
     return section("Near misses (no bifurcation)", heads, rows, SHOWN)
 
 
 def _isolated(atlas: Atlas) -> str:
     rows = [_numbers(point) for point in atlas.rigid]
-    return section("Isolated solutions", _heads(atlas), rows, SHOWN)
+    return section("Isolated solutions", _heads(atlas, ()), rows, SHOWN)

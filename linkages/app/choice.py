@@ -249,7 +249,7 @@ def _driven(mechanism: Mechanism, driver: str) -> Inputs:
             f"--drive {driver}: so that it drives all, also held where they are in the "
             f"reference configuration: {names}",
         )
-    return Inputs(mechanism.with_locks(held), notes)
+    return Inputs(replace(mechanism.with_locks(held), driver=driver), notes)
 
 
 def read_kinks(texts: Sequence[str], option: str = "--lock") -> dict[str, float]:

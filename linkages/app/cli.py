@@ -19,7 +19,7 @@ import click
 from bifurc.errors import BifurcError
 from linkages.app import commands
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
-from linkages.app.output import library_messages
+from linkages.app.output import library_messages, saying_progress
 
 # each in a module of its own
 COMMANDS = [
@@ -78,7 +78,7 @@ class Commands(click.Group):
     def invoke(self, ctx: click.Context) -> object:
         """Run the command."""
         try:
-            with library_messages():
+            with library_messages(), saying_progress():
                 return super().invoke(ctx)
         except BrokenPipeError:  # nobody reads on: click ends without a word
             raise

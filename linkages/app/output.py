@@ -42,12 +42,6 @@ def say_json(document: Mapping[str, object] | Sequence[object]) -> None:
     say(json.dumps(document, allow_nan=False))
 
 
-def say_aside(text: str) -> None:
-    """Print what is no part of an answer, if anything, on standard error."""
-    if text:
-        click.echo(text, err=True)
-
-
 def _discard_standard_output() -> None:
     """Lead standard output to nowhere: what is left in its buffer would fail again when
     the program ends."""
@@ -139,17 +133,15 @@ LIBRARIES = ("bifurc", "linkages")
 
 
 class StatusLine:
-    """What a search does and has found so far, on standard error: a line on a terminal
-    that appears after a second and is wiped at the end of its block, and a new line
-    every `EVERY` seconds where standard error goes elsewhere."""
+    """What a search does and has found so far: on a terminal a line on standard error
+    that appears after a second and is wiped at the end of its block, elsewhere what
+    `saying_progress` says."""
 
-    def __init__(self, patience: float = 1.0, every: float = EVERY):
+    def __init__(self, patience: float = 1.0):
         self._start = time.monotonic()
         self._patience = patience
-        self._every = every
         self._width = 0
         self._found = "nothing"
-        self._is_over = threading.Event()
 
     def __call__(self, what: str, count: int) -> None:
         """Show progress: the `progress` callback of `bifurc.search.explore.explore`."""
@@ -157,28 +149,56 @@ class StatusLine:
         seconds = time.monotonic() - self._start
         if seconds <= self._patience or not sys.stderr.isatty():
             return
-        text = self._text()
+        text = self.text()
         click.echo("\r" + text.ljust(self._width), nl=False, err=True)
         self._width = len(text)
 
-    def _text(self) -> str:
+    def text(self) -> str:
+        """What was found so far."""
         seconds = time.monotonic() - self._start
         return f"exploring, {seconds:.0f} s: {self._found}"
 
-    def _say_again(self) -> None:
-        while not self._is_over.wait(self._every):
-            click.echo(self._text(), err=True)
-
     def __enter__(self) -> StatusLine:
-        if not sys.stderr.isatty():
-            threading.Thread(target=self._say_again, daemon=True).start()
+        SEARCHES.append(self)
         return self
 
     def __exit__(self, *error: object) -> None:
-        self._is_over.set()
+        SEARCHES.remove(self)
         if self._width:
             click.echo("\r" + " " * self._width + "\r", nl=False, err=True)
             self._width = 0
+
+
+SEARCHES: list[StatusLine] = []  # that run, the innermost last
+
+
+@contextmanager
+def saying_progress() -> Iterator[None]:
+    """A block in which standard error, where it is no terminal, gets a line every `EVERY`
+    seconds: what the search has found that runs, or else for how long there is work."""
+    start = time.monotonic()
+    is_over = threading.Event()
+
+    def say_again() -> None:
+        while not is_over.wait(EVERY):
+            working = f"working, {time.monotonic() - start:.0f} s"
+            click.echo(SEARCHES[-1].text() if SEARCHES else working, err=True)
+
+    if not sys.stderr.isatty():
+        threading.Thread(target=say_again, daemon=True).start()
+    try:
+        yield
+    finally:
+        is_over.set()
+
+
+MOST_STEPS = 3  # that are named after an answer
+
+
+def say_next(*steps: str) -> None:
+    """Say on standard error what can be done next, the first commands of ``steps``."""
+    for step in steps[:MOST_STEPS]:
+        click.echo(f"next: {step}", err=True)
 
 
 class EchoHandler(logging.Handler):

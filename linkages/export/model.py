@@ -15,6 +15,7 @@ import numpy as np
 from bifurc.atlas import Atlas, Form
 from bifurc.problem import Problem
 from bifurc.routes.route import Route, spread_route
+from bifurc.tables import distinct_heads
 from linkages.links.parts import Parts, Symbol
 from linkages.readout.poses import quaternions_without_jumps
 
@@ -71,7 +72,8 @@ def make_angle_table(
 ) -> str:
     """A line for every configuration of a motion, with all digits: its arclength (k,)
     and the joint variables (k, v), below a line of their ``names``."""
-    lines = [",".join(_cell(name) for name in ("arclength", *names))]
+    heads = ("arclength", *distinct_heads(names, ("arclength",)))
+    lines = [",".join(map(_cell, heads))]
     for row in np.column_stack([arclength, variables]):
         lines.append(",".join(repr(float(value)) for value in row))
     return "\n".join(lines) + "\n"

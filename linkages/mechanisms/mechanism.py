@@ -116,8 +116,9 @@ class Mechanism:
     origin of the points; nothing that is computed hangs on it. ``rounding``: how far off
     they may be, where that is more than they are as doubles. ``panels`` are drawn of
     bodies that are sheets, with ``creases`` that are assigned. What hangs on joints in no
-    closed loop is held where it is given, but ``with_flaps``. Bodies that do not hang
-    together are mechanisms of their own, its `parts`.
+    closed loop is held where it is given, but ``with_flaps``. ``driver`` is the joint
+    variable whose dead points matter, the first one that is free if none is named. Bodies
+    that do not hang together are mechanisms of their own, its `parts`.
     Raises `GeometryError` where a joint is named twice, or joints are coupled in a
     circle.
     """
@@ -130,6 +131,7 @@ class Mechanism:
     panels: tuple[Panel, ...] = field(default=(), compare=False)
     with_flaps: bool = False
     creases: tuple[Crease, ...] = field(default=(), compare=False)
+    driver: str = field(default="", compare=False)
     # what to do where a single loop is asked for, unless there is nothing to do
     way_to_loop: ClassVar[str] = ""
 

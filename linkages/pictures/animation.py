@@ -3,8 +3,10 @@ writers of matplotlib."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
+import matplotlib
 import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.figure import Figure
@@ -33,20 +35,34 @@ def movie_writer(path: Path) -> AbstractMovieWriter:
     if path.suffix.lower() == GIF:
         return PillowWriter(fps=RATE)
     if not FFMpegWriter.isAvailable():
-        raise NoWriterError(f"{path.name}: MP4 is written by ffmpeg, which is not here")
+        matplotlib.rcParams["animation.ffmpeg_path"] = _installed_ffmpeg(path)
     return FFMpegWriter(fps=RATE)
 
 
+def _installed_ffmpeg(path: Path) -> str:
+    """The program that comes with the package imageio-ffmpeg; raises `NoWriterError`."""
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe
+
+        return str(get_ffmpeg_exe())
+    except (ImportError, RuntimeError):
+        raise NoWriterError(
+            f"{path.name}: MP4 is written by ffmpeg, which is not here; install it, or "
+            "pip install 'bifurc[movies]'"
+        ) from None
+
+
 def write_animation(
-    atlas: Atlas, motion: Motion, size: tuple[float, float], path: Path
+    atlas: Atlas, motions: Sequence[Motion], size: tuple[float, float], path: Path
 ) -> None:
-    """Write the linkage of an atlas along a motion, one picture for each of its
-    configurations, of a size in inches; raises `NoWriterError` and `OSError`.
+    """Write the linkage of an atlas along motions, one after another, one picture for
+    each of their configurations, of a size in inches; raises `NoWriterError` and
+    `OSError`.
 
     It is seen from where the configuration is clear whose joints are farthest from one
-    line, and all of the motion is within the picture.
+    line, and all of the motions are within the picture.
     """
-    points = motion.configurations
+    points = np.concatenate([motion.configurations for motion in motions])
     parts = subject_at(atlas).parts
     first = points[clearest(parts.breadths(points))]
     painter = Painter(parts, first, points)

@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from bifurc.figures.style import Properties
 from linkages.families.tori import companion, torus_link
-from linkages.source_figures.assembly import UP, turn
+from linkages.source_figures.assembly import UP, turn, unit
 from linkages.source_figures.drawing import (
     LARGE,
     draw_arrow,
@@ -27,9 +27,13 @@ from linkages.source_figures.table import SourceFigure
 LOOK = look_along(np.array([1.0, -0.8, 0.75]))
 TURN = np.linspace(0.0, 2 * np.pi, 181)
 CIRCLES = 36  # of which the surface is drawn
+PLACE = -0.7  # sigma of the circles by which a single point is shown, rad
 POINT_ANGLE = 0.9  # of S on its circle, rad
 FIRST_COLOR = "#0072B2"
 SECOND_COLOR = "#D55E00"
+SIDE_COLOR = "0.35"  # of directions between which angles are measured
+SHORT = 0.5  # length of such a direction
+ARC, ARC_POINTS = 0.32, 25  # radius of the arc of an angle, and points of it
 
 
 @dataclass(frozen=True)
@@ -49,6 +53,10 @@ class Torus:
     def axis(self, sigma: float) -> np.ndarray:
         """The axis (3,) of the circle there, a unit vector."""
         return turn(self._tilt.apply(UP), UP, sigma)
+
+    def axis_turned_by_chi(self, sigma: float) -> np.ndarray:
+        """Where the axis (3,) of the circle is before it is turned by ``theta``."""
+        return turn(Rotation.from_euler("X", self.chi).apply(UP), UP, sigma)
 
     def points(self, sigma: float, phi: np.ndarray) -> np.ndarray:
         """Points (k, 3) of the circle at angles (k,), rad."""
@@ -108,6 +116,24 @@ class TorusDrawing:
         self._draw_vector(centre, torus.axis(sigma), f"Z{number}1")
         self._draw_point(centre, f"R{number}")
 
+    def draw_measures(self, torus: Torus, sigma: float, phi: float) -> None:
+        """The names of the lengths and angles of an arm, each angle as an arc between
+        two directions."""
+        centre, point = torus.centre(sigma), torus.point(sigma, phi)
+        along = np.array([1.0, 0.0, 0.0])
+        start = torus.point(sigma, 0.0) - centre
+        tilted = torus.axis_turned_by_chi(sigma)
+        self._draw_vector(np.zeros(3), along, "X")
+        for direction in (start, SHORT * UP, SHORT * tilted):
+            ends = np.stack([centre, centre + direction])
+            self._draw_line(ends, color=SIDE_COLOR, linestyle="--", linewidth=0.9)
+        self._draw_angle(np.zeros(3), along, unit(centre), "σ")
+        self._draw_angle(centre, unit(start), unit(point - centre), "φ")
+        self._draw_angle(centre, UP, tilted, "χ")
+        self._draw_angle(centre, tilted, torus.axis(sigma), "θ")
+        self.spots["r"] = 0.5 * centre @ LOOK.plane
+        self.spots["s"] = 0.5 * (centre + point) @ LOOK.plane
+
     def finish(self, point: np.ndarray, title: str) -> None:
         """Draw the axis, Q on it and the ``point`` S, and write names and title."""
         self._draw_vector(np.zeros(3), UP, "Z")
@@ -127,6 +153,17 @@ class TorusDrawing:
         draw_arrow(self.axes, spots, {"color": "0.35", "linewidth": 1.0}, zorder=5)
         self.lines.append(spots)
         self.spots[name] = spots[1]
+
+    def _draw_angle(
+        self, centre: np.ndarray, start: np.ndarray, end: np.ndarray, name: str
+    ) -> None:
+        """An arc about a point between two unit vectors (3,), named at its middle."""
+        angle = np.arctan2(np.linalg.norm(np.cross(start, end)), start @ end)
+        turns = angle * np.linspace(0.0, 1.0, ARC_POINTS)[:, None]
+        arc = (np.sin(angle - turns) * start + np.sin(turns) * end) / np.sin(angle)
+        points = centre + ARC * arc
+        self._draw_line(points, color="black", linewidth=0.9, zorder=5)
+        self.spots[name] = points[ARC_POINTS // 2] @ LOOK.plane
 
     def _draw_point(self, point: np.ndarray, name: str) -> None:
         """A point (3,) with its name."""
@@ -151,8 +188,9 @@ def _point(torus: Torus) -> Figure:
     panels = zip(figure.subplots(1, 2), arms, strict=True)
     for number, (axes, (one, color, title)) in enumerate(panels, start=1):
         drawing = TorusDrawing(axes, one)
-        drawing.draw_arm(one, 0.5, POINT_ANGLE, number, color)
-        drawing.finish(one.point(0.5, POINT_ANGLE), title)
+        drawing.draw_arm(one, PLACE, POINT_ANGLE, number, color)
+        drawing.draw_measures(one, PLACE, POINT_ANGLE)
+        drawing.finish(one.point(PLACE, POINT_ANGLE), title)
     return figure
 
 

@@ -42,10 +42,15 @@ AXIS_COLOR = "0.5"
 DASHES = {Stroke.SHORT: "-", Stroke.LONG: (0, (6, 2))}
 ROUND = Scale(DEGREES, 180.0, "")
 PLAIN = Scale(1.0, np.inf, "")
+# where the mechanism is flat again, by section 4 of the paper, rad, and some rounding
+LAST_POSITION = np.radians(120) + 1e-9
 RING = [0, 1, 2, 3, 4, 5, 0]
 OBLIQUE = look_along(np.array([1.0, -0.55, 0.42]))
 ABOVE = look_along(np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0]))
+FIRST_PLACE = np.array([2 / np.sqrt(3), 0.0, 0.0])  # of O1, over a
+SHORTEST = 0.05  # distance that gets arrows, over a
 Ordinate: TypeAlias = Callable[[np.ndarray, np.ndarray, float], np.ndarray]
+Mark: TypeAlias = Callable[[Axes, np.ndarray, Look], None]
 
 
 def draw(source: SourceFigure) -> Figure:
@@ -116,7 +121,7 @@ def _distances(content: Content) -> Figure:
     left, right = figure.subplots(1, 2)
     for index, length in enumerate(content["lengths"]):
         _draw_distance(right, left, degrees, length, index, f"a = {length}")
-    left.set(xlabel="θ (deg)", ylabel="H", xlim=(0, 240), ylim=(0, None))
+    left.set(xlabel="θ (deg)", ylabel="H", xlim=(0, 120), ylim=(0, None))
     left.xaxis.set_major_locator(MultipleLocator(30))
     left.grid(True)
     _finish_slides(right)
@@ -148,11 +153,13 @@ def _draw_distance(
     index: int,
     label: str,
 ) -> None:
-    """H along both strokes, and where thin links touch on the long one."""
+    """H along the strokes that end where the paper says that they do."""
     alpha = np.radians(degrees)
     color = form_style(index).color
     for stroke in Stroke:
         theta, phi = stroke_angles(alpha, stroke, COUNT)
+        if theta[-1] > LAST_POSITION:
+            continue
         height = plane_distance(theta, phi, alpha, length)
         charts = [(by_slide, slide(theta, length))]
         if by_angle is not None:
@@ -162,12 +169,8 @@ def _draw_distance(
             "linestyle": DASHES[stroke],
             "linewidth": 1.6,
         }
-        touches = np.flatnonzero(phi >= np.pi)
         for axes, x in charts:
             axes.plot(x, height, label=f"{label}, {stroke} stroke", **style)
-            if len(touches) and phi[-1] > np.pi:
-                first = touches[0]
-                axes.plot(x[first], height[first], "x", color=color, markersize=7)
 
 
 # --- drawings -------------------------------------------------------------------------
@@ -198,8 +201,11 @@ def _bodies(
     return placed, directions, upright(meetings, centres)
 
 
-def _draw_mechanism(axes: Axes, centres: np.ndarray, look: Look = OBLIQUE) -> None:
-    """The six links and the joints with their names."""
+def _draw_mechanism(
+    axes: Axes, centres: np.ndarray, look: Look = OBLIQUE, position: str = ""
+) -> None:
+    """The six links and the joints with their names, with the number of the position as
+    superscript."""
     spots = centres @ look.plane
     axes.plot(*spots[RING].T, color="black", linewidth=2.2, zorder=3)
     middle = spots.mean(axis=0)
@@ -209,7 +215,8 @@ def _draw_mechanism(axes: Axes, centres: np.ndarray, look: Look = OBLIQUE) -> No
         away = spot - middle
         away = away / max(float(np.linalg.norm(away)), 1e-9)
         style: Properties = {"color": color, "zorder": 5, "path_effects": HALO}
-        write_beside(axes, spot, f"O{chr(0x2080 + number)}", 13 * away, **style)
+        name = rf"$\mathregular{{O_{number}^{{{position}}}}}$"
+        write_beside(axes, spot, name, 13 * away, **style)
     axes.set_aspect("equal")
     axes.margins(0.12)
     axes.set_axis_off()
@@ -259,19 +266,23 @@ def _disposition(content: Content) -> Figure:
     _draw_mechanism(axes, centres)
     top = centres[1::2].mean(axis=0)
     below = np.array([0.0, 0.0, -0.08])
-    first_place = np.array([2 / np.sqrt(3), 0.0, 0.0])
-    _draw_measure(axes, np.zeros(3), top, "H", (7, 0))
-    _draw_measure(axes, first_place + below, centres[0] + below, "b", (0, -9))
+    _draw_measure(axes, np.stack([np.zeros(3), top]), "H", (7, 0))
+    slide_ends = np.stack([FIRST_PLACE, centres[0]]) + below
+    _draw_measure(axes, slide_ends, "b", (-11, -9))
     return figure
 
 
 def _draw_measure(
-    axes: Axes, start: np.ndarray, end: np.ndarray, name: str, shift: tuple[int, int]
+    axes: Axes,
+    ends: np.ndarray,
+    name: str,
+    shift: tuple[int, int],
+    look: Look = OBLIQUE,
 ) -> None:
-    """A distance of two points (3,), with its name."""
-    ends = np.stack([start, end]) @ OBLIQUE.plane
-    draw_arrow(axes, ends, {"arrowstyle": "<->", "shrinkA": 0, "shrinkB": 0})
-    _name(axes, ends.mean(axis=0), name, shift)
+    """A distance of two points (2, 3), with its name."""
+    spots = ends @ look.plane
+    draw_arrow(axes, spots, {"arrowstyle": "<->", "shrinkA": 0, "shrinkB": 0})
+    _name(axes, spots.mean(axis=0), name, shift)
 
 
 def _name(axes: Axes, spot: np.ndarray, name: str, shift: tuple[int, int]) -> None:
@@ -290,18 +301,46 @@ def _draw_slides(axes: Axes, plane: np.ndarray) -> None:
         axes.plot(*ends[1], "|", color=AXIS_COLOR, zorder=1)
 
 
-def _row(content: Content, look: Look) -> Figure:
-    """Several configurations."""
+def _row(content: Content, look: Look, mark: Mark) -> Figure:
+    """Several configurations, numbered from the first, with what ``mark`` adds."""
     angles = content["thetas"]
     figure = Figure(figsize=(2.75 * len(angles), 2.9), layout="constrained")
     panels = figure.subplots(1, len(angles))
-    for axes, degrees in zip(panels, angles, strict=True):
+    for number, (axes, degrees) in enumerate(zip(panels, angles, strict=True), start=1):
         centres, _, _ = _bodies(content, degrees)
         _draw_slides(axes, look.plane)
-        _draw_mechanism(axes, centres, look)
+        _draw_mechanism(axes, centres, look, str(number))
+        mark(axes, centres, look)
         axes.set_title(f"θ = {degrees}°", fontsize=9)
         axes.set(xlim=(-1.55, 1.55), ylim=(-1.4, 1.4))
     return figure
+
+
+def _mark_slide(axes: Axes, centres: np.ndarray, look: Look) -> None:
+    """b, from the first place of O1 to where it is."""
+    if np.linalg.norm(FIRST_PLACE - centres[0]) > SHORTEST:
+        below = np.array([0.0, -0.3, 0.0])
+        ends = np.stack([FIRST_PLACE, centres[0]]) + below
+        _draw_measure(axes, ends, "b", (-3, -12), look)
+
+
+def _mark_height(axes: Axes, centres: np.ndarray, look: Look) -> None:
+    """H = OT, from the plane of the odd joints to that of the even ones, and M1 in the
+    middle of O1 and O5."""
+    top = centres[1::2].mean(axis=0)
+    if np.linalg.norm(top) < SHORTEST:
+        return
+    _draw_measure(axes, np.stack([np.zeros(3), top]), "H", (4, -3), look)
+    middle = 0.5 * (centres[0] + centres[4])
+    points = {
+        "O": (np.zeros(3), (-9, -11)),
+        "T": (top, (-3, 5)),
+        "M₁": (middle, (5, -4)),
+    }
+    for name, (point, shift) in points.items():
+        spot = point @ look.plane
+        axes.plot(*spot, ".", color="black", zorder=4)
+        _name(axes, spot, name, shift)
 
 
 CHARTS: dict[str, Callable[[Content], Figure]] = {
@@ -310,8 +349,8 @@ CHARTS: dict[str, Callable[[Content], Figure]] = {
     "planes": _planes,
     "axes": _axes,
     "disposition": _disposition,
-    "above": partial(_row, look=ABOVE),
-    "positions": partial(_row, look=OBLIQUE),
+    "above": partial(_row, look=ABOVE, mark=_mark_slide),
+    "positions": partial(_row, look=OBLIQUE, mark=_mark_height),
     "distances": _distances,
     "distances_by_twist": _distances_by_twist,
 }

@@ -89,8 +89,8 @@ def test_every_part_of_an_atlas_is_one_short_line(atlas):
         assert "\n" not in repr(part) and "array" not in repr(part)
     form, point, event = atlas.forms[0], atlas.points[0], atlas.dead_points[0]
     assert repr(form.name) in repr(form)
-    assert "bifurcation, rank 0, forms" in repr(point)
-    assert f"dead point of unknown {event.index + 1} on form {event.form + 1}" in repr(
+    assert "bifurcation, rank 0, forms[" in repr(point)
+    assert f"dead point of unknown {event.index + 1} on forms[{event.form}]" in repr(
         event
     )
     assert "near miss 0.25" in repr(replace(event, value=0.25, index=-1))

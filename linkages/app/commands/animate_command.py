@@ -21,12 +21,15 @@ FEWEST, MOST = 2, 5000
     type=options.FILE,
     required=True,
     metavar="FILE",
-    help="The moving picture: .gif, or .mp4 where ffmpeg is installed.",
+    help="The moving picture: .gif, or .mp4 by ffmpeg, installed or of the extra movies.",
 )
 @click.option(
     "--form",
+    "forms",
+    multiple=True,
     metavar="FORM",
-    help="A form, by its name or its number in the summary.  [default: the first]",
+    help="A form, by its name or its number in the summary; of several one is shown "
+    "after another.  [default: the first]",
 )
 @click.option(
     "--route",
@@ -35,7 +38,7 @@ FEWEST, MOST = 2, 5000
     help="The shortest route between two forms, in place of a form.",
 )
 @options.number_option(
-    "--count", click.IntRange(FEWEST, MOST), 100, "Pictures, 25 a second."
+    "--count", click.IntRange(FEWEST, MOST), 100, "Pictures of each form, 25 a second."
 )
 @click.option(
     "--size",
@@ -49,7 +52,7 @@ FEWEST, MOST = 2, 5000
 def animate_command(
     source: str,
     out: Path,
-    form: str | None,
+    forms: tuple[str, ...],
     route: tuple[str, str] | None,
     count: int,
     size: tuple[float, float],
@@ -61,7 +64,7 @@ def animate_command(
     \b
     Examples:
       bifurc animate bennett --out bennett.gif
-      bifurc animate altmann --form 2 --out altmann.gif --size 3.4x3.4
+      bifurc animate four-bar --form 1 --form 2 --out both.gif --size 3.4x3.4
       bifurc animate out/atlas.nc --route "Form I" "Form II" --out route.mp4
     """
     from bifurc.files.atomic import replace_file
@@ -72,17 +75,18 @@ def animate_command(
     from linkages.app.texts.form_names import require_forms
     from linkages.pictures.animation import movie_writer, write_animation
 
-    if form is not None and route is not None:
+    if forms and route is not None:
         raise CommandError("--form: it does not go with --route")
     require_ending("--out", out, *ENDINGS)
     require_writable(out)
     movie_writer(out)  # an error before anything is computed
     atlas = atlas_of(source, choice)
     require_forms(atlas)
-    forms = () if form is None else (form,)
     routes = () if route is None else (route,)
-    motion = choose_motions(atlas, forms, routes, count)[0]
+    motions = choose_motions(atlas, forms, routes, count)
+    shown = motions if forms else motions[:1]
     with writing_to(out):
-        replace_file(out, lambda part: write_animation(atlas, motion, size, part))
-    click.echo(f"wrote {out}: {motion.name}", err=True)
+        replace_file(out, lambda part: write_animation(atlas, shown, size, part))
+    names = ", ".join(motion.name for motion in shown)
+    click.echo(f"wrote {out}: {names}", err=True)
     exit_by(judge(atlas))

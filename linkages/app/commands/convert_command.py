@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,13 +10,20 @@ import click
 
 from linkages.app.exit_codes import exit_code_table
 from linkages.app.options import FILE, HoldOptions, hold_options
-from linkages.app.output import require_ending, require_writable, say, write_content
+from linkages.app.output import (
+    require_ending,
+    require_writable,
+    say,
+    say_next,
+    write_content,
+)
 from linkages.formats.table import READ_WORDS, WRITTEN, WRITTEN_WORDS, mechanism_text
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
 TARGET = "OUT"
+AFTER = ("map", "view")  # what can be done with the file that is written
 HELP = f"""Write a mechanism to a file of another format.
 
 \b
@@ -51,6 +59,7 @@ def convert_command(source: str, out: Path, hold: HoldOptions) -> None:
             f"Coordinates of points are known to {mechanism.rounding:.2g} only, which "
             f"{out} does not say: a map of it is surer than it should be."
         )
+    say_next(*(f"bifurc {command} {shlex.quote(str(out))}" for command in AFTER))
 
 
 def _mechanism(source: str, out: Path, hold: HoldOptions) -> Mechanism:

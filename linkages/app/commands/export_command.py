@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -92,8 +93,9 @@ def export_command(
       bifurc export four-bar --to four_bar.dxf
     """
     from linkages.app.answer.verdict import exit_by, judge
-    from linkages.app.output import require_ending, require_writable
+    from linkages.app.output import require_ending, require_writable, say_next
     from linkages.app.texts.form_names import require_forms
+    from linkages.app.texts.next_steps import chosen_linkage
 
     require_ending(TO, out, *MOTIONS, *PARTS, *MECHANISMS, *PICTURES)
     check_options(out)
@@ -110,6 +112,11 @@ def export_command(
         export_picture(atlas, forms, out)
     else:
         export_motions(atlas, forms, routes, count, out)
+    if is_one_of(out, MECHANISMS):
+        say_next(f"bifurc map {shlex.quote(str(out))}")
+    else:
+        chosen = chosen_linkage(source, choice.parameters, choice.hold)
+        say_next(f"bifurc view {chosen}")
     exit_by(judge(atlas))
 
 

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from linkages.app import options
 from linkages.app.exit_codes import CommandError, exit_code_table
+
+if TYPE_CHECKING:
+    from linkages.parameters.members import Members
 
 
 @click.command("follow", epilog=exit_code_table())
@@ -69,5 +73,19 @@ def follow_command(
         write_followed(members, followed, text, document, out)
     if as_json:
         say_json(document)
-    else:
-        say(text)
+        return
+    say(text)
+    say_steps(members, linkage, parameters, out is not None)
+
+
+def say_steps(
+    members: Members, linkage: str, parameters: tuple[str, ...], has_files: bool
+) -> None:
+    """Say what can be done next with the family."""
+    from linkages.app.output import say_next
+    from linkages.app.texts.next_steps import steps_with_members
+
+    if len(members.free) == 1:
+        say_next(steps_with_members("special", linkage, parameters))
+    elif not has_files:
+        say_next(steps_with_members("follow", linkage, parameters) + " --out DIR")

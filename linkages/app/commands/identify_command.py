@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,8 @@ from linkages.app.exit_codes import ExitCode, exit_code_table
 
 if TYPE_CHECKING:
     from linkages.identification.corrections import Correction
+    from linkages.identification.identify import Identification
+    from linkages.loop import Loop
 
 LARGEST_TOLERANCE = 1  # as large as the linkage itself
 
@@ -56,21 +59,18 @@ def identify_command(
       bifurc identify four-bennett-network --lock 2=40 --lock 6=-75 --without-centre
     """
     from linkages.app.choice import choose_held
-    from linkages.app.nearest import exact_linkage
     from linkages.app.output import (
         StatusLine,
         require_ending,
         require_writable,
         say,
         say_json,
-        say_written,
-        write_content,
     )
-    from linkages.app.reports.corrections import exact_toml
     from linkages.app.reports.identify import (
         describe_identification,
         make_identification_document,
     )
+    from linkages.app.texts.next_steps import chosen_linkage
     from linkages.identification.corrections import corrections_of
     from linkages.identification.identify import identify
     from linkages.subject import as_subject
@@ -89,8 +89,36 @@ def identify_command(
     else:
         say(describe_identification(identification, corrections))
     if out is not None:
-        correction = exact_linkage("--write", identification, corrections)
-        write_content(out, exact_toml(loop, correction), "--write")
-        say_written([out], out.parent)
-    elif not (identification.matches or identification.locked):
+        write_exact(out, loop, identification, corrections)
+    if not as_json:
+        chosen = chosen_linkage(linkage, parameters, hold)
+        say_steps(chosen, identification, bool(corrections), out)
+    if out is None and not (identification.matches or identification.locked):
         click.get_current_context().exit(ExitCode.NOT_IN_CATALOGUE)
+
+
+def write_exact(
+    out: Path,
+    loop: Loop,
+    identification: Identification,
+    corrections: Sequence[Correction],
+) -> None:
+    """Write the exact table of a loop."""
+    from linkages.app.nearest import exact_linkage
+    from linkages.app.output import say_written, write_content
+    from linkages.app.reports.corrections import exact_toml
+
+    correction = exact_linkage("--write", identification, corrections)
+    write_content(out, exact_toml(loop, correction), "--write")
+    say_written([out], out.parent)
+
+
+def say_steps(
+    chosen: str, identification: Identification, is_corrected: bool, out: Path | None
+) -> None:
+    """Say what can be done next with a table."""
+    from linkages.app.output import say_next
+    from linkages.app.texts.next_steps import steps_after_identifying
+
+    names = identification.names
+    say_next(*steps_after_identifying(chosen, names, is_corrected, out))

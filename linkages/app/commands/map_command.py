@@ -131,7 +131,7 @@ def map_command(
         confirm(atlases, linkage, choice.parameters, digits)
     write_all_pictures(atlases, folders, paths, over, figures)
     has_steps = not as_json and len(atlases) == 1
-    steps = ""
+    steps: list[str] = []
     if has_steps:
         steps = steps_after(atlases[0], linkage, choice, nearest, out)
     end(atlases, as_json, steps)
@@ -215,7 +215,7 @@ def steps_after(
     choice: options.AtlasOptions,
     nearest: bool,
     out: Path | None,
-) -> str:
+) -> list[str]:
     """What can be done next with a linkage."""
     from linkages.app.texts.next_steps import next_steps, next_steps_of_nearest
 
@@ -224,14 +224,14 @@ def steps_after(
     return next_steps(atlas, linkage, choice, out is not None)
 
 
-def end(atlases: Sequence[Atlas], as_json: bool, steps: str) -> None:
+def end(atlases: Sequence[Atlas], as_json: bool, steps: Sequence[str]) -> None:
     """End the command with the largest exit code of all verdicts, after what can be done
     next, ``steps``, or the verdicts where a document does not say them."""
     from linkages.app.answer.verdict import judge
-    from linkages.app.output import say_aside
+    from linkages.app.output import say_next
 
     verdicts = [judge(atlas) for atlas in atlases]
-    say_aside(steps)
+    say_next(*steps)
     for verdict in verdicts:
         if as_json and verdict.code is not ExitCode.DONE:
             click.echo(verdict.sentence, err=True)

@@ -113,14 +113,23 @@ def route_command(
     if not atlas.forms and not atlas.surfaces:
         verdict = judge(atlas)
         raise CommandError(verdict.sentence, verdict.code)
-    start_name = atlas.full_name(start)
-    goal_name = atlas.full_name(goal)
+    ends = atlas.full_name(start), atlas.full_name(goal)
     wishes = Wishes(avoid, through, Cost(cost))
-    routes = routes_between(atlas, start_name, goal_name, best, wishes)
+    routes = routes_between(atlas, *ends, best, wishes)
     if as_json:
         say_json(document_of_routes(routes))
-    else:
-        say(describe_routes(atlas, routes, start_name, goal_name))
+        return
+    say(describe_routes(atlas, routes, *ends))
+    say_steps(source, choice, start, goal)
+
+
+def say_steps(source: str, choice: options.AtlasOptions, start: str, goal: str) -> None:
+    """Say what can be done next with the way between two forms."""
+    from linkages.app.output import say_next
+    from linkages.app.texts.next_steps import chosen_linkage, steps_after_a_route
+
+    chosen = chosen_linkage(source, choice.parameters, choice.hold)
+    say_next(*steps_after_a_route(chosen, start, goal))
 
 
 def require_defaults(*names: str) -> None:

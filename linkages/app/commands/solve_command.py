@@ -77,12 +77,11 @@ def solve_command(
       bifurc solve reaction.toml --param B=12 --json
     """
     from bifurc.systems.document import make_document
-    from bifurc.systems.equation_file import read_equations
     from bifurc.systems.summary import make_summary
     from bifurc.systems.verdict import verdict_of
     from linkages.app import output
 
-    system = read_equations(equations, _values(parameters))
+    system = _system_of(equations, _values(parameters))
     _check_axes(axes, system)
     output.require_out(out)
     output.require_folder(out)
@@ -109,7 +108,9 @@ def solve_command(
         paths += _write_figures(atlas, out, axes, figures)
         output.say_written(paths, out)
     code = exit_code_of(atlas)
-    if as_json and code is not ExitCode.DONE:
+    if not as_json:
+        say_steps(atlas, equations, parameters, out)
+    elif code is not ExitCode.DONE:
         click.echo(verdict_of(atlas), err=True)
     click.get_current_context().exit(code)
 
@@ -123,6 +124,42 @@ def _write_figures(
 
     with writing_to(out):
         return write_figures(atlas, out, FigureAxes(diagram=axes), figures)
+
+
+def say_steps(
+    atlas: Atlas, file: str, parameters: tuple[str, ...], out: Path | None
+) -> None:
+    """Say what can be done next with the equations."""
+    from linkages.app.output import say_next
+    from linkages.app.texts.next_steps import steps_after_solving
+
+    say_next(*steps_after_solving(atlas, file, parameters, out is not None))
+
+
+def _system_of(file: str, values: dict[str, float]) -> EquationSystem:
+    """The system of a file; raises `EquationFileError`, and `CommandError` for what is a
+    linkage."""
+    from bifurc.systems.equation_file import EquationFileError, read_equations
+
+    try:
+        return read_equations(file, values)
+    except EquationFileError:
+        if _is_linkage(file):
+            message = f"{file}: it is a linkage; `bifurc map {file}` maps it"
+            raise CommandError(message) from None
+        raise
+
+
+def _is_linkage(source: str) -> bool:
+    """Whether something is the name of a linkage, or a file that holds one."""
+    from bifurc.errors import BifurcError
+    from linkages.linkage import load
+
+    try:
+        load(source)
+    except BifurcError:
+        return False
+    return True
 
 
 def explore_system(system: EquationSystem, search: options.SearchOptions) -> Atlas:

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import click
 
 from linkages.app import options
 from linkages.app.exit_codes import ExitCode, exit_code_table
+
+if TYPE_CHECKING:
+    from linkages.parameters.members import Members
+    from linkages.parameters.special import SpecialValues
 
 
 @click.command("special", epilog=exit_code_table())
@@ -31,7 +36,7 @@ def special_command(
       bifurc special spherical-four-bar --param alpha12=20:160
     """
     from bifurc.limits import Deadline
-    from linkages.app.output import say, say_json
+    from linkages.app.output import say, say_json, say_next
     from linkages.app.parameter_ranges import choose_members
     from linkages.app.texts.parameters_text import changes_document, describe_changes
     from linkages.parameters.special import special_values
@@ -43,5 +48,21 @@ def special_command(
     else:
         (refusal,) = refusals.values()
         say(describe_changes(members, refusal, special))
+        say_next(*steps_after(linkage, parameters, members, special))
     if not special.is_whole and not math.isfinite(budget):
         click.get_current_context().exit(ExitCode.INTERRUPTED)
+
+
+def steps_after(
+    linkage: str, parameters: tuple[str, ...], members: Members, special: SpecialValues
+) -> list[str]:
+    """The map at the first value, and what becomes of points over the others."""
+    from linkages.app.texts.next_steps import steps_with_members
+    from linkages.app.texts.parameters_text import typed
+
+    steps = []
+    if special.changes:
+        (free,) = members.free
+        value = typed(free, special.changes[0].value)
+        steps.append(steps_with_members("map", linkage, parameters, value))
+    return [*steps, steps_with_members("follow", linkage, parameters)]

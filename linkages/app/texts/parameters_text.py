@@ -111,6 +111,11 @@ def _angles(u: np.ndarray) -> str:
     return "(" + " ".join(in_degrees(angle) for angle in centred) + ") deg"
 
 
+def typed(parameter: Parameter, value: float) -> str:
+    """A value of a parameter as it is given to a command, with all digits."""
+    return _shown(parameter, value, MOST_DIGITS).removesuffix(" deg")
+
+
 def _shown(parameter: Parameter, value: float, digits: int = 6) -> str:
     """A value of a parameter, angles in degrees."""
     if parameter.kind is ParameterKind.ANGLE:

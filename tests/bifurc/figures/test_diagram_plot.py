@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import sympy
 from matplotlib.figure import Figure
 
 import bifurc
 from bifurc.errors import ProblemError
 from bifurc.figures.diagram_plot import plot_diagram
+from bifurc.figures.plotting import plot_transition_map
+from bifurc.figures.selection import Selection
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +62,31 @@ def test_points_are_marked_where_they_are(pitchfork) -> None:
 
 def test_the_parameter_is_drawn_where_nothing_is_said(pitchfork) -> None:
     axes = plot_diagram(pitchfork).axes[0]
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("p", "|u|")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("p", "|x|")
+
+
+def test_the_norm_is_not_taken_for_the_size_of_an_unknown() -> None:
+    u, v, p = sympy.symbols("u v p")
+    problem = bifurc.SymbolicProblem([u - p, v - 2 * p], [u, v, p], [(-2, 2)] * 3)
+    atlas = bifurc.explore(problem, parameter=p, events={"one": (u, 1.0)})
+    assert atlas.diagram.parameter == "p" and len(atlas.diagram.events()) == 1
+    reach = {}
+    for request in (None, "|u|", v):
+        axes = plot_diagram(atlas, p, request).axes[0]
+        highest = max(np.max(line.get_ydata()) for line in axes.lines)
+        reach[axes.get_ylabel()] = pytest.approx(highest)
+    assert reach == {"|(u, v)|": np.sqrt(5), "|u|": 1.0, "v": 2.0}
+
+
+def test_unknowns_are_taken_by_their_symbols(pitchfork) -> None:
+    x, p, q = sympy.symbols("x p q")
+    axes = plot_diagram(pitchfork, p, x).axes[0]
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("p", "x")
+    selection = Selection(overlay={x: [0.5], p: [0.25]})
+    axes = plot_transition_map(pitchfork, joints=(p, x), selection=selection).axes[0]
+    assert (0.25, 0.5) in [tuple(line.get_xydata()[0]) for line in axes.lines]
+    with pytest.raises(ProblemError, match=r"'q' is not allowed.*unknowns x, p"):
+        plot_diagram(pitchfork, q)
 
 
 def test_an_axis_may_be_a_function(pitchfork) -> None:

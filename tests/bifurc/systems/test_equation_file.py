@@ -12,6 +12,7 @@ import pytest
 import bifurc
 from bifurc.diagrams.diagram import Stability
 from bifurc.systems.equation_file import read_equations
+from bifurc.systems.summary import make_summary
 
 REACTION = """
 name = "reaction"
@@ -288,3 +289,22 @@ def test_a_period_that_is_none_of_the_equations_is_refused(tmp_path) -> None:
     )
     with pytest.raises(bifurc.EquationFileError, match=r"period of a: 6\.28"):
         read_equations(path)
+
+
+def test_columns_of_unknowns_are_told_apart_from_the_programs_own(tmp_path) -> None:
+    path = tmp_path / "names.toml"
+    path.write_text(
+        'parameter = "error"\nequations = ["kind^3 = error*kind"]\n'
+        "[unknowns]\nkind = [-2, 2]\nerror = [-2, 2]\n"
+        '[events]\none = "error = 1"\n'
+    )
+    text = make_summary(read_equations(path).explore())
+    heads = [
+        line.split("  ") for line in text.splitlines() if line.startswith("  name")
+    ]
+    columns = [[head.strip() for head in row if head.strip()] for row in heads]
+    assert ["name", "kind", "kind (unknown)", "error (unknown)", "error"] in [
+        row[:5] for row in columns
+    ]
+    assert ["name", "event", "kind", "error", "form"] in columns
+    assert all(len(set(row)) == len(row) for row in columns)

@@ -1,5 +1,8 @@
 """The command `bifurc animate`, and pictures that `bifurc export` and `map` write."""
 
+import sys
+
+import matplotlib
 import numpy as np
 import pytest
 from matplotlib.animation import FFMpegWriter
@@ -27,6 +30,29 @@ def test_a_form_goes_round_and_comes_back(tmp_path):
     assert np.abs(frames[0] - frames[-1]).mean() < 1  # and is back
     margins = [frame[[0, -1]].min() for frame in frames]
     assert min(margins) > 250  # nothing is cut off
+
+
+def test_several_forms_are_shown_one_after_another(tmp_path):
+    shown = {}
+    for words in ((1,), (2,), (1, 2)):
+        out = tmp_path / "four_bar.gif"
+        forms = [word for form in words for word in ("--form", form)]
+        options = (*forms, "--count", 4, "--size", "2x2")
+        assert run("animate", "four-bar", *options, "--out", out).exit_code == 0
+        shown[words] = len(frames_of(out))
+    assert shown[1, 2] == shown[1,] + shown[2,] > shown[1,] > 1
+
+
+def test_mp4_is_written_by_the_ffmpeg_of_the_extra(tmp_path, monkeypatch):
+    ffmpeg = pytest.importorskip("imageio_ffmpeg")
+    monkeypatch.setattr(FFMpegWriter, "isAvailable", classmethod(lambda cls: False))
+    out = tmp_path / "bennett.mp4"
+    options = ("--count", 6, "--size", "2x2", "--out", out)
+    with matplotlib.rc_context():
+        result = run("animate", "bennett", *options)
+    assert result.exit_code == 0, result.stderr
+    frames, _ = ffmpeg.count_frames_and_secs(out)
+    assert frames == 6
 
 
 def test_a_route_is_shown_from_its_begin_to_its_end(tmp_path):
@@ -58,8 +84,9 @@ def test_wrong_options_end_in_one_line(options, message, tmp_path, monkeypatch):
 
 def test_mp4_without_ffmpeg_is_said_before_anything_is_computed(tmp_path, monkeypatch):
     monkeypatch.setattr(FFMpegWriter, "isAvailable", classmethod(lambda cls: False))
+    monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
     result = run("animate", "bennett", "--out", tmp_path / "a.mp4")
-    assert result.exit_code != 0 and "ffmpeg" in result.stderr
+    assert result.exit_code != 0 and "bifurc[movies]" in result.stderr
 
 
 def test_pictures_are_exported(tmp_path):

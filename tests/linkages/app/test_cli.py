@@ -20,6 +20,7 @@ from linkages.closure.closure import Closure
 from linkages.linkage import load
 from linkages.loop import Loop
 from linkages.networks.entries import NETWORKS
+from tests.linkages.app.slider_cranks import slider_crank_text
 
 MINE = """
 name = "my linkage"
@@ -170,6 +171,59 @@ def test_next_steps_are_about_what_was_mapped(tmp_path, monkeypatch):
         assert "--modified-dh" in step
     longer, *_ = _next_steps("map", "rounded.toml", "--budget", "1e-6")
     assert longer == ["map", "rounded.toml", "--budget", "1e-05"]
+
+
+TABLE = """
+lengths = [1, 0.501, 1, 0.501]
+twists = [90, 30, 90, 30]
+offsets = [0, 0, 0, 0]
+angles = "deg"
+"""
+EQUATIONS = """
+equations = ["x^2 + y^2 = 1"]
+[unknowns]
+x = [-2, 2]
+y = [-2, 2]
+"""
+BRICARD = "bricard-line-symmetric-zero-offset"
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("solve", "circle.toml"),
+        ("identify", "bennett"),
+        ("identify", "table.toml"),
+        ("identify", "table.toml", "--write", "written.toml"),
+        ("route", BRICARD, "Form I (original)", "Form I' (revised)"),
+        ("export", "bennett", "--to", "bennett.mjcf"),
+        ("export", "bennett", "--to", "bennett.csv"),
+        ("convert", "two_bars.toml", "two_bars.xml"),
+    ],
+    ids=" ".join,
+)
+def test_every_answer_names_commands_that_can_be_typed(command, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("circle.toml").write_text(EQUATIONS)
+    Path("table.toml").write_text(TABLE)
+    Path("two_bars.toml").write_text(slider_crank_text((0.6, 0.8), 2.5))
+    steps = _next_steps(*command)
+    assert 1 <= len(steps) <= 3
+    for step in steps:
+        quiet = ["--no-open"] if step[0] == "view" else []
+        fewer = ["--count", "2", "--size", "2x2"] if step[0] == "animate" else []
+        done = (ExitCode.DONE, ExitCode.NOT_IN_CATALOGUE)
+        assert bifurc(*step, *quiet, *fewer).exit_code in done
+
+
+def test_what_is_given_to_another_command_is_said(tmp_path):
+    equations, table = tmp_path / "circle.toml", tmp_path / "table.toml"
+    equations.write_text(EQUATIONS)
+    table.write_text(TABLE)
+    for command in ("map", "identify"):
+        assert f"`bifurc solve {equations}`" in bifurc(command, str(equations)).stderr
+    for linkage in ("bennett", str(table)):
+        assert f"`bifurc map {linkage}`" in bifurc("solve", linkage).stderr
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 import bifurc.search.tracing
 from linkages.app.cli import main
 from linkages.app.files import write_data
-from linkages.app.output import StatusLine, prepare_folder
+from linkages.app.output import StatusLine, prepare_folder, saying_progress
 from linkages.closure.closure import Closure
 from linkages.linkage import load
 from linkages.mapping import map_linkage
@@ -117,10 +117,15 @@ def test_results_replace_older_ones(tmp_path):
     assert sorted(path.name for path in written) == names(tmp_path)
 
 
-def test_a_search_says_what_it_does_where_no_terminal_is(capsys):
-    with StatusLine(every=0.01) as status:
-        status("forms so far; step: gather seeds", 3)
-        time.sleep(0.2)
+def test_a_search_says_what_it_does_where_no_terminal_is(capsys, monkeypatch):
+    monkeypatch.setattr("linkages.app.output.EVERY", 0.01)
+    with saying_progress():
+        time.sleep(0.1)
+        with StatusLine() as status:
+            status("forms so far; step: gather seeds", 3)
+            time.sleep(0.1)
     lines = capsys.readouterr().err.splitlines()
-    assert len(lines) > 1
+    assert lines[0] == "working, 0 s"
     assert lines[-1] == "exploring, 0 s: 3 forms so far; step: gather seeds"
+    time.sleep(0.05)
+    assert capsys.readouterr().err == ""

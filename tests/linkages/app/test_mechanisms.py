@@ -145,6 +145,17 @@ def test_a_driver_holds_as_many_joints_as_it_takes_and_says_which(folder):
     assert document["mechanism"]["variables"][1]["locked"] == 0.0
 
 
+def test_dead_points_are_those_of_the_joint_that_drives(folder):
+    Path("long_rod.toml").write_text(slider_crank_text((0.6, 0.8), 2.5))
+    shown = {}
+    for words in ((), ("--drive", "J3")):
+        text = run("map", "long_rod.toml", *words).stdout
+        table = text.partition("Dead points")[2].partition("\n\n")[0]
+        shown[words] = {line.split()[0] for line in table.splitlines()[2:]}
+    # the crank turns round; the slide has limits
+    assert shown == {(): {"J4"}, ("--drive", "J3"): {"J3", "J4"}}
+
+
 def test_files_of_a_mechanism_can_be_read_again(folder):
     Path("out").mkdir()
     written = write_numbers(map_linkage(load("slider_crank.toml")), Path("out"))

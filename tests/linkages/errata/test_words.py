@@ -15,7 +15,22 @@ SEEN = {
     ),
     "section 3.4.3": "it is mixed-double-goldberg-type-iii",
     "section 3.4.2": (
-        "2 2 1 1 1 1 turns for delta = 45 deg; 0 0 1 1 1 1 turns for delta = 83 deg"
+        "2 2 1 1 1 1 turns for beta = 50, delta = 45 deg; "
+        "2 2 1 1 1 3 turns for beta = 80, delta = 45 deg; "
+        "0 0 1 1 1 1 turns for beta = 50, delta = 83 deg"
+    ),
+    "section 3.5": "closes at 60 of 60 random pairs of angles",
+    "text after (5.2.19)": (
+        "double-subtractive-goldberg: closes at 60 of 60 random pairs of angles; "
+        "wohlhart-double-goldberg: closes at 60 of 60 random pairs of angles"
+    ),
+    "section 5.3.4, second linkage": (
+        "Form I; of 12 random ones: Form I in 2, Form I and Form II in 7, Form II in 3"
+    ),
+    "section 5.3.5, table 5.3.1": "7 of 12 random ones have bifurcations",
+    "sections 5.2, 5.4": (
+        "4 forms in 12 of 12 random ones; 4 in the special one, of which Form III and "
+        "Form IV do not meet"
     ),
     "section 4.2": "in 5 of 12 random ones both are one closed curve",
     "section 4": ("short: theta = 120, phi = 0 deg; long: theta = 240, phi = 360 deg"),

@@ -28,3 +28,8 @@ def test_names_with_commas_and_quotes_stay_one_cell():
     text = make_angle_table(np.zeros(1), np.zeros((1, 2)), ['a,"b"', "c"])
     (head, _) = csv.reader(io.StringIO(text))
     assert head == ["arclength", 'a,"b"', "c"]
+
+
+def test_a_joint_called_as_the_first_column_is_told_apart_from_it():
+    text = make_angle_table(np.zeros(1), np.zeros((1, 1)), ["Arclength"])
+    assert text.splitlines()[0] == "arclength,Arclength (unknown)"
