@@ -44,13 +44,14 @@ Pair: TypeAlias = tuple[int, int]  # of bodies, by their numbers
 
 class Symbol(NamedTuple):
     """A joint on a body: its ``place`` (3,), and its ``direction`` (3,), a unit
-    vector; ``bodies`` are the two that it joins."""
+    vector; ``bodies`` are those that it joins, the one that has the symbol first, of a
+    slide the one that has the rail second."""
 
     name: str
     shape: Shape
     place: np.ndarray
     direction: np.ndarray
-    bodies: Pair
+    bodies: tuple[int, ...]
 
     def is_on(self, body: int) -> bool:
         """Whether it joins this body."""
@@ -288,8 +289,17 @@ class Bodies(Parts):
                 if holder == body:
                     along = np.array(direction)
                     shape = kind.facets.shape
-                    symbols.append(Symbol(name, shape, place, along, holders))
+                    joined = self._joined(drawing, body)
+                    symbols.append(Symbol(name, shape, place, along, joined))
         return symbols
+
+    def _joined(self, drawing: Drawing, body: int) -> tuple[int, ...]:
+        """The bodies that a joint joins, one of which has its symbol."""
+        bodies = [drawing["holder"], drawing["other"]]
+        if JointKind(drawing["kind"]).facets.is_shared:
+            joint = self.structure.mechanism.joint(drawing["label"])
+            bodies = [self.names.index(name) for name in joint.bodies]
+        return (body, *(one for one in bodies if one != body))
 
     @property
     def held(self) -> int:
