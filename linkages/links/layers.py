@@ -336,11 +336,15 @@ def _left(
 
 
 def _bodies(parts: Parts, points: np.ndarray, widths: Widths) -> list[Outline]:
-    """The lines of every body; its first joint, where it has none."""
+    """The lines of every body but for its rails, which come last; its first joint, where
+    it has none."""
     outlines = []
-    for body, lines in enumerate(parts.lines(points)):
+    slides = [one for one in _hinges(parts) if one.shape is Shape.BOX]
+    for body, drawn in enumerate(parts.lines(points)):
+        rails = [one for one in slides if one.bodies[1] == body]
+        lines = drawn[: len(drawn) - len(rails)]
         if not len(lines):
-            places = [symbol.place for symbol in _hinges(parts) if symbol.is_on(body)]
+            places = [one.place for one in _hinges(parts) if one.is_on(body)]
             lines = np.array([[place, place] for place in places[:1]]).reshape(-1, 2, 3)
         name = parts.names[body]
         radii = np.full(len(lines), widths.rod)

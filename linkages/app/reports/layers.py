@@ -28,7 +28,7 @@ def layers_of(atlas: Atlas, forms: Sequence[Form], widths: Widths) -> Layers:
     file gives kept."""
     parts = subject_at(atlas).flat_parts
     given = subject_at(atlas).given_layers
-    numbers = {parts.names.index(name): layer for name, layer in given.items()}
+    numbers = {list(parts.names).index(name): layer for name, layer in given.items()}
     return Plan(parts, forms, widths).layers(numbers)
 
 
