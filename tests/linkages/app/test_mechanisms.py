@@ -172,7 +172,6 @@ def test_singular_points_are_confirmed_in_many_digits(folder):
     [
         (("identify", "slider_crank.toml"), "a prismatic joint (J4)"),
         (("identify", "four-bennett-network"), "--without-centre"),
-        (("export", "slider_crank.toml", "--to", "x.stl"), "it is a mechanism"),
         (("export", "slider_crank.toml", "--to", "x.sdf"), "it is a mechanism"),
         (("verify", "slider_crank.toml"), "slider_crank.toml"),
         (("map", "slider_crank.toml", "--lock", "J9=1"), "one of J1, J2, J3, J4"),
@@ -192,10 +191,31 @@ def test_what_a_mechanism_cannot_do_is_said_in_one_line(folder, arguments, messa
     assert set(Path().iterdir()) == before
 
 
-def test_parts_of_a_saved_mechanism_are_refused_as_those_of_its_file(folder):
-    run("map", "slider_crank.toml", "--out", "out")
-    told = run("export", "out/atlas.nc", "--to", "x.stl", code=2).stderr
-    assert "out/atlas.nc: it is a mechanism, which" in told
+def test_parts_of_a_saved_mechanism_in_space_are_refused_as_those_of_its_file(folder):
+    Path("platform.toml").write_text(mechanism_toml(platform()), encoding="utf-8")
+    run("map", "platform.toml", "--out", "out")
+    for source in ("platform.toml", "out/atlas.nc"):
+        told = run("export", source, "--to", "x.stl", code=2).stderr
+        assert f"{source}: it is a mechanism, which" in told
+
+
+def test_parts_of_a_planar_mechanism_lie_in_layers_or_what_meets_is_said(folder):
+    pytest.importorskip("build123d", reason="solids need the extra 'cad'")
+    Path("crank.toml").write_text(slider_crank_text((30, 40), 130), encoding="utf-8")
+    run("map", "crank.toml", "--out", "out")
+    output = run("export", "out/atlas.nc", "--to", "crank.step").stdout
+    assert output.startswith("3 layers, no fewer will do\n")
+    assert "parts that share one keep 0.3 mm apart" in output
+    text = Path("crank.step").read_text(encoding="utf-8")
+    assert all(f"'{name}'" in text for name in ("rod", "slider", "pin J2", "cap J4"))
+    # the slider passes the pivot of its crank
+    result = run("export", "slider_crank.toml", "--to", "x.stl", code=8)
+    assert "pin J1 and pin J4" in result.stdout
+    assert "no layers keep all parts apart" in result.stderr
+    assert len(result.stderr.strip().splitlines()) == 1
+    assert not Path("x.stl").exists()
+    told = run("export", "crank.toml", "--to", "x.stl", "--offsets", "1", code=2).stderr
+    assert "--offsets: it has no effect on a planar mechanism" in told
 
 
 def test_the_clearance_of_a_planar_mechanism_is_that_in_its_layers(folder):
