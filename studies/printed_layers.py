@@ -24,10 +24,9 @@ import click
 import numpy as np
 
 from bifurc.tables import table
-from linkages import Mechanism, load, map_linkage
+from linkages import Mechanism, load, loop_of, map_linkage
 from linkages.app.options import FOLDER, PrintOptions
 from linkages.app.reports.stacking import stack_of
-from linkages.labels import loop_of
 from linkages.mechanisms.of_loop import mechanism_of_loop
 from linkages.printing.stack import Stack
 from studies.known_mechanisms import cases, mechanism_of_case

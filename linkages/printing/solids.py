@@ -182,13 +182,8 @@ def make_stack(stack: Stack) -> StackedParts:
 
 def _make_body(body: FlatBody, dimensions: Dimensions) -> Solid:
     """A body in its layer: rods with balls at their ends, eyes and slotted bars."""
-    solids, holes = [], []
-    for start, end in body.rods:
-        solids.append(_cylinder(start, end, dimensions.rod_radius))
-        along = (end - start) / np.linalg.norm(end - start)
-        for corner, direction in ((start, along), (end, -along)):
-            ball = _plane(corner, direction)
-            solids.append(Solid.make_sphere(dimensions.elbow_radius, ball))
+    solids = [part for rod in body.rods for part in _round_rod(rod, dimensions)]
+    holes = []
     for place, (low, high) in body.eyes:
         bottom, top = (place + np.array([0.0, 0.0, z]) for z in (low, high))
         solids.append(_cylinder(bottom, top, dimensions.hinge_radius))
@@ -201,6 +196,17 @@ def _make_body(body: FlatBody, dimensions: Dimensions) -> Solid:
         holes.append(_long_hole(slot, dimensions.bore_radius, BEYOND * height))
     whole = solids[0].fuse(*solids[1:]) if len(solids) > 1 else solids[0]
     return _one_solid(whole.cut(*holes))
+
+
+def _round_rod(rod: Bar, dimensions: Dimensions) -> list[Solid]:
+    """A rod, and the balls at its ends."""
+    start, end = rod
+    along = (end - start) / np.linalg.norm(end - start)
+    return [
+        _cylinder(start, end, dimensions.rod_radius),
+        Solid.make_sphere(dimensions.elbow_radius, _plane(start, along)),
+        Solid.make_sphere(dimensions.elbow_radius, _plane(end, -along)),
+    ]
 
 
 def _long_hole(bar: Bar, radius: float, height: float) -> Solid:

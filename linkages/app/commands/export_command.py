@@ -273,15 +273,20 @@ def export_motions(
     """Write the motions along forms and routes."""
     from linkages.app.motions import choose_motions
     from linkages.app.output import write_content
+    from linkages.app.texts.form_names import choose_forms
 
     motions = choose_motions(atlas, forms, routes, count)
-    write_content(out, make_content(atlas, motions, out), TO)
+    chosen = choose_forms(atlas, () if routes else forms)
+    write_content(out, make_content(atlas, motions, chosen, out), TO)
     names = ", ".join(motion.name for motion in motions)
     click.echo(f"wrote {out}: {names}", err=True)
 
 
-def make_content(atlas: Atlas, motions: list[Motion], out: Path) -> bytes:
-    """What the file of that ending holds."""
+def make_content(
+    atlas: Atlas, motions: list[Motion], forms: list[Form], out: Path
+) -> bytes:
+    """What the file of that ending holds; bodies of a planar mechanism lie in the layers
+    in which they pass each other along ``forms``."""
     if is_one_of(out, (TABLE,)):
         if len(motions) != 1:
             raise CommandError(
@@ -291,12 +296,13 @@ def make_content(atlas: Atlas, motions: list[Motion], out: Path) -> bytes:
         return make_table(atlas, motions[0]).encode("utf-8")
     from importlib.metadata import version
 
+    from linkages.app.reports.layers import parts_in_layers
     from linkages.export.glb import make_glb
     from linkages.export.model import model_of
     from linkages.subject import subject_at
 
-    subject = subject_at(atlas)
-    model = model_of(subject.parts, subject.name, motions)
+    parts = parts_in_layers(atlas, forms)
+    model = model_of(parts, subject_at(atlas).name, motions)
     return make_glb(model, f"bifurc {version('bifurc')}")
 
 

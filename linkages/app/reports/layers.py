@@ -13,6 +13,7 @@ from linkages.app.texts.configurations import (
     show_configuration,
 )
 from linkages.links.layers import Layers, Meeting, Plan, Widths
+from linkages.links.parts import Bodies, Parts
 from linkages.subject import subject_at
 
 SHOWN = 1e-9  # in characteristic lengths: what is less comes out as 0
@@ -30,6 +31,20 @@ def layers_of(atlas: Atlas, forms: Sequence[Form], widths: Widths) -> Layers:
     given = subject_at(atlas).given_layers
     numbers = {list(parts.names).index(name): layer for name, layer in given.items()}
     return Plan(parts, forms, widths).layers(numbers)
+
+
+def parts_in_layers(atlas: Atlas, forms: Sequence[Form]) -> Parts:
+    """The parts of an animated model: bodies of a planar mechanism one above the other,
+    such that rods pass each other along forms; all others as they are."""
+    from linkages.export.glb import JOINT_RADIUS, LAYER, ROD_RADIUS
+
+    subject = subject_at(atlas)
+    if subject.readout is None or subject.flat_parts.normal is None:
+        return subject.parts
+    widths = Widths(ROD_RADIUS * subject.size, JOINT_RADIUS * subject.size)
+    numbers = layers_of(atlas, forms, widths).numbers
+    heights = LAYER * subject.size * (numbers - numbers.min())
+    return Bodies(subject.readout.structure, heights)
 
 
 def layer_document(atlas: Atlas, layers: Layers) -> dict[str, Any]:

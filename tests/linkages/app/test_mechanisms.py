@@ -192,9 +192,10 @@ def test_what_a_mechanism_cannot_do_is_said_in_one_line(folder, arguments, messa
 
 
 def test_parts_of_a_saved_mechanism_in_space_are_refused_as_those_of_its_file(folder):
-    Path("platform.toml").write_text(mechanism_toml(platform()), encoding="utf-8")
-    run("map", "platform.toml", "--out", "out")
-    for source in ("platform.toml", "out/atlas.nc"):
+    of_cylinders = mechanism_of_case(cases()["Bennett geometry with joints CRCR"])
+    Path("crcr.toml").write_text(mechanism_toml(of_cylinders), encoding="utf-8")
+    run("map", "crcr.toml", "--out", "out")
+    for source in ("crcr.toml", "out/atlas.nc"):
         told = run("export", source, "--to", "x.stl", code=2).stderr
         assert f"{source}: it is a mechanism, which" in told
 

@@ -5,6 +5,7 @@ from itertools import combinations, product
 import numpy as np
 import pytest
 
+from linkages.app.reports.layers import parts_in_layers
 from linkages.linkage import load
 from linkages.links.layer_program import Separation, fewest_layers
 from linkages.links.layers import Plan, Widths
@@ -142,3 +143,28 @@ def test_layers_that_are_given_are_kept_and_those_that_cannot_be_are_refused():
         Mechanism(joints, layers=(("nothing", 1),))
     with pytest.raises(GeometryError, match="layer of"):
         Mechanism(joints, layers=((joints[0].bodies[0], 0),))
+
+
+def test_bodies_of_a_model_lie_in_their_layers_with_pins_between():
+    atlas = map_of(LINKAGES["slider-crank"]())
+    flat = subject_at(atlas).parts
+    raised = parts_in_layers(atlas, atlas.forms[:1])
+    points = atlas.forms[0].branch.sample(5)
+    heights = []
+    for body, own in enumerate(flat.lines(points)):
+        lines = raised.lines(points)[body]
+        moved = lines[: len(own)] - own
+        assert moved == pytest.approx(np.broadcast_to(moved[:1, :1], moved.shape))
+        heights.append(moved[0, 0, 2] if len(own) else None)
+        assert len(lines) == len(own) + len(raised.symbols_on(body))
+    pins = [
+        (symbol, raised.lines(points)[body][len(own) + k])
+        for body, own in enumerate(flat.lines(points))
+        for k, symbol in enumerate(raised.symbols_on(body))
+    ]
+    for symbol, pin in pins:
+        assert pin.mean(axis=0) == pytest.approx(symbol.place)
+        joined = [heights[body] for body in symbol.bodies]
+        assert pin[1, 2] > pin[0, 2]
+        for height in joined:
+            assert height is None or pin[0, 2] - 1e-9 <= height <= pin[1, 2] + 1e-9
