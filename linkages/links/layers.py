@@ -21,6 +21,7 @@ import numpy as np
 
 from bifurc.atlas import Form
 from bifurc.branch import Branch
+from linkages.decisions import is_one_pin
 from linkages.links.clearance import TOLERANCE
 from linkages.links.distances import (
     MARGIN,
@@ -34,7 +35,6 @@ from linkages.mechanisms.joint import Shape
 from linkages.values import require
 
 SAMPLES = 361  # of a form, between which distances are bounded
-SAME = 1e-6  # of the size: two pins nearer than that everywhere are one
 GUIDE = 2.5  # from the middle of a slide to its pins, in radii of a pin
 HINGES = (Shape.CYLINDER, Shape.BOX)  # what pins are made for
 
@@ -193,7 +193,8 @@ class Plan:
         if not first.bodies & second.bodies:
             return False
         places = self.flat(first, self._poses) - self.flat(second, self._poses)
-        return bool(np.abs(places).max() < SAME * self.parts.size)
+        farthest = float(np.linalg.norm(places, axis=-1).max())
+        return is_one_pin(farthest / self.parts.size)
 
     # --- what comes near --------------------------------------------------------------
 

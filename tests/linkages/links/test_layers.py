@@ -9,6 +9,7 @@ from linkages.app.reports.layers import parts_in_layers
 from linkages.linkage import load
 from linkages.links.layer_program import Separation, fewest_layers
 from linkages.links.layers import Plan, Widths
+from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.subject import subject_at
 from linkages.values import GeometryError
@@ -168,3 +169,25 @@ def test_bodies_of_a_model_lie_in_their_layers_with_pins_between():
         assert pin[1, 2] > pin[0, 2]
         for height in joined:
             assert height is None or pin[0, 2] - 1e-9 <= height <= pin[1, 2] + 1e-9
+
+
+def test_joints_of_one_axis_that_share_a_body_have_one_pin():
+    """Three bars on a pin, given as two joints: as with one joint of three bodies."""
+    case = cases()["K(2,3)"]
+    joints = list(mechanism_of_case(case).joints)
+    number = next(k for k, joint in enumerate(joints) if len(joint.bodies) == 3)
+    shared = joints[number]
+    first, second, third = shared.bodies
+    apart = [
+        Joint(f"{shared.name}.{k}", shared.kind, pair, shared.point, shared.direction)
+        for k, pair in enumerate([(first, second), (first, third)])
+    ]
+    joints[number : number + 1] = apart
+    counts = []
+    for mechanism in (mechanism_of_case(case), Mechanism(tuple(joints))):
+        atlas = map_of(mechanism)
+        parts = subject_at(atlas).flat_parts
+        radius = DIAMETER * parts.size / 2
+        plan = Plan(parts, atlas.forms[:1], Widths(radius, radius))
+        counts.append((len(plan.pins), plan.layers().count))
+    assert counts[0] == counts[1]
