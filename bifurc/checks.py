@@ -6,27 +6,18 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Sequence
-from typing import Protocol, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bifurc.errors import ProblemError
 
-
-class Symbol(Protocol):
-    """A symbol of sympy, which stands for its name."""
-
-    @property
-    def is_Symbol(self) -> bool:
-        """True for a symbol, False for another expression."""
-
-    @property
-    def name(self) -> str:
-        """What it is called."""
+if TYPE_CHECKING:
+    import sympy
 
 
-UnknownName: TypeAlias = "str | Symbol"
+UnknownName: TypeAlias = "str | sympy.Symbol"
 
 
 def name_of(unknown: object) -> object:

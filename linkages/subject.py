@@ -106,6 +106,17 @@ class Subject(ABC):
     def parts(self) -> Parts:
         """The links or the bodies, as they are drawn."""
 
+    @property
+    def flat_parts(self) -> Parts:
+        """The links, or the bodies by the names that a file gives them, that lie in
+        layers where all move in a plane."""
+        return self.parts
+
+    @property
+    def given_layers(self) -> Mapping[str, int]:
+        """The layers of bodies that a file gives."""
+        return {}
+
     @abstractmethod
     def as_loop(self) -> Loop:
         """The loop that it is without limits, and with one link for every joint that is
@@ -303,9 +314,17 @@ class MechanismSubject(Subject):
     @cached_property
     def parts(self) -> Parts:
         """The bodies."""
+        return self.flat_parts
+
+    @property
+    def flat_parts(self) -> Parts:
         from linkages.links.parts import Bodies
 
         return Bodies(self.readout.structure)
+
+    @property
+    def given_layers(self) -> Mapping[str, int]:
+        return dict(self.mechanism.layers)
 
     def as_loop(self) -> Loop:
         """The loop through the axes of the joints."""

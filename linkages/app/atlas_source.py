@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,7 @@ from linkages.app.output import StatusLine
 from linkages.entry import Linkage
 from linkages.labels import NoLinkageError
 from linkages.mapping import map_linkage
-from linkages.subject import as_subject, subject_at
+from linkages.subject import Subject, as_subject, subject_at
 
 if TYPE_CHECKING:
     from bifurc.routes.route import Route
@@ -134,17 +134,30 @@ def routes_between(
         raise CommandError(str(error), ExitCode.NO_ROUTE) from None
 
 
-def loop_atlas_of(source: str, options: AtlasOptions) -> Atlas:
+def _no_subject(subject: Subject) -> bool:
+    return False
+
+
+def loop_atlas_of(
+    source: str,
+    options: AtlasOptions,
+    is_taken: Callable[[Subject], bool] = _no_subject,
+) -> Atlas:
     """The saved atlas, or that of the linkage, called ``source``, where it is a single
     loop of revolute joints, in the joint angles of this loop; raises `CommandError` for
-    a mechanism as well."""
+    a mechanism as well, but for subjects that are taken as they are."""
     if is_atlas_file(source):
         atlas = atlas_of(source, options)
+        if is_taken(subject_at(atlas)):
+            return atlas
         require_table(source, subject_at(atlas).table)
-    else:
-        linkage = choose_held(source, options.parameters, options.hold)
-        require_table(source, as_subject(linkage).table)
-        atlas = _explored(linkage, options.search)
+        return subject_at(atlas).in_loop_angles(atlas)
+    linkage = choose_held(source, options.parameters, options.hold)
+    subject = as_subject(linkage)
+    if is_taken(subject):
+        return _explored(linkage, options.search)
+    require_table(source, subject.table)
+    atlas = _explored(linkage, options.search)
     return subject_at(atlas).in_loop_angles(atlas)
 
 

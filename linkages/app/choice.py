@@ -45,8 +45,8 @@ def require_table(text: str, table: Loop | None) -> Loop:
     if table is None:
         raise CommandError(
             f"{text}: it is a mechanism, which `bifurc export` writes to .glb, .csv, .svg "
-            "and .dxf, and `bifurc convert` to the formats of mechanisms; this takes "
-            "single loops of 4 to 12 revolute joints so far"
+            "and .dxf, planar ones to .stl and .step, and `bifurc convert` to the formats "
+            "of mechanisms; this takes single loops of 4 to 12 revolute joints so far"
         )
     return table
 

@@ -14,9 +14,10 @@ from linkages.export.model import Body, LinkageModel, Motion, Poses
 from linkages.mechanisms.joint import Shape
 from linkages.values import require
 
-ROD_RADIUS = 0.03  # in characteristic lengths, as the next two and `SCALES`
+ROD_RADIUS = 0.03  # in characteristic lengths, as the next three and `SCALES`
 JOINT_RADIUS = 0.07
 JOINT_HEIGHT = 0.24
+LAYER = 0.12  # from one layer of a planar mechanism to the next: half a joint
 SIDES = 24  # of the prism that stands for a cylinder
 RINGS = 12  # of a ball, from pole to pole
 FULL_TURN = 2 * np.pi

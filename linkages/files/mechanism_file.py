@@ -47,8 +47,8 @@ from linkages.values import (
 
 Content: TypeAlias = Mapping[str, Any]
 
-OF_FILE = ("name", "angles", "planar", "origin", "rounding", "joints")
-OF_BARS = ("name", "fixed", "bars", "points", "points_on_bars", "origin")
+OF_FILE = ("name", "angles", "planar", "origin", "rounding", "layers", "joints")
+OF_BARS = ("name", "fixed", "bars", "points", "points_on_bars", "origin", "layers")
 OF_ARCS = ("name", "angles", "fixed", "arcs", "points", "points_on_arcs")
 OF_LOOPS = ("name", "angles", "loops")
 OF_BODIES = ("name", "kind", "bodies")
@@ -76,13 +76,18 @@ def read_mechanism(content: Content, name: str) -> Mechanism:
         return read_arcs(content, given, _angle_unit(content))
     if "joints" not in content:
         check_keys("key", content, OF_BARS)
-        return read_bars(content, given)
+        return _with_layers(read_bars(content, given), content)
     check_keys("key", content, OF_FILE)
+    return _with_layers(_read_joints(content, given), content)
+
+
+def _read_joints(content: Content, name: str) -> Mechanism:
+    """The mechanism of this ``name`` that the [[joints]] of a file describe."""
     unit = _angle_unit(content)
     given_tables = checked_list("joints", content["joints"], "tables [[joints]]")
     tables, near = _from_near(given_tables)
     joints = [_read_joint(k, table, unit) for k, table in enumerate(tables, start=1)]
-    mechanism = Mechanism(tuple(joints), given)
+    mechanism = Mechanism(tuple(joints), name)
     is_planar = _read_planar(content, mechanism)
     origin = origin_of(content, near.origin)
     rounding = content.get("rounding", 0.0)
@@ -90,6 +95,17 @@ def read_mechanism(content: Content, name: str) -> Mechanism:
     require(rounding >= 0, "rounding", rounding, "0 or more, a length")
     rounding = max(near.rounding, float(rounding))
     return replace(mechanism, is_planar=is_planar, origin=origin, rounding=rounding)
+
+
+def _with_layers(mechanism: Mechanism, content: Content) -> Mechanism:
+    """The mechanism with the layers that the file gives its bodies, if any."""
+    if "layers" not in content:
+        return mechanism
+    table = checked_table("layers", content["layers"], "a table, body = number")
+    if normal_of_plane(mechanism) is None:
+        allowed = "left out, as not all axes are parallel and all slides across them"
+        raise GeometryError("layers", quoted(dict(table)), allowed)
+    return replace(mechanism, layers=tuple(table.items()))
 
 
 def _from_near(tables: Sequence[object]) -> tuple[list[object], Coordinates]:
@@ -280,6 +296,9 @@ def mechanism_toml(mechanism: Mechanism) -> str:
         lines.append(f"origin = {json.dumps(mechanism.origin)}")
     if mechanism.rounding:
         lines.append(f"rounding = {json.dumps(mechanism.rounding)}")
+    if mechanism.layers:
+        pairs = (f"{_quoted(body)} = {layer}" for body, layer in mechanism.layers)
+        lines.append(f"layers = {{{', '.join(pairs)}}}")
     for joint in mechanism.joints:
         lines += ["", "[[joints]]", *_joint_lines(joint)]
     return "\n".join(lines) + "\n"

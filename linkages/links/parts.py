@@ -44,13 +44,14 @@ Pair: TypeAlias = tuple[int, int]  # of bodies, by their numbers
 
 class Symbol(NamedTuple):
     """A joint on a body: its ``place`` (3,), and its ``direction`` (3,), a unit
-    vector; ``bodies`` are the two that it joins."""
+    vector; ``bodies`` are those that it joins, the one that has the symbol first, of a
+    slide the one that has the rail second."""
 
     name: str
     shape: Shape
     place: np.ndarray
     direction: np.ndarray
-    bodies: Pair
+    bodies: tuple[int, ...]
 
     def is_on(self, body: int) -> bool:
         """Whether it joins this body."""
@@ -249,12 +250,14 @@ class Links(Parts):
 
 class Bodies(Parts):
     """The bodies of the mechanism of a ``structure``; their frames are that of the
-    reference configuration."""
+    reference configuration. Of a planar one they may lie at ``heights`` (b,) over the
+    plane, with pins from the lowest to the highest of a joint."""
 
     word = "bodies"
     whole = "mechanism"
 
-    def __init__(self, structure: Structure):
+    def __init__(self, structure: Structure, heights: np.ndarray | None = None):
+        self._heights = heights
         mechanism = structure.mechanism
         self.structure = structure
         self.names = self.full_names = mechanism.bodies
@@ -263,17 +266,44 @@ class Bodies(Parts):
         self._placing = Poses(structure)
 
     def lines(self, points: np.ndarray) -> list[np.ndarray]:
-        """Those from joint to joint."""
+        """Those from joint to joint, and pins."""
         drawings = draw_bodies(self.structure, points)
         lines = [np.array(one["lines"]).reshape(-1, 2, 3) for one in drawings]
-        return [self.size * one for one in lines]
+        flat = [self.size * one for one in lines]
+        if self._heights is None:
+            return flat
+        return [
+            np.concatenate([own + self._up(height), *self._pins_on(body)])
+            for body, (own, height) in enumerate(zip(flat, self._heights, strict=True))
+        ]
+
+    def _up(self, height: float) -> np.ndarray:
+        """So much over the plane (3,)."""
+        assert self.normal is not None  # heights are over a plane
+        return height * self.normal
+
+    def _pins_on(self, body: int) -> list[np.ndarray]:
+        """The pins (1, 2, 3) of joints whose symbols a body carries."""
+        pins = []
+        for symbol in self.symbols_on(body):
+            low, high = self._reach_of(symbol.bodies)
+            half = self._up((high - low) / 2)
+            pins.append(np.array([[symbol.place - half, symbol.place + half]]))
+        return pins
+
+    def _reach_of(self, bodies: Sequence[int]) -> tuple[float, float]:
+        """The heights of the lowest and the highest of some bodies."""
+        if self._heights is None:
+            return 0.0, 0.0
+        own = self._heights[list(bodies)]
+        return float(own.min()), float(own.max())
 
     def poses(self, points: np.ndarray) -> np.ndarray:
         """The displacements from the reference configuration."""
         return self._placing.at(points)
 
     def symbols_on(self, body: int) -> list[Symbol]:
-        """Those of its joints; the second axis of a universal joint is on its other
+        """Those of its joints, in the middle of their pins; the second axis of a universal joint is on its other
         body, and a rigid joint has no symbol."""
         symbols = []
         for drawing in self._drawn_symbols:
@@ -288,8 +318,24 @@ class Bodies(Parts):
                 if holder == body:
                     along = np.array(direction)
                     shape = kind.facets.shape
-                    symbols.append(Symbol(name, shape, place, along, holders))
+                    joined = self._joined(drawing, body)
+                    seat = place + self._middle_of(joined)
+                    symbols.append(Symbol(name, shape, seat, along, joined))
         return symbols
+
+    def _middle_of(self, bodies: Sequence[int]) -> np.ndarray:
+        """Over the plane (3,) in the middle of some bodies."""
+        if self._heights is None:
+            return np.zeros(3)
+        return self._up(sum(self._reach_of(bodies)) / 2)
+
+    def _joined(self, drawing: Drawing, body: int) -> tuple[int, ...]:
+        """The bodies that a joint joins, one of which has its symbol."""
+        bodies = [drawing["holder"], drawing["other"]]
+        if JointKind(drawing["kind"]).facets.is_shared:
+            joint = self.structure.mechanism.joint(drawing["label"])
+            bodies = [self.names.index(name) for name in joint.bodies]
+        return (body, *(one for one in bodies if one != body))
 
     @property
     def held(self) -> int:

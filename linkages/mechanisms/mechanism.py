@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     # networkx takes long to import
     import networkx as nx
 
+MOST_LAYERS = 99
 MIRROR = np.array([1.0, 1.0, -1.0])  # a vector in the plane z = 0
 FRAMES = ("frame", "ground", "base", "world")  # names of the body that is drawn at rest
 
@@ -117,10 +118,11 @@ class Mechanism:
     they may be, where that is more than they are as doubles. ``panels`` are drawn of
     bodies that are sheets, with ``creases`` that are assigned. What hangs on joints in no
     closed loop is held where it is given, but ``with_flaps``. ``driver`` is the joint
-    variable whose dead points matter, the first one that is free if none is named. Bodies
-    that do not hang together are mechanisms of their own, its `parts`.
-    Raises `GeometryError` where a joint is named twice, or joints are coupled in a
-    circle.
+    variable whose dead points matter, the first one that is free if none is named.
+    ``layers`` are numbers from 1 of bodies that lie one above the other in a planar
+    mechanism. Bodies that do not hang together are mechanisms of their own, its `parts`.
+    Raises `GeometryError` where a joint is named twice, joints are coupled in a
+    circle, or something else than a body has a layer.
     """
 
     joints: tuple[Joint, ...]
@@ -132,12 +134,14 @@ class Mechanism:
     with_flaps: bool = False
     creases: tuple[Crease, ...] = field(default=(), compare=False)
     driver: str = field(default="", compare=False)
+    layers: tuple[tuple[str, int], ...] = field(default=(), compare=False)
     # what to do where a single loop is asked for, unless there is nothing to do
     way_to_loop: ClassVar[str] = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "joints", _checked_joints(self.joints))
         _check_followers(self)
+        _check_layers(self)
 
     # --- bodies -----------------------------------------------------------------------
 
@@ -349,8 +353,15 @@ class Mechanism:
                 require(is_inside, f"joint {joint.name}", f"coupled to {to}", allowed)
         panels = tuple(panel for panel in self.panels if panel.body in bodies)
         creases = tuple(one for one in self.creases if one.joint in labels)
-        name = f"{self.name}, part {number}"
-        return replace(self, joints=joints, panels=panels, creases=creases, name=name)
+        layers = tuple(pair for pair in self.layers if pair[0] in bodies)
+        return replace(
+            self,
+            joints=joints,
+            panels=panels,
+            creases=creases,
+            layers=layers,
+            name=f"{self.name}, part {number}",
+        )
 
     def with_creases_as_assigned(self) -> Mechanism:
         """The sheet whose assigned creases fold their way only: valleys from 0 to 180
@@ -531,6 +542,16 @@ def _checked_joints(joints: object) -> tuple[Joint, ...]:
             allowed = "such that every joint and every variable has its own"
             require(other is joint, what, f"{quoted(name)} in both", allowed)
     return checked
+
+
+def _check_layers(mechanism: Mechanism) -> None:
+    for body, layer in mechanism.layers:
+        allowed = f"one of {', '.join(mechanism.bodies)}"
+        require(body in mechanism.bodies, "body in layers", quoted(body), allowed)
+        is_number = isinstance(layer, int) and not isinstance(layer, bool)
+        allowed = f"a whole number from 1 to {MOST_LAYERS}"
+        is_within = is_number and 1 <= layer <= MOST_LAYERS
+        require(is_within, f"layer of {body}", quoted(layer), allowed)
 
 
 def _check_followers(mechanism: Mechanism) -> None:

@@ -13,7 +13,7 @@ from linkages.mechanisms.couplings import Coupling
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Crease, Mechanism, Panel
 from linkages.mechanisms.origin import origin_of
-from linkages.values import GeometryError, require
+from linkages.values import GeometryError, checked_table, require
 
 
 def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
@@ -31,6 +31,8 @@ def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
         ]
     if mechanism.creases:
         values["creases"] = [one._asdict() for one in mechanism.creases]
+    if mechanism.layers:
+        values["layers"] = dict(mechanism.layers)
     if mechanism.with_flaps:
         values["with_flaps"] = True
     return {
@@ -118,8 +120,17 @@ def mechanism_from(given: object, name: str) -> Mechanism:
     panels = tuple(_panel(value, bodies) for value in outlines)
     with_flaps = bool(given.get("with_flaps", False))
     creases = tuple(Crease(**value) for value in given.get("creases", []))
+    layers = tuple(checked_table("layers", given.get("layers", {}), "a table").items())
     return Mechanism(
-        tuple(joints), name, is_planar, origin, rounding, panels, with_flaps, creases
+        tuple(joints),
+        name,
+        is_planar,
+        origin,
+        rounding,
+        panels,
+        with_flaps,
+        creases,
+        layers=layers,
     )
 
 

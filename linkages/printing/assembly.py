@@ -31,6 +31,7 @@ EYE_OVER_ROD = 1.1  # so eyes are wider and taller than rods,
 ELBOW_OVER_ROD = 1.05  # and the balls at the corners of rods, too
 GRIP = 1.5  # how much of the pin a cap holds, in radii of the pin
 GLUE_SHARE = 1 / 3  # of the play, between pin and cap
+FLAT_FROM = 45  # deg of latitude of round ends; a wall is left beyond the bore of a cap
 ARM_ROOM = 4.0  # in plays: between a hinge and the corner of a rod that leaves it
 
 
@@ -108,6 +109,11 @@ class Dimensions:
     def top(self) -> float:
         """Where the straight part of a cap ends."""
         return -self.bottom + GRIP * self.pin_radius
+
+    @property
+    def round_end(self) -> float:
+        """How far heads and caps go on beyond their straight parts."""
+        return self.hinge_radius * math.sin(math.radians(FLAT_FROM))
 
     @property
     def arm(self) -> float:

@@ -33,6 +33,8 @@ def clearance_command(
 
     Links are rods along offsets and common normals, bodies of a mechanism the lines
     from joint to joint that `bifurc view` draws; two that share a joint are left out.
+    Planar ones lie in layers, as few as keep all apart; a pin goes from the lowest to the
+    highest body of its joint. A mechanism file may say the layers itself.
 
     \b
     Examples:
@@ -53,9 +55,9 @@ def clearance_command(
     atlas = atlas_of(source, choice)
     require_forms(atlas)
     chosen = choose_forms(atlas, forms)
-    clearances = [clearance_of(atlas, form, diameter) for form in chosen]
+    clearance = clearance_of(atlas, chosen, diameter)
     if as_json:
-        say_json(clearance_document(atlas, clearances))
+        say_json(clearance_document(atlas, clearance))
     else:
-        say(describe_clearance(atlas, clearances))
+        say(describe_clearance(atlas, clearance))
     exit_by(judge(atlas))

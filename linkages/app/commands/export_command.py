@@ -14,7 +14,7 @@ from linkages.app import options
 from linkages.app.exit_codes import CommandError, exit_code_table
 
 if TYPE_CHECKING:
-    from bifurc.atlas import Atlas
+    from bifurc.atlas import Atlas, Form
     from linkages.export.model import Motion
 
 TO = "--to"
@@ -78,7 +78,8 @@ def export_command(
 ) -> None:
     """Write forms and routes of a linkage for other programs.
 
-    Printable parts are links, pins and caps, in mm. Hinges sit along their axes so
+    Printable parts are links, pins and caps, in mm. Bodies of planar mechanisms lie in
+    layers, and slides are slots; elsewhere hinges sit along their axes so
     that no parts meet along the forms; a pin goes through the eyes of two links, and a
     cap is glued or pressed on its end. STL has all parts side by side on the plane
     z = 0, for a slicer to arrange; STEP has named solids where the first form begins.
@@ -89,6 +90,7 @@ def export_command(
       bifurc export altmann --form 1 --to altmann.csv --count 100
       bifurc export out/atlas.nc --route "Form I" "Bennett 4R" --to route.glb
       bifurc export bennett --to bennett.stl --size 120 --diameter 8
+      bifurc export slider_crank.toml --to slider_crank.step
       bifurc export bennett --to bennett.mjcf
       bifurc export four-bar --to four_bar.dxf
     """
@@ -155,15 +157,18 @@ def check_count_of_forms(out: Path, forms: tuple[str, ...]) -> None:
 
 def choose_atlas(source: str, out: Path, choice: options.AtlasOptions) -> Atlas:
     """The atlas that is exported; raises `CommandError` for a mechanism where the file
-    takes single loops only."""
+    takes single loops only, or planar ones besides."""
     from linkages.app.atlas_source import atlas_of, is_atlas_file, loop_atlas_of
+    from linkages.app.reports.stacking import is_stacked
 
-    if is_one_of(out, PARTS) and is_atlas_file(source):
-        # it is that of the seats of hinges
-        choice = replace(choice, search=replace(choice.search, seed=0))
     if is_one_of(out, MOTIONS + PICTURES):
         return atlas_of(source, choice)
-    return loop_atlas_of(source, choice)
+    if not is_one_of(out, PARTS):
+        return loop_atlas_of(source, choice)
+    if is_atlas_file(source):
+        # it is that of the seats of hinges
+        choice = replace(choice, search=replace(choice.search, seed=0))
+    return loop_atlas_of(source, choice, is_stacked)
 
 
 def export_parts(
@@ -173,7 +178,8 @@ def export_parts(
     seed: int,
     out: Path,
 ) -> None:
-    """Write printable parts; say where hinges sit and how near parts come.
+    """Write printable parts; say where hinges sit, or in which layers bodies lie, and how
+    near parts come.
 
     Raises `CommandError` where parts meet: with offsets that were given after the file
     is written, else without any.
@@ -187,9 +193,14 @@ def export_parts(
         seat_hinges,
         write_parts,
     )
+    from linkages.app.reports.stacking import is_stacked
     from linkages.app.texts.form_names import choose_forms
+    from linkages.subject import subject_at
 
     forms = choose_forms(atlas, texts)
+    if is_stacked(subject_at(atlas)):
+        export_stack(atlas, forms, printing, out)
+        return
     seating = seat_hinges(atlas, forms, printing, seed)
     say(describe_seating(seating))
     if not seating.is_apart:
@@ -200,6 +211,28 @@ def export_parts(
         click.echo(f"wrote {out}", err=True)
     if not seating.is_apart:
         raise interference_error(seating, printing)
+
+
+def export_stack(
+    atlas: Atlas, forms: list[Form], printing: options.PrintOptions, out: Path
+) -> None:
+    """Write printable parts of a planar mechanism; raises `CommandError` where they meet
+    in all layers."""
+    from linkages.app.output import say, writing_to
+    from linkages.app.reports.stacking import (
+        describe_stack,
+        stack_error,
+        stack_of,
+        write_stack,
+    )
+
+    stack = stack_of(atlas, forms, printing)
+    say(describe_stack(atlas, stack))
+    if stack.layers.meetings:
+        raise stack_error(atlas, stack)
+    with writing_to(out, TO):
+        write_stack(atlas, forms[0], stack, out)
+    click.echo(f"wrote {out}", err=True)
 
 
 def export_mechanism(atlas: Atlas, texts: tuple[str, ...], out: Path) -> None:
@@ -247,15 +280,20 @@ def export_motions(
     """Write the motions along forms and routes."""
     from linkages.app.motions import choose_motions
     from linkages.app.output import write_content
+    from linkages.app.texts.form_names import choose_forms
 
     motions = choose_motions(atlas, forms, routes, count)
-    write_content(out, make_content(atlas, motions, out), TO)
+    chosen = choose_forms(atlas, () if routes else forms)
+    write_content(out, make_content(atlas, motions, chosen, out), TO)
     names = ", ".join(motion.name for motion in motions)
     click.echo(f"wrote {out}: {names}", err=True)
 
 
-def make_content(atlas: Atlas, motions: list[Motion], out: Path) -> bytes:
-    """What the file of that ending holds."""
+def make_content(
+    atlas: Atlas, motions: list[Motion], forms: list[Form], out: Path
+) -> bytes:
+    """What the file of that ending holds; bodies of a planar mechanism lie in the layers
+    in which they pass each other along ``forms``."""
     if is_one_of(out, (TABLE,)):
         if len(motions) != 1:
             raise CommandError(
@@ -265,12 +303,13 @@ def make_content(atlas: Atlas, motions: list[Motion], out: Path) -> bytes:
         return make_table(atlas, motions[0]).encode("utf-8")
     from importlib.metadata import version
 
+    from linkages.app.reports.layers import parts_in_layers
     from linkages.export.glb import make_glb
     from linkages.export.model import model_of
     from linkages.subject import subject_at
 
-    subject = subject_at(atlas)
-    model = model_of(subject.parts, subject.name, motions)
+    parts = parts_in_layers(atlas, forms)
+    model = model_of(parts, subject_at(atlas).name, motions)
     return make_glb(model, f"bifurc {version('bifurc')}")
 
 

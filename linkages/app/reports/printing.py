@@ -52,33 +52,40 @@ def seat_hinges(
 
     Raises `GeometryError` for sizes that do not fit the linkage.
     """
-    dimensions = Dimensions(options.diameter, options.play, options.wall)
-    loop = _in_millimetres(loop_of(atlas), options)
+    loop = loop_of(atlas)
     size = loop.characteristic_length
-    if not dimensions.diameter < size:
-        shown, most = told_apart(dimensions.diameter, size)
-        allowed = f"less than {most} mm, the mean length of a link"
-        raise GeometryError("--diameter", f"{shown} mm", allowed)
+    loop = loop.scaled(scale_of(size, options))
+    dimensions = dimensions_of(loop.characteristic_length, options)
     offsets = _read_offsets(options.offsets, loop)
     generator = np.random.default_rng(seed)
     return choose_seats(loop, dimensions, forms, generator, offsets)
 
 
-def _in_millimetres(loop: Loop, options: PrintOptions) -> Loop:
-    """The loop in its unit, or scaled to the size that is asked for."""
+def dimensions_of(size: float, options: PrintOptions) -> Dimensions:
+    """The sizes of parts of a linkage whose mean length of a link is ``size``, mm;
+    raises `GeometryError` for those that do not fit it."""
+    dimensions = Dimensions(options.diameter, options.play, options.wall)
+    if not dimensions.diameter < size:
+        shown, most = told_apart(dimensions.diameter, size)
+        allowed = f"less than {most} mm, the mean length of a link"
+        raise GeometryError("--diameter", f"{shown} mm", allowed)
+    return dimensions
+
+
+def scale_of(size: float, options: PrintOptions) -> float:
+    """How many mm the unit of a linkage is, whose mean length of a link is ``size``: as
+    is asked for, or such that this is the size that is."""
     if options.unit_in_mm is not None:
         if options.size is not None:
             raise CommandError("--size: it has no effect beside --unit; give one")
-        scaled = loop.scaled(options.unit_in_mm)
+        scale = options.unit_in_mm
     else:
-        size = SIZE if options.size is None else options.size
-        scaled = loop.scaled(size / loop.characteristic_length)
-    size = scaled.characteristic_length
-    if not SMALLEST_SIZE <= size <= LARGEST_SIZE:
-        shown, least, most = told_apart(size, SMALLEST_SIZE, LARGEST_SIZE)
+        scale = (SIZE if options.size is None else options.size) / size
+    if not SMALLEST_SIZE <= scale * size <= LARGEST_SIZE:
+        shown, least, most = told_apart(scale * size, SMALLEST_SIZE, LARGEST_SIZE)
         allowed = f"from {least} to {most} mm"
         raise GeometryError("mean length of a link", f"{shown} mm", allowed)
-    return scaled
+    return scale
 
 
 def _read_offsets(text: str | None, loop: Loop) -> np.ndarray | None:

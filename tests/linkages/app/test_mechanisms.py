@@ -183,7 +183,6 @@ def test_singular_points_are_confirmed_in_many_digits(folder):
     [
         (("identify", "slider_crank.toml"), "a prismatic joint (J4)"),
         (("identify", "four-bennett-network"), "--without-centre"),
-        (("export", "slider_crank.toml", "--to", "x.stl"), "it is a mechanism"),
         (("export", "slider_crank.toml", "--to", "x.sdf"), "it is a mechanism"),
         (("verify", "slider_crank.toml"), "slider_crank.toml"),
         (("map", "slider_crank.toml", "--lock", "J9=1"), "one of J1, J2, J3, J4"),
@@ -203,21 +202,71 @@ def test_what_a_mechanism_cannot_do_is_said_in_one_line(folder, arguments, messa
     assert set(Path().iterdir()) == before
 
 
-def test_parts_of_a_saved_mechanism_are_refused_as_those_of_its_file(folder):
-    run("map", "slider_crank.toml", "--out", "out")
-    told = run("export", "out/atlas.nc", "--to", "x.stl", code=2).stderr
-    assert "out/atlas.nc: it is a mechanism, which" in told
+def test_parts_of_a_saved_mechanism_in_space_are_refused_as_those_of_its_file(folder):
+    of_cylinders = mechanism_of_case(cases()["Bennett geometry with joints CRCR"])
+    Path("crcr.toml").write_text(mechanism_toml(of_cylinders), encoding="utf-8")
+    run("map", "crcr.toml", "--out", "out")
+    for source in ("crcr.toml", "out/atlas.nc"):
+        told = run("export", source, "--to", "x.stl", code=2).stderr
+        assert f"{source}: it is a mechanism, which" in told
 
 
-def test_the_clearance_of_a_mechanism_is_that_of_its_bodies(folder):
-    output = run("clearance", "slider_crank.toml", "--form", "1").stdout
-    assert "the least clearance is" in output
+def test_parts_of_a_planar_mechanism_lie_in_layers_or_what_meets_is_said(folder):
+    pytest.importorskip("build123d", reason="solids need the extra 'cad'")
+    Path("crank.toml").write_text(slider_crank_text((30, 40), 130), encoding="utf-8")
+    run("map", "crank.toml", "--out", "out")
+    output = run("export", "out/atlas.nc", "--to", "crank.step").stdout
+    assert output.startswith("3 layers, no fewer will do\n")
+    assert "parts that share one keep 0.3 mm apart" in output
+    text = Path("crank.step").read_text(encoding="utf-8")
+    assert all(f"'{name}'" in text for name in ("rod", "slider", "pin J2", "cap J4"))
+    # the slider passes the pivot of its crank
+    result = run("export", "slider_crank.toml", "--to", "x.stl", code=8)
+    assert "pin J1 and pin J4" in result.stdout
+    assert "no layers keep all parts apart" in result.stderr
+    assert len(result.stderr.strip().splitlines()) == 1
+    assert not Path("x.stl").exists()
+    told = run("export", "crank.toml", "--to", "x.stl", "--offsets", "1", code=2).stderr
+    assert "--offsets: it has no effect on a planar mechanism" in told
+
+
+def test_the_clearance_of_a_planar_mechanism_is_that_in_its_layers(folder):
+    Path("crank.toml").write_text(slider_crank_text((30, 40), 130), encoding="utf-8")
+    output = run("clearance", "crank.toml", "--diameter", "3", "--form", "1").stdout
+    assert output.startswith("3 layers, no fewer will do\n")
     assert "bodies that share a joint are left out" in output
-    text = run("clearance", "slider_crank.toml", "--diameter", "0.1", "--json").stdout
+    text = run("clearance", "crank.toml", "--diameter", "3", "--json").stdout
     forms = json.loads(text)
     assert [form["form"] for form in forms] == ["Form 1", "Form 2"]
+    bodies = {"frame", "crank", "rod", "slider"}
+    assert forms[0]["layers"]["bodies"].keys() == bodies
+    assert forms[0]["layers"]["pins"].keys() == {f"pin J{k}" for k in range(1, 5)}
     names = {name for one in forms[0]["approaches"] for name in one["links"]}
-    assert names <= {"frame", "crank", "rod", "slider"}
+    assert names and names <= bodies
+    assert all(one["clearance"] > 0 for one in forms[0]["approaches"])
+
+
+def test_layers_may_be_given_and_stay_in_the_atlas(folder):
+    text = slider_crank_text((30, 40), 130)
+    Path("given.toml").write_text(
+        "layers = {frame = 2, rod = 1}\n" + text, encoding="utf-8"
+    )
+    output = run("clearance", "given.toml", "--diameter", "3").stdout
+    assert "frame and pin J2" in output.split("What meets in the given layers")[1]
+    run("map", "given.toml", "--out", "out")
+    assert run("clearance", "out/atlas.nc", "--diameter", "3").stdout == output
+    mechanism = mechanism_of(load_atlas("out/atlas.nc"))
+    assert 'layers = {"frame" = 2, "rod" = 1}' in mechanism_toml(mechanism)
+    for layers, told in (
+        ("{rood = 1}", "body in layers"),
+        ("{rod = 0.5}", "layer of rod"),
+        ("{frame = 1, crank = 1}", "layer of frame and crank"),
+        ("[1]", "a table, body = number"),
+    ):
+        Path("given.toml").write_text(f"layers = {layers}\n{text}", encoding="utf-8")
+        error = run("clearance", "given.toml", code=2).stderr
+        assert told in error
+        assert len(error.strip().splitlines()) == 1
 
 
 def test_a_mechanism_is_shown_in_motion_like_a_loop(folder):
