@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +24,7 @@ from bifurc.large.large_problem import LargeProblem
 from bifurc.large.scaled_problem import ScaledProblem
 from bifurc.large.singular_triples import singular_profile, unit_tangent
 from bifurc.large.special_points import crossings_on, folds_on, near_misses_on
+from bifurc.limits import one_thread
 from bifurc.numerics.null_spaces import null_vector
 from bifurc.settings import TraceSettings
 from bifurc.system import relative_gaps, relative_residuals
@@ -89,7 +91,9 @@ def trace_large_branch(
     check_type("settings", settings, LargeSettings)
     checked = problem.check_start(start)
     along = _checked_direction(problem, direction)
-    with np.errstate(over="ignore", invalid="ignore"):
+    # threads of BLAS share only a solver of the user's: vectors are too short for them
+    threads = one_thread(problem.n) if problem.solver is None else nullcontext()
+    with threads, np.errstate(over="ignore", invalid="ignore"):
         scaled, branch = _traced_at_its_size(problem, checked, along, settings)
         _check_is_solved(scaled, checked, branch)
         points = folds_on(scaled, branch)
