@@ -7,8 +7,9 @@ from u = 0 to beyond the fold, which is located: with sparse LU, and with the fa
 Poisson solver (sine transforms) as the solver of the user, which preconditions GMRES.
 The limit of the folds under refinement is extrapolated (Richardson), as their error goes
 with the square of the step. Then the same in one dimension, where the fold is known in
-closed form, and Swift and Hohenberg's equation, whose crossings are known for every
-number of points. Times are processor times; memory is the largest resident one so far.
+closed form; and Swift and Hohenberg's equation, whose crossings are known for every
+number of points, and the Brusselator, whose Hopf points are. Times are processor times;
+memory is the largest resident one so far.
 
 Writes costs.csv and many_unknowns.png.
 """
@@ -39,6 +40,7 @@ from bifurc import (
 from studies.methods.fields import (
     FOLD_IN_1D,
     FOLD_IN_2D,
+    Brusselator,
     SwiftHohenberg,
     bratu_field,
     fast_poisson,
@@ -54,6 +56,7 @@ COARSE = (25, 50)  # sides of squares, which with 100 show the limit as well
 FOLD_IS_PASSED = 3.7  # arclength of the branch
 FITTED_FROM = 3000  # unknowns from which on exponents are fitted
 LENGTH, WAVES = 6 * np.pi, 0.7  # of Swift and Hohenberg's interval, largest parameter
+LARGEST_B = 8.0  # of the Brusselator's parameter
 
 
 @dataclass(frozen=True)
@@ -145,6 +148,21 @@ def crossing_errors(points: int) -> tuple[np.ndarray, float]:
     branch = trace_large_branch(problem, start, settings=LargeSettings(values=4))
     located = np.array([crossing.parameter for crossing in branch.crossings])
     errors = located - field.crossings_below(WAVES)
+    return errors, time.process_time() - begin
+
+
+def hopf_errors(points: int) -> tuple[np.ndarray, float]:
+    """How far the Hopf points of the Brusselator are from the known ones (k,), and the
+    processor time (s)."""
+    begin = time.process_time()
+    field = Brusselator(points)
+    problem = LargeProblem(
+        field.residual, field.n, (4.0, LARGEST_B), pattern=field.pattern, size=field.a
+    )
+    settings = LargeSettings(eigenvalues=12)
+    branch = trace_large_branch(problem, field.constant(4.2), settings=settings)
+    located = np.array([point.parameter for point in branch.hopf_points])
+    errors = located - field.hopf_points_below(LARGEST_B)[0]
     return errors, time.process_time() - begin
 
 
@@ -249,6 +267,12 @@ def main(out: Path, largest: int) -> None:
         errors, seconds = crossing_errors(points)
         click.echo(
             f"Swift-Hohenberg, {points} unknowns: {len(errors)} crossings within "
+            f"{np.abs(errors).max():.1e}, {seconds:.2f} s"
+        )
+    for points in (100, 1_000, 10_000):
+        errors, seconds = hopf_errors(points)
+        click.echo(
+            f"Brusselator, {2 * points} unknowns: {len(errors)} Hopf points within "
             f"{np.abs(errors).max():.1e}, {seconds:.2f} s"
         )
 

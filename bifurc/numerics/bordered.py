@@ -205,7 +205,7 @@ class SparseBordered:
         size = n + columns.shape[1]
         matrix = csc_array((np.concatenate(values), places), shape=(size, size))
         if may_be_singular:
-            self._factors = _factors_by_rounding(matrix, typical)
+            self._factors = factors_by_rounding(matrix, typical)
         else:
             self._factors = sparse_factors(matrix)
 
@@ -228,7 +228,7 @@ def _weighted(vectors: np.ndarray, weights: np.ndarray) -> np.ndarray:
     return weighted
 
 
-def _factors_by_rounding(matrix: csc_array, typical: float) -> SparseFactors:
+def factors_by_rounding(matrix: csc_array, typical: float) -> SparseFactors:
     """The factors of a matrix with entries of a ``typical`` size; of one that is exactly
     singular, or so nearly that solutions overflow, those of what rounding may have made
     of it."""
@@ -254,8 +254,9 @@ class SparseFactors:
 
     def solve(self, right: np.ndarray, trans: str = "N") -> np.ndarray:
         """x, (n,) or (n, j), with M x = ``right``, or M^T x where ``trans`` is "T"."""
-        solution = np.empty(right.shape)
-        solution[self._order] = self._factors.solve(right[self._order], trans)
+        in_order: np.ndarray = self._factors.solve(right[self._order], trans)
+        solution: np.ndarray = np.empty_like(in_order)
+        solution[self._order] = in_order
         return solution
 
 
@@ -299,26 +300,30 @@ def _sparse_order(starts: bytes, rows: bytes) -> np.ndarray:
 
     A border among the others would cost n updates of degrees at each of n steps.
     """
-    from scipy.sparse import coo_array, csc_array, eye_array
-    from scipy.sparse.linalg import spilu
+    from scipy.sparse import csc_array
 
     pointers, indices = np.frombuffer(starts, np.int32), np.frombuffer(rows, np.int32)
     n = len(pointers) - 1
-    columns = np.repeat(np.arange(n), np.diff(pointers))
+    entries = np.ones(len(indices))
+    pattern = csc_array((entries, indices, pointers), shape=(n, n))
     degrees = np.maximum(np.diff(pointers), np.bincount(indices, minlength=n))
     is_dense = degrees > max(FEW, DENSE * np.sqrt(n))
     inner = np.flatnonzero(~is_dense)
-    if not len(inner):
-        return np.arange(n)
-    place = np.cumsum(~is_dense) - 1
-    is_inner = ~is_dense[indices] & ~is_dense[columns]
-    places = (place[indices[is_inner]], place[columns[is_inner]])
-    count = len(inner)
-    pattern = coo_array((np.ones(is_inner.sum()), places), shape=(count, count))
-    # the order alone: of the factors next to nothing is kept
-    regular = csc_array(pattern + 2.0 * n * eye_array(count))
-    factors = spilu(regular, 1.0, 1.0, permc_spec="MMD_AT_PLUS_A")
-    by_degree = np.argsort(factors.perm_c)
+    by_degree = _by_minimum_degree(pattern[inner][:, inner])
     order = np.concatenate([inner[by_degree], np.flatnonzero(is_dense)])
     order.setflags(write=False)
     return order
+
+
+def _by_minimum_degree(pattern: csc_array) -> np.ndarray:
+    """The order (n,) of a square pattern by minimum degree of A^T + A. SuperLU gives it
+    with factors only: here of a regular matrix, of which next to nothing is kept."""
+    from scipy.sparse import csc_array, eye_array
+    from scipy.sparse.linalg import spilu
+
+    n = pattern.shape[0]
+    if not n:
+        return np.empty(0, dtype=int)
+    regular = csc_array(pattern + 2.0 * n * eye_array(n))
+    order: np.ndarray = spilu(regular, 1.0, 1.0, permc_spec="MMD_AT_PLUS_A").perm_c
+    return np.argsort(order)
