@@ -4,21 +4,28 @@ no harm; and how many threads linear algebra may take.
 Python turns the signal of Ctrl-C into `KeyboardInterrupt` between any two instructions.
 On the way out of a compiled kernel that is a crash of the whole process, and between
 two steps of bookkeeping it leaves half a record. So whatever lasts asks for the time and
-ends by itself; what does not is cut off a little later, but for what is `whole`.
+ends by itself (`is_time_over`); what does not is cut off a little later (`cut_off_after`),
+but for what is `whole`.
+
+An exception that a signal raises in a destructor, or in the callback of a weak reference,
+is printed by Python and goes no further. So a block is cut off again where it goes on, and
+a program of its own hears Ctrl-C again (`hear_interrupts`).
 """
 
 from __future__ import annotations
 
+import math
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field, replace
 from functools import cache, wraps
 from types import FrameType
-from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, ParamSpec, TypeVar
 
 if TYPE_CHECKING:
     from threadpoolctl import ThreadpoolController
@@ -29,7 +36,7 @@ Arguments = ParamSpec("Arguments")
 Value = TypeVar("Value")
 
 GRACE = 0.2  # s after a deadline in which what asks for the time ends by itself
-AGAIN = 0.02  # s until it is tried again to cut off what is whole
+AGAIN = 0.02  # s until it is tried again to cut off, or to raise
 LASTING = 500  # rows of a matrix whose decomposition takes a tenth of a second
 
 
@@ -37,27 +44,28 @@ class HeldInterrupt:
     """Notes the first Ctrl-C in a ``with`` block, for `check` or the end of the block
     to raise.
 
-    From then on it ``was_pressed``. A second one acts at once. Blocks may be nested: one
-    that begins after it was pressed in the block around it knows of it.
-    Where Ctrl-C is not Python's business (in a thread, or with a handler of the
+    From then on it ``was_pressed``, also in the blocks around it. A second one acts at
+    once. Where Ctrl-C is not Python's business (in a thread, or with a handler of the
     user's), nothing is changed.
     """
 
     def __init__(self) -> None:
         self.noted = False
-        self.was_pressed = False
+        self._is_pressed = False
         self._former: SignalHandler = None
+        self._around: HeldInterrupt | None = None
 
     def __enter__(self) -> HeldInterrupt:
         if threading.current_thread() is not threading.main_thread():
             return self
         former = signal.getsignal(signal.SIGINT)
-        outer_block = isinstance(getattr(former, "__self__", None), HeldInterrupt)
-        if former is signal.default_int_handler or outer_block:
-            self._former = former
-            outer = getattr(former, "__self__", None)
-            self.was_pressed = isinstance(outer, HeldInterrupt) and outer.noted
-            signal.signal(signal.SIGINT, self._note)
+        around = getattr(former, "__self__", None)
+        if isinstance(around, HeldInterrupt):
+            self._around = around
+        elif former not in (signal.default_int_handler, _interrupt):
+            return self
+        self._former = former
+        signal.signal(signal.SIGINT, self._note)
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
@@ -65,6 +73,12 @@ class HeldInterrupt:
             signal.signal(signal.SIGINT, self._former)
         if kind is None:
             self.check()
+
+    @property
+    def was_pressed(self) -> bool:
+        """Whether Ctrl-C was pressed since the block began, or one around it."""
+        around = self._around
+        return self._is_pressed or (around is not None and around.was_pressed)
 
     def check(self) -> None:
         """Raise `KeyboardInterrupt` if Ctrl-C was pressed since the last check."""
@@ -80,9 +94,58 @@ class HeldInterrupt:
         if self.noted:
             raise KeyboardInterrupt
         self.noted = True
-        self.was_pressed = True
-        if _cut.is_armed:
-            signal.setitimer(signal.ITIMER_REAL, GRACE)
+        block: HeldInterrupt | None = self
+        while block is not None:
+            block._is_pressed = True
+            block = block._around
+        if _Cut.innermost is not None:
+            _Cut.innermost.set_alarm()
+
+
+def hear_interrupts() -> None:
+    """Let Ctrl-C end a program of its own wherever it comes: not while a module is being
+    imported, where Python makes other errors of it, but right after; and again where
+    Python swallowed it."""
+    if not hasattr(signal, "SIGALRM"):
+        return
+    former = sys.unraisablehook
+
+    def hook(unraisable: sys.UnraisableHookArgs) -> None:
+        if unraisable.exc_type is KeyboardInterrupt:
+            _press_again()
+        elif unraisable.exc_type is not CutOff:  # it is raised again
+            former(unraisable)
+
+    sys.unraisablehook = hook
+    signal.signal(signal.SIGINT, _interrupt)
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    """Raise `KeyboardInterrupt`, a little later while a module is being imported."""
+    if _is_importing(frame):
+        _press_again()
+    else:
+        raise KeyboardInterrupt
+
+
+def _press_again() -> None:
+    """Let Ctrl-C come again in a moment, to whoever handles it then."""
+
+    def press(number: int, frame: FrameType | None) -> None:
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        signal.raise_signal(signal.SIGINT)
+
+    signal.signal(signal.SIGALRM, press)
+    signal.setitimer(signal.ITIMER_REAL, AGAIN)
+
+
+def _is_importing(frame: FrameType | None) -> bool:
+    """Whether a module is being imported where a frame is."""
+    while frame is not None:
+        if "importlib" in frame.f_code.co_filename:
+            return True
+        frame = frame.f_back
+    return False
 
 
 @dataclass(frozen=True)
@@ -142,41 +205,6 @@ def is_time_over() -> bool:
     return current_deadline().passed
 
 
-class TimeOver(Exception):
-    """The time of a block of `ending_in_time` is over."""
-
-
-_ending: ContextVar[Deadline | None] = ContextVar("ending", default=None)
-
-
-@contextmanager
-def ending_in_time(deadline: Deadline) -> Iterator[None]:
-    """A block that ends where `check_time` finds that a ``deadline`` has passed, or that
-    of a block around it: what takes long and is of no use in part is given up."""
-    around = _ending.get()
-    is_first = around is None or deadline.left < around.left
-    token = _ending.set(deadline if is_first else around)
-    try:
-        yield
-    except TimeOver:
-        pass
-    finally:
-        _ending.reset(token)
-
-
-def has_to_end() -> bool:
-    """Whether what runs now may have to end before it is done."""
-    deadline = _ending.get()
-    return deadline is not None and deadline.seconds < float("inf")
-
-
-def check_time() -> None:
-    """Raise `TimeOver` where the time of the innermost block is over."""
-    deadline = _ending.get()
-    if deadline is not None and deadline.passed:
-        raise TimeOver
-
-
 # --- what does not ask ----------------------------------------------------------------
 
 
@@ -185,64 +213,80 @@ class CutOff(BaseException):
 
 
 class _Cut:
-    """Whether what runs may be cut off, and how many calls under way are whole."""
+    """A block that is cut off after a deadline, and the `innermost` one under way."""
 
-    def __init__(self) -> None:
-        self.is_armed = False
-        self.whole_calls = 0
+    innermost: ClassVar[_Cut | None] = None
 
-    def strike(self, number: int, frame: FrameType | None) -> None:
-        """Raise `CutOff` where what runs may be cut off; later where it is whole, or a
-        module is being imported, which would be left in halves."""
-        if not self.is_armed:
+    def __init__(self, deadline: Deadline):
+        self._deadline = deadline
+        self._around: _Cut | None = None
+        self._is_armed = False
+
+    def __enter__(self) -> None:
+        is_main = threading.current_thread() is threading.main_thread()
+        if not is_main or not hasattr(signal, "SIGALRM"):
             return
-        while frame is not None and "importlib" not in frame.f_code.co_filename:
-            frame = frame.f_back
-        if self.whole_calls or frame is not None:
-            signal.setitimer(signal.ITIMER_REAL, AGAIN)
+        if signal.getsignal(signal.SIGALRM) not in (signal.SIG_DFL, _strike):
+            return
+        signal.signal(signal.SIGALRM, _strike)
+        self._around = _Cut.innermost
+        self._is_armed = True
+        _Cut.innermost = self
+        self.set_alarm()
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        if not self._is_armed:
+            return
+        _Cut.innermost = self._around
+        if self._around is not None:
+            self._around.set_alarm(AGAIN if kind is CutOff else GRACE)
+            return
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+
+    @property
+    def _left(self) -> float:
+        around = math.inf if self._around is None else self._around._left
+        return min(self._deadline.left, around)
+
+    def set_alarm(self, grace: float = GRACE) -> None:
+        """Let the alarm ring a ``grace`` (s) after the time is over, and again until it
+        is heard."""
+        left = self._left
+        if left < math.inf:
+            signal.setitimer(signal.ITIMER_REAL, left + grace, AGAIN)
         else:
-            raise CutOff
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            if self._left < math.inf:  # Ctrl-C was pressed meanwhile
+                self.set_alarm()
 
 
-_cut = _Cut()
+def _strike(number: int, frame: FrameType | None) -> None:
+    """Raise `CutOff`; not in what is whole, nor where a module is being imported, which
+    would be left in halves: there the alarm rings again."""
+    if _Cut.innermost is None or _is_whole(frame) or _is_importing(frame):
+        return
+    signal.setitimer(signal.ITIMER_REAL, GRACE, AGAIN)
+    raise CutOff
 
 
-@contextmanager
-def cut_off_after(deadline: Deadline) -> Iterator[None]:
-    """A block that ends soon after a ``deadline`` or a Ctrl-C that it holds, wherever it is:
-    `CutOff` is raised there unless it ends by itself. What it writes on and what others
-    read later is written by calls that are `whole`.
+def cut_off_after(deadline: Deadline) -> AbstractContextManager[None]:
+    """A block that ends soon after a ``deadline`` or a Ctrl-C that it holds, or after
+    that of a block around it, wherever it is: `CutOff` is raised there unless it ends by
+    itself. What it writes on and what others read later is written by calls that are
+    `whole`.
 
     Where the alarm of the process is not Python's business (in a thread, or with a handler
     of the user's), or there is none, blocks end by themselves only.
     """
-    is_main = threading.current_thread() is threading.main_thread()
-    has_alarm = is_main and hasattr(signal, "SIGALRM")
-    is_free = has_alarm and signal.getsignal(signal.SIGALRM) in (
-        signal.SIG_DFL,
-        _cut.strike,  # of a block that was cut off on its way out
-    )
-    if not is_free:
-        yield
-        return
-    signal.signal(signal.SIGALRM, _cut.strike)
-    _cut.is_armed = True
-    try:
-        left = deadline.left
-        if left < float("inf"):
-            signal.setitimer(signal.ITIMER_REAL, left + GRACE)
-        yield
-    finally:
-        _cut.is_armed = False
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+    return _Cut(deadline)
 
 
 def left_behind(size: int, function: Callable[..., Any]) -> Callable[..., Any]:
     """A compiled function that cannot be asked to end, of matrices of this ``size``. Where
     it may last and what runs may be cut off it is called in a thread, which a cut leaves
     behind; it must write on nothing."""
-    if size < LASTING or not _cut.is_armed:
+    if size < LASTING or _Cut.innermost is None:
         return function
 
     def call(*args: Any, **kwargs: Any) -> Any:
@@ -271,13 +315,32 @@ def whole(function: Callable[Arguments, Value]) -> Callable[Arguments, Value]:
 
     @wraps(function)
     def call(*args: Arguments.args, **kwargs: Arguments.kwargs) -> Value:
-        _cut.whole_calls += 1
-        try:
-            return function(*args, **kwargs)
-        finally:
-            _cut.whole_calls -= 1
+        return function(*args, **kwargs)
 
     return call
+
+
+# Code that is never left in the midst; all `whole` calls have that of one.
+_WHOLE = {
+    method.__code__
+    for method in (
+        whole(max),
+        _Cut.__enter__,
+        _Cut.__exit__,
+        HeldInterrupt.__enter__,
+        HeldInterrupt.__exit__,
+        vars(until)["__wrapped__"],
+    )
+}
+
+
+def _is_whole(frame: FrameType | None) -> bool:
+    """Whether a frame is one of what is whole, or is called from there."""
+    while frame is not None:
+        if frame.f_code in _WHOLE:
+            return True
+        frame = frame.f_back
+    return False
 
 
 # --- threads --------------------------------------------------------------------------

@@ -7,8 +7,9 @@ from u = 0 to beyond the fold, which is located: with sparse LU, and with the fa
 Poisson solver (sine transforms) as the solver of the user, which preconditions GMRES.
 The limit of the folds under refinement is extrapolated (Richardson), as their error goes
 with the square of the step. Then the same in one dimension, where the fold is known in
-closed form, and Swift and Hohenberg's equation, whose crossings are known for every
-number of points. Times are processor times; memory is the largest resident one so far.
+closed form; and Swift and Hohenberg's equation, whose crossings are known for every
+number of points, and the Brusselator, whose Hopf points are. Times are processor times;
+memory is the largest resident one so far.
 
 Writes costs.csv and many_unknowns.png.
 """
@@ -39,6 +40,7 @@ from bifurc import (
 from studies.methods.fields import (
     FOLD_IN_1D,
     FOLD_IN_2D,
+    Brusselator,
     SwiftHohenberg,
     bratu_field,
     fast_poisson,
@@ -49,10 +51,12 @@ from studies.study import Study
 # transforms are of a length that is no product of small primes, and slow.
 HALVED, TEN_THOUSAND = (15, 31, 63, 127, 255, 511, 1023), 100
 LARGEST_FACTORED = 127  # side up to which sparse LU is tried as well
-IN_1D = (99, 199, 399, 799)
+IN_1D, LONGER = (99, 199, 399, 799), (1_000, 3_000, 10_000, 30_000, 100_000)
+COARSE = (25, 50)  # sides of squares, which with 100 show the limit as well
 FOLD_IS_PASSED = 3.7  # arclength of the branch
 FITTED_FROM = 3000  # unknowns from which on exponents are fitted
 LENGTH, WAVES = 6 * np.pi, 0.7  # of Swift and Hohenberg's interval, largest parameter
+LARGEST_B = 8.0  # of the Brusselator's parameter
 
 
 @dataclass(frozen=True)
@@ -75,13 +79,13 @@ def cost_of_fold(side: int, dimensions: int, solver: str) -> FoldCost:
     """The fold of Bratu's problem by a solver, "sparse LU" or "fast Poisson"."""
     begin = time.process_time()
     field = bratu_field(side, dimensions)
-    poisson = fast_poisson(side)
+    poisson = fast_poisson(side) if solver == "fast Poisson" else None
     problem = LargeProblem(
         field.residual,
         field.n,
         (0.0, 8.0),
         jacobian=field.jacobian,
-        solver=None if solver == "sparse LU" else lambda u: poisson,
+        solver=None if poisson is None else lambda u: poisson,
     )
     branch = _traced(problem, FOLD_IS_PASSED)
     seconds = time.process_time() - begin
@@ -109,20 +113,21 @@ def _traced(problem: LargeProblem, length: float) -> LargeBranch:
 
 
 def richardson(costs: Sequence[FoldCost]) -> list[float]:
-    """The limit of folds at steps each half of the one before, from every two in
-    turn."""
-    return [
-        fine.parameter + (fine.parameter - coarse.parameter) / 3.0
-        for coarse, fine in pairwise(costs)
-        if fine.side + 1 == 2 * (coarse.side + 1)
-    ]
+    """The limit of folds as their errors go with the square of the step, from every two
+    in turn."""
+    limits = []
+    for coarse, fine in pairwise(costs):
+        ratio = ((fine.side + 1) / (coarse.side + 1)) ** 2
+        change = fine.parameter - coarse.parameter
+        limits.append(fine.parameter + change / (ratio - 1.0))
+    return limits
 
 
 def exponent(costs: Sequence[FoldCost], quantity: str) -> float:
     """The exponent of time or memory against the number of unknowns, by least
     squares."""
-    halved = [cost for cost in costs if cost.side in HALVED]
-    fitted = [cost for cost in halved if cost.unknowns >= FITTED_FROM]
+    usual = [cost for cost in costs if cost.dimensions == 1 or cost.side in HALVED]
+    fitted = [cost for cost in usual if cost.unknowns >= FITTED_FROM]
     if len(fitted) < 2:
         return float("nan")
     unknowns = np.log([cost.unknowns for cost in fitted])
@@ -146,6 +151,21 @@ def crossing_errors(points: int) -> tuple[np.ndarray, float]:
     return errors, time.process_time() - begin
 
 
+def hopf_errors(points: int) -> tuple[np.ndarray, float]:
+    """How far the Hopf points of the Brusselator are from the known ones (k,), and the
+    processor time (s)."""
+    begin = time.process_time()
+    field = Brusselator(points)
+    problem = LargeProblem(
+        field.residual, field.n, (4.0, LARGEST_B), pattern=field.pattern, size=field.a
+    )
+    settings = LargeSettings(eigenvalues=12)
+    branch = trace_large_branch(problem, field.constant(4.2), settings=settings)
+    located = np.array([point.parameter for point in branch.hopf_points])
+    errors = located - field.hopf_points_below(LARGEST_B)[0]
+    return errors, time.process_time() - begin
+
+
 # --- figure and table -----------------------------------------------------------------
 
 
@@ -157,14 +177,16 @@ def draw(costs: Sequence[FoldCost]) -> Figure:
     square = [cost for cost in costs if cost.dimensions == 2]
     for solver, marker in (("fast Poisson", "o-"), ("sparse LU", "s--")):
         own = [cost for cost in square if cost.solver == solver]
-        label = f"{solver}: n^{exponent(own, 'seconds'):.2f}"
+        label = f"2-D, {solver}: n^{exponent(own, 'seconds'):.2f}"
         _line_and_apart(times, own, "seconds", marker, label)
+    on_line = [cost for cost in costs if cost.dimensions == 1]
+    label = f"1-D, sparse LU: n^{exponent(on_line, 'seconds'):.2f}"
+    _line_and_apart(times, on_line, "seconds", "^-", label)
     times.set(xlabel="unknowns", ylabel="processor time (s)")
-    times.legend()
+    times.legend(loc="lower right")
     by_poisson = [cost for cost in square if cost.solver == "fast Poisson"]
     _line_and_apart(memory, by_poisson, "memory", "o-", "fast Poisson")
     memory.set(xlabel="unknowns", ylabel="resident memory (MB)")
-    on_line = [cost for cost in costs if cost.dimensions == 1]
     for name, own, limit in (
         ("1-D", on_line, FOLD_IN_1D),
         ("2-D", by_poisson, FOLD_IN_2D),
@@ -184,8 +206,8 @@ def _line_and_apart(
     axes: Axes, costs: Sequence[FoldCost], quantity: str, marker: str, label: str
 ) -> None:
     """A quantity against the unknowns, that of 10,000 as a point of its own."""
-    halved = [cost for cost in costs if cost.side in HALVED]
-    apart = [cost for cost in costs if cost.side not in HALVED]
+    halved = [cost for cost in costs if cost.dimensions == 1 or cost.side in HALVED]
+    apart = [cost for cost in costs if cost not in halved]
     unknowns = [cost.unknowns for cost in halved]
     values = [getattr(cost, quantity) for cost in halved]
     (line,) = axes.loglog(unknowns, values, marker, label=label)
@@ -218,11 +240,13 @@ def main(out: Path, largest: int) -> None:
     """Measure Bratu's problem up to the largest number of points a side."""
     cost_of_fold(15, 2, "fast Poisson")  # imports, which are no part of it
     runs = [(side, 1, "sparse LU") for side in IN_1D]
-    for side in sorted((*HALVED, TEN_THOUSAND)):
+    for side in sorted((*HALVED, *COARSE, TEN_THOUSAND)):
         if side <= largest:
             runs.append((side, 2, "fast Poisson"))
             if side <= LARGEST_FACTORED:
                 runs.append((side, 2, "sparse LU"))
+    # last, as memory is the largest so far
+    runs += [(side, 1, "sparse LU") for side in LONGER]
     costs: list[FoldCost] = []
     for run in runs:
         costs.append(cost_of_fold(*run))
@@ -233,14 +257,24 @@ def main(out: Path, largest: int) -> None:
         own = [cost for cost in square if cost.solver == solver]
         click.echo(f"{solver}: time goes with n^{exponent(own, 'seconds'):.2f}")
     line = [cost for cost in costs if cost.dimensions == 1]
-    halved = [c for c in square if c.solver == "fast Poisson" and c.side in HALVED]
-    for name, own in (("1-D", line), ("2-D", halved)):
+    click.echo(f"1-D: time goes with n^{exponent(line, 'seconds'):.2f}")
+    poisson = [cost for cost in square if cost.solver == "fast Poisson"]
+    halved = [cost for cost in poisson if cost.side in HALVED]
+    coarser = [cost for cost in poisson if cost.side in (*COARSE, TEN_THOUSAND)]
+    short = [cost for cost in line if cost.side in IN_1D]
+    for name, own in (("1-D", short), ("2-D", halved), ("2-D", coarser)):
         limits = ", ".join(f"{limit:.9f}" for limit in richardson(own))
         click.echo(f"Richardson {name}: {limits}")
     for points in (200, 800):
         errors, seconds = crossing_errors(points)
         click.echo(
             f"Swift-Hohenberg, {points} unknowns: {len(errors)} crossings within "
+            f"{np.abs(errors).max():.1e}, {seconds:.2f} s"
+        )
+    for points in (100, 1_000, 10_000):
+        errors, seconds = hopf_errors(points)
+        click.echo(
+            f"Brusselator, {2 * points} unknowns: {len(errors)} Hopf points within "
             f"{np.abs(errors).max():.1e}, {seconds:.2f} s"
         )
 

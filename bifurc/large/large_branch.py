@@ -11,7 +11,14 @@ from bifurc.branch import Branch, Outcome
 from bifurc.singular.point import Kind
 from bifurc.units import Units
 
-KINDS = (Kind.FOLD, Kind.CROSSING, Kind.RANK_DROP, Kind.MULTIPLE, Kind.NEAR_MISS)
+KINDS = (
+    Kind.FOLD,
+    Kind.HOPF,
+    Kind.CROSSING,
+    Kind.RANK_DROP,
+    Kind.MULTIPLE,
+    Kind.NEAR_MISS,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,7 +26,8 @@ class LargePoint:
     """A special point at arclength ``s`` of a branch, at ``u`` (n,), the parameter last.
 
     ``gap`` is what F misses there, over the magnitude, to be singular: the smallest
-    singular value at a near miss, rounding at the others. ``bend``: the second
+    singular value at a near miss, rounding at the others; at a Hopf point, where a pair of
+    eigenvalues is +-i ``frequency``, their real part over their size. ``bend``: the second
     derivative of the parameter in the arclength at a fold. ``null_vectors`` (q, n) are
     the directions across the branch in which F' vanishes where its rank drops by q.
     ``directions`` (k, n): du/ds of the curves that pass at a crossing, the first that of
@@ -35,6 +43,7 @@ class LargePoint:
     directions: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))
     null_vectors: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))
     order: int = 0
+    frequency: float = 0.0
 
     @property
     def multiplicity(self) -> int:
@@ -55,6 +64,33 @@ class LargePoint:
         )
 
 
+@dataclass(frozen=True, eq=False)
+class Eigenvalues:
+    """The ``values`` (k, q) of A next to a ``shift`` at ``places`` (k,) of a curve, by
+    arclength, the nearest first."""
+
+    shift: complex
+    places: np.ndarray
+    values: np.ndarray
+
+    @property
+    def unstable(self) -> np.ndarray:
+        """How many of them (k,) have a positive real part."""
+        counts: np.ndarray = np.count_nonzero(self.values.real > 0.0, axis=1)
+        return counts
+
+    @property
+    def reach(self) -> np.ndarray:
+        """How far (k,) from the shift all eigenvalues are known."""
+        distances: np.ndarray = np.abs(self.values - self.shift).max(
+            axis=1, initial=0.0
+        )
+        return distances
+
+
+NO_EIGENVALUES = Eigenvalues(0.0, np.empty(0), np.empty((0, 0)))
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class LargeBranch:
     """A smooth curve u(s) of a `LargeProblem`, s from 0 to ``length``.
@@ -63,6 +99,8 @@ class LargeBranch:
     its size, and the parameter over a quarter of its bounds. ``points`` are the special
     ones, in the order of s. ``branch`` is the curve in ``units``. ``values`` (k, q) are
     the smallest singular values of F', over the magnitude, at ``places`` (k,).
+    ``eigenvalues`` are those of F' without the parameter, in the user's units. Along
+    ``unsettled`` stretches, by arclength, some change sides, and how is not told.
     """
 
     branch: Branch
@@ -70,6 +108,8 @@ class LargeBranch:
     points: tuple[LargePoint, ...]
     places: np.ndarray
     values: np.ndarray
+    eigenvalues: Eigenvalues = NO_EIGENVALUES
+    unsettled: tuple[tuple[float, float], ...] = ()
 
     @property
     def length(self) -> float:
@@ -105,6 +145,11 @@ class LargeBranch:
     def crossings(self) -> tuple[LargePoint, ...]:
         """The points where another curve passes."""
         return self.points_of(Kind.CROSSING)
+
+    @property
+    def hopf_points(self) -> tuple[LargePoint, ...]:
+        """The points where a pair of eigenvalues is imaginary."""
+        return self.points_of(Kind.HOPF)
 
     @property
     def near_misses(self) -> tuple[LargePoint, ...]:

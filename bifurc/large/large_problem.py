@@ -326,8 +326,10 @@ def column_groups(pattern: csr_array) -> np.ndarray:
     evaluation of a function along a group gives all derivatives in its columns (Curtis,
     Powell and Reid 1974).
     """
-    counts = pattern.astype(np.int32)
-    counts.data[:] = 1
+    from scipy.sparse import csr_array
+
+    entries = np.ones(len(pattern.indices), dtype=np.int32)
+    counts = csr_array((entries, pattern.indices, pattern.indptr), shape=pattern.shape)
     sharing = (counts.T @ counts).tocsr()
     groups = np.full(pattern.shape[1], -1)
     for column in range(len(groups)):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,11 +19,13 @@ from bifurc.decisions import (
     is_trivial_field,
 )
 from bifurc.errors import ProblemError
+from bifurc.large.hopf_points import eigenvalues_along, hopf_points_on
 from bifurc.large.large_branch import LargeBranch, LargePoint
 from bifurc.large.large_problem import LargeProblem
 from bifurc.large.scaled_problem import ScaledProblem
 from bifurc.large.singular_triples import singular_profile, unit_tangent
 from bifurc.large.special_points import crossings_on, folds_on, near_misses_on
+from bifurc.limits import one_thread
 from bifurc.numerics.null_spaces import null_vector
 from bifurc.settings import TraceSettings
 from bifurc.system import relative_gaps, relative_residuals
@@ -46,7 +49,8 @@ class LargeSettings:
 
     Lengths in ``tracing`` are arclengths in the problem's units. With ``values`` of the
     smallest singular values, taken at ``places`` of each piece, crossings and near
-    misses are looked for; with none only folds. ``both_ways``: whether the curve is
+    misses are looked for; with none only folds. With ``eigenvalues`` of those that lie
+    next to a ``shift`` Hopf points are. ``both_ways``: whether the curve is
     followed to both sides of the start, and not only along its direction. Raises
     `ProblemError` for negative numbers and other kinds of things.
     """
@@ -55,12 +59,18 @@ class LargeSettings:
     values: int = 0
     places: int = 6
     both_ways: bool = False
+    eigenvalues: int = 0
+    shift: complex = 0.0
 
     def __post_init__(self) -> None:
         check_type("tracing", self.tracing, TraceSettings)
         check_whole("values", self.values, 0)
         check_whole("places", self.places, 1)
         check_type("both_ways", self.both_ways, bool)
+        check_whole("eigenvalues", self.eigenvalues, 0)
+        is_number = isinstance(self.shift, int | float | complex)
+        if not is_number or not np.isfinite(self.shift):
+            raise ProblemError("shift", repr(self.shift), "a finite number")
 
 
 DEFAULT_SETTINGS = LargeSettings()
@@ -72,8 +82,8 @@ def trace_large_branch(
     direction: Sequence[float] | np.ndarray | None = None,
     settings: LargeSettings = DEFAULT_SETTINGS,
 ) -> LargeBranch:
-    """The curve through a solution next to ``start`` (n,), with folds, crossings and near
-    misses located.
+    """The curve through a solution next to ``start`` (n,), with folds, crossings, near
+    misses and Hopf points located.
 
     It is followed to the side of ``direction`` (n,), which is that of a growing
     parameter unless given, until it closes, leaves the bounds of the parameter, or is
@@ -98,7 +108,9 @@ def trace_large_branch(
     check_type("settings", settings, LargeSettings)
     checked = problem.check_start(start)
     along = _checked_direction(problem, direction)
-    with np.errstate(over="ignore", invalid="ignore"):
+    # threads of BLAS share only a solver of the user's: vectors are too short for them
+    threads = one_thread(problem.n) if problem.solver is None else nullcontext()
+    with threads, np.errstate(over="ignore", invalid="ignore"):
         scaled, branch = _traced_at_its_size(problem, checked, along, settings)
         _check_is_solved(scaled, checked, branch)
         points = folds_on(scaled, branch)
@@ -106,10 +118,25 @@ def trace_large_branch(
         crossings = crossings_on(scaled, branch, profile)
         points += crossings
         points += near_misses_on(scaled, branch, profile, crossings)
+        eigenvalues = eigenvalues_along(
+            scaled,
+            branch,
+            settings.places,
+            settings.eigenvalues,
+            complex(settings.shift),
+        )
+        search = hopf_points_on(scaled, branch, eigenvalues)
+        points += search.points
         _check_jacobian_along(scaled, branch, points)
     points.sort(key=lambda point: point.s)
     return LargeBranch(
-        branch, scaled.own_units, tuple(points), profile.places, profile.values
+        branch,
+        scaled.own_units,
+        tuple(points),
+        profile.places,
+        profile.values,
+        eigenvalues,
+        search.unsettled,
     )
 
 

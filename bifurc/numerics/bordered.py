@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from functools import partial
+from functools import lru_cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,11 +18,13 @@ if TYPE_CHECKING:
 
 FEW = 16  # unknowns of a small matrix
 RANK = 1e-12  # diagonal entries of R below this share of the largest count as zero
-# largest entry of the border of a sparse matrix, over the median one of the matrix
-BORDER = 1e-3
+# Largest entry of the border of a sparse matrix, over the median one of the matrix; times
+# n^2 of n unknowns, as along a chain pivots fall and the border grows by up to n.
+BORDER, GROWN = 1e-3, 10.0
 # Share of the largest entry of a column from which on the diagonal one is the pivot: the
 # first keeps the factors sparse, the second bounds their growth as far as can be.
 PIVOTS = (0.1, 1.0)
+DENSE = 10.0  # times the root of n: entries of a row or column that comes last
 ACCURATE = 1e-10  # backward error of a solution: rounding leaves 1e-14
 ROUNDING = 1e-13  # of entries, over the typical one
 # Solutions that are so large come of a matrix that counts as exactly singular: the
@@ -189,8 +191,9 @@ class SparseBordered:
         largest = np.zeros(jacobian.shape[0])
         np.maximum.at(largest, entries.row, np.abs(entries.data))
         typical = float(np.median(largest)) or 1.0
-        self._below = BORDER * typical / np.abs(rows).max(axis=1)
-        self._beside = BORDER * typical / np.abs(columns).max(axis=0)
+        border = min(BORDER, GROWN / jacobian.shape[1] ** 2) * typical
+        self._below = border / np.abs(rows).max(axis=1)
+        self._beside = border / np.abs(columns).max(axis=0)
         (i, j), (k, q) = np.nonzero(rows), np.nonzero(columns)
         m, n = jacobian.shape
         values = [entries.data, (self._below * rows.T).T[i, j]]
@@ -202,7 +205,7 @@ class SparseBordered:
         size = n + columns.shape[1]
         matrix = csc_array((np.concatenate(values), places), shape=(size, size))
         if may_be_singular:
-            self._factors = _factors_by_rounding(matrix, typical)
+            self._factors = factors_by_rounding(matrix, typical)
         else:
             self._factors = sparse_factors(matrix)
 
@@ -225,7 +228,7 @@ def _weighted(vectors: np.ndarray, weights: np.ndarray) -> np.ndarray:
     return weighted
 
 
-def _factors_by_rounding(matrix: csc_array, typical: float) -> SuperLU:
+def factors_by_rounding(matrix: csc_array, typical: float) -> SparseFactors:
     """The factors of a matrix with entries of a ``typical`` size; of one that is exactly
     singular, or so nearly that solutions overflow, those of what rounding may have made
     of it."""
@@ -241,8 +244,24 @@ def _factors_by_rounding(matrix: csc_array, typical: float) -> SuperLU:
     return sparse_factors((matrix + shift).tocsc())
 
 
-def sparse_factors(matrix: csc_array) -> SuperLU:
-    """The LU factors of a square matrix, columns ordered by minimum degree of A^T + A.
+class SparseFactors:
+    """Solutions of systems with a sparse matrix and its transpose, by the ``factors`` of
+    the matrix with rows and columns in another ``order`` (n,)."""
+
+    def __init__(self, factors: SuperLU, order: np.ndarray):
+        self._factors = factors
+        self._order = order
+
+    def solve(self, right: np.ndarray, trans: str = "N") -> np.ndarray:
+        """x, (n,) or (n, j), with M x = ``right``, or M^T x where ``trans`` is "T"."""
+        in_order: np.ndarray = self._factors.solve(right[self._order], trans)
+        solution: np.ndarray = np.empty_like(in_order)
+        solution[self._order] = in_order
+        return solution
+
+
+def sparse_factors(matrix: csc_array) -> SparseFactors:
+    """The LU factors of a square matrix, in an order that keeps them sparse.
 
     A small diagonal pivot is taken where that saves entries. Along a chain of equations
     the factors may grow by the inverse of it in each of them, until no digit is left: so
@@ -254,15 +273,57 @@ def sparse_factors(matrix: csc_array) -> SuperLU:
 
     size = float(np.linalg.norm(matrix.data))
     right = np.cos(np.arange(matrix.shape[0]))
+    starts, rows = matrix.indptr.astype(np.int32), matrix.indices.astype(np.int32)
+    order = _sparse_order(starts.tobytes(), rows.tobytes())
+    ordered = matrix[order][:, order]
     for pivot in PIVOTS:
         try:
-            factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=pivot)
+            factors = splu(ordered, permc_spec="NATURAL", diag_pivot_thresh=pivot)
         except RuntimeError:
             if pivot == PIVOTS[-1]:
                 raise
             continue
-        solution = factors.solve(right)
+        by_order = SparseFactors(factors, order)
+        solution = by_order.solve(right)
         left = float(np.linalg.norm(matrix @ solution - right))
         if left <= ACCURATE * size * float(np.linalg.norm(solution)):
             break
-    return factors
+    return by_order
+
+
+@lru_cache(maxsize=4)
+def _sparse_order(starts: bytes, rows: bytes) -> np.ndarray:
+    """An order (n,) of the rows and columns of a square matrix with entries in ``rows``
+    (e,) by columns, which begin at ``starts`` (n + 1,), int32 both: by minimum degree of
+    A^T + A, but what meets nearly all others comes last. Along a curve many matrices have
+    one pattern.
+
+    A border among the others would cost n updates of degrees at each of n steps.
+    """
+    from scipy.sparse import csc_array
+
+    pointers, indices = np.frombuffer(starts, np.int32), np.frombuffer(rows, np.int32)
+    n = len(pointers) - 1
+    entries = np.ones(len(indices))
+    pattern = csc_array((entries, indices, pointers), shape=(n, n))
+    degrees = np.maximum(np.diff(pointers), np.bincount(indices, minlength=n))
+    is_dense = degrees > max(FEW, DENSE * np.sqrt(n))
+    inner = np.flatnonzero(~is_dense)
+    by_degree = _by_minimum_degree(pattern[inner][:, inner])
+    order = np.concatenate([inner[by_degree], np.flatnonzero(is_dense)])
+    order.setflags(write=False)
+    return order
+
+
+def _by_minimum_degree(pattern: csc_array) -> np.ndarray:
+    """The order (n,) of a square pattern by minimum degree of A^T + A. SuperLU gives it
+    with factors only: here of a regular matrix, of which next to nothing is kept."""
+    from scipy.sparse import csc_array, eye_array
+    from scipy.sparse.linalg import spilu
+
+    n = pattern.shape[0]
+    if not n:
+        return np.empty(0, dtype=int)
+    regular = csc_array(pattern + 2.0 * n * eye_array(n))
+    order: np.ndarray = spilu(regular, 1.0, 1.0, permc_spec="MMD_AT_PLUS_A").perm_c
+    return np.argsort(order)

@@ -9,7 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.limits import is_time_over, left_behind
-from bifurc.numerics.bordered import Bordered, bordered_at, bordered_matrix
+from bifurc.numerics.bordered import (
+    Bordered,
+    bordered_at,
+    bordered_matrix,
+    sparse_factors,
+)
 from bifurc.system import (
     SphereProjection,
     System,
@@ -259,16 +264,21 @@ def _damped_step(problem: System, at: _Iterate, weight: float) -> np.ndarray | N
         solve = left_behind(problem.n, np.linalg.lstsq)
         step, *_ = solve(normal, jacobian.T @ at.residual, rcond=None)
         return np.asarray(step)
-    from scipy.sparse import csc_array, eye_array
-    from scipy.sparse.linalg import splu
+    from scipy.sparse import block_array, csc_array, eye_array
 
     matrix = csc_array(jacobian) / problem.magnitude
     if not np.all(np.isfinite(matrix.data)):
         return None
-    # (J^T J + w)^-1 J^T = J^T (J J^T + w)^-1, which is as sparse as the equations
-    normal = matrix @ matrix.T + max(weight, LEAST_WEIGHT) * eye_array(matrix.shape[0])
-    sparse_step: np.ndarray = matrix.T @ splu(csc_array(normal)).solve(at.residual)
-    return sparse_step
+    # d = J^T y with (J J^T + w) y = F: neither J J^T nor J^T J is formed, as a parameter
+    # that is in all equations would fill it
+    m, n = matrix.shape
+    weights = max(weight, LEAST_WEIGHT) * eye_array(m)
+    both = block_array([[-eye_array(n), matrix.T], [matrix, weights]], format="csc")
+    try:
+        factors = sparse_factors(both)
+    except RuntimeError:  # exactly singular
+        return None
+    return np.asarray(factors.solve(np.append(np.zeros(n), at.residual))[:n])
 
 
 def project_to_sphere_by_newton(

@@ -25,12 +25,13 @@ def singular_values(problem: System, points: np.ndarray) -> np.ndarray:
     if not points.size:
         return np.empty(points.shape)
     flat = points.reshape(-1, points.shape[-1])
-    jacobians = relative_jacobians(problem, flat)
     if problem.n <= FEW:
+        jacobians = relative_jacobians(problem, flat)
         return _core.singular_values(jacobians).reshape(points.shape)
-    values = values_of(jacobians)
     out = np.zeros((len(flat), problem.n))
-    out[:, : values.shape[1]] = values
+    for row, point in zip(out, flat, strict=True):  # one large matrix at a time
+        values = values_of(relative_jacobians(problem, point[None])[0])
+        row[: len(values)] = values
     return out.reshape(points.shape)
 
 

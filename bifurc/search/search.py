@@ -17,7 +17,7 @@ from bifurc.decisions import (
     may_be_crossed,
     stops_short,
 )
-from bifurc.limits import CutOff, Deadline, cut_off_after, ending_in_time
+from bifurc.limits import CutOff, Deadline, cut_off_after
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.answer.completeness import asks_for_more_starts
@@ -119,7 +119,7 @@ class Search:
         """Take all steps, each until it leads to nothing new."""
         deadline = self.run.deadline
         try:
-            with cut_off_after(deadline), ending_in_time(deadline):
+            with cut_off_after(deadline):
                 for step in STEPS:
                     self.step = step.__name__.replace("_", " ")
                     self._tell()

@@ -9,6 +9,7 @@ probed.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
@@ -25,7 +26,7 @@ from bifurc.decisions import (
     may_be_null,
     may_fill_null_space,
 )
-from bifurc.limits import Deadline, ending_in_time, has_to_end
+from bifurc.limits import CutOff, Deadline, cut_off_after
 from bifurc.numerics.blur import rounding_unit
 from bifurc.numerics.corrector import correct_normal
 from bifurc.numerics.null_spaces import null_spaces
@@ -48,8 +49,7 @@ HIDDEN = 10.0
 # Residual below which what projection leaves is on its way to a solution, and how many
 # times it is projected again at most.
 SLOW, AGAIN = 1e-6, 3
-# Points probed between two looks at the clock, and where the time may be over before all
-# are.
+# Points probed together, and where the time may be over before all are.
 CHUNK, FEW = 256, 4
 
 
@@ -88,30 +88,27 @@ def local_dimensions(
     nullity = np.zeros(count, dtype=int)
     regular = np.zeros(count, dtype=bool)
     shaky = np.zeros(count, dtype=bool)
-    for begin in range(0, count, CHUNK):
-        if deadline.passed:
-            break
-        part = slice(begin, begin + CHUNK)
-        sigma, right = null_spaces(problem, points[part])
-        nullity[part] = np.count_nonzero(may_be_null(sigma), axis=1)
-        for rows in _alike(nullity[part]):
-            k = int(nullity[part][rows[0]])
-            basis = right[rows, problem.n - k :]
-            own = None
-            with ending_in_time(deadline):
+    with suppress(CutOff), cut_off_after(deadline):
+        for begin in range(0, count, CHUNK):
+            part = slice(begin, begin + CHUNK)
+            sigma, right = null_spaces(problem, points[part])
+            nullity[part] = np.count_nonzero(may_be_null(sigma), axis=1)
+            for rows in _alike(nullity[part], deadline):
+                if deadline.passed:
+                    return LocalDimensions(dimension, nullity, regular, shaky)
+                k = int(nullity[part][rows[0]])
+                basis = right[rows, problem.n - k :]
                 own = _dimensions_of_nullity(problem, points[part][rows], basis)
-            if own is None:
-                return LocalDimensions(dimension, nullity, regular, shaky)
-            dimension[begin + rows] = own.dimension
-            regular[begin + rows], shaky[begin + rows] = own.regular, own.shaky
+                regular[begin + rows], shaky[begin + rows] = own.regular, own.shaky
+                dimension[begin + rows] = own.dimension  # last: now they are reached
     return LocalDimensions(dimension, nullity, regular, shaky)
 
 
-def _alike(nullity: np.ndarray) -> list[np.ndarray]:
+def _alike(nullity: np.ndarray, deadline: Deadline) -> list[np.ndarray]:
     """The numbers of points that are looked at together: those of one nullity (c,), a few
-    where the time may be over before all are done."""
+    where a ``deadline`` may pass before all are done."""
     groups = [np.flatnonzero(nullity == k) for k in np.unique(nullity)]
-    at_once = FEW if has_to_end() else CHUNK
+    at_once = FEW if deadline.seconds < np.inf else CHUNK
     return [
         group[first : first + at_once]
         for group in groups

@@ -13,8 +13,10 @@ import sys
 from importlib import import_module
 from pkgutil import iter_modules
 from types import ModuleType
+from typing import Any
 
 import click
+from click.exceptions import Exit
 
 from bifurc.errors import BifurcError
 from linkages.app import commands
@@ -74,6 +76,14 @@ class Commands(click.Group):
         if self.get_command(ctx, name) is None and not name.startswith("-"):
             raise CommandError(self._unknown(ctx, name))
         return super().resolve_command(ctx, args)
+
+    def make_context(self, *args: Any, **extra: Any) -> click.Context:
+        """What the arguments say, of which click would make an abort at Ctrl-C."""
+        try:
+            return super().make_context(*args, **extra)
+        except KeyboardInterrupt:
+            click.echo("interrupted", err=True)
+            raise Exit(ExitCode.INTERRUPTED) from None
 
     def invoke(self, ctx: click.Context) -> object:
         """Run the command."""

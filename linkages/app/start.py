@@ -19,6 +19,9 @@ def main() -> None:
     os.environ["MPLBACKEND"] = "agg"
     warnings.formatwarning = _in_one_line
     try:
+        from bifurc.limits import hear_interrupts
+
+        hear_interrupts()
         from linkages.app.cli import main as command_line
     except KeyboardInterrupt:
         sys.stderr.write("interrupted\n")

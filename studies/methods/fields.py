@@ -103,3 +103,51 @@ class SwiftHohenberg:
         values = (1.0 - self._waves * np.sin(self._angles) ** 2) ** 2
         below: np.ndarray = np.sort(values[values < parameter])
         return below
+
+
+# --- the Brusselator ------------------------------------------------------------------
+
+
+class Brusselator:
+    """u' = D_u u'' + A - (B + 1) u + u^2 v and v' = D_v v'' + B u - u^2 v at ``points``
+    inner points of the unit interval, u = A and v = B / A at both ends: B is the
+    parameter, and u = A, v = B / A a solution for every B (Prigogine and Lefever 1968)."""
+
+    a, of_u, of_v = 2.0, 0.008, 0.004  # A, D_u and D_v
+
+    def __init__(self, points: int):
+        shape = (points, points)
+        second = diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=shape)
+        self.laplacian = csr_array((points + 1) ** 2 * second)
+        self.points = points
+        self.n = 2 * points + 1
+
+    def residual(self, x: np.ndarray) -> np.ndarray:
+        """F (2 points,) at (u, v, B)."""
+        u, v, b = x[: self.points], x[self.points : -1], x[-1]
+        reaction = b * u - u * u * v
+        along_u = self.of_u * (self.laplacian @ (u - self.a)) + self.a - u - reaction
+        along_v = self.of_v * (self.laplacian @ (v - b / self.a)) + reaction
+        return np.concatenate([along_u, along_v])
+
+    @property
+    def pattern(self) -> csr_array:
+        """Where F' has entries, without the parameter's column."""
+        return csr_array(kron(np.ones((2, 2)), abs(self.laplacian)))
+
+    def constant(self, b: float) -> np.ndarray:
+        """The constant solution (n,) at a parameter."""
+        u, v = np.full(self.points, self.a), np.full(self.points, b / self.a)
+        return np.concatenate([u, v, [b]])
+
+    def hopf_points_below(self, parameter: float) -> tuple[np.ndarray, np.ndarray]:
+        """The parameters, in order, at which a pair of eigenvalues of a sine wave is
+        imaginary, and their frequencies: trace and determinant of two rows by two
+        columns, in closed form."""
+        angles = 0.5 * np.pi * np.arange(1, self.points + 1) / (self.points + 1)
+        waves = 4.0 * (self.points + 1) ** 2 * np.sin(angles) ** 2
+        b = 1.0 + self.a**2 + (self.of_u + self.of_v) * waves
+        of_u, of_v = b - 1.0 - self.of_u * waves, -(self.a**2) - self.of_v * waves
+        squares = of_u * of_v + self.a**2 * b
+        is_pair = (b < parameter) & (squares > 0.0)
+        return b[is_pair], np.sqrt(squares[is_pair])

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 import threading
 import time
 
@@ -13,6 +14,7 @@ from bifurc.limits import (
     Deadline,
     HeldInterrupt,
     cut_off_after,
+    hear_interrupts,
     left_behind,
     whole,
 )
@@ -41,6 +43,15 @@ def test_an_interrupt_waits_for_the_next_check():
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
+def test_blocks_around_know_that_it_was_pressed():
+    with HeldInterrupt() as outer:
+        with pytest.raises(KeyboardInterrupt), HeldInterrupt():
+            press()
+        assert outer.was_pressed
+        with HeldInterrupt() as later:
+            assert later.was_pressed
+
+
 def test_an_interrupt_without_a_check_comes_at_the_end_of_the_block():
     done = []
     with pytest.raises(KeyboardInterrupt), HeldInterrupt():
@@ -65,6 +76,12 @@ def test_a_deadline_passes_at_an_interrupt():
         press()
         assert deadline.passed
     assert deadline.left == 0.0
+
+
+def test_a_share_of_a_deadline_is_over_before_it():
+    part = Deadline(100.0).share(0.25)
+    assert 20.0 < part.left <= 25.0
+    assert Deadline().share(0.25).left == float("inf")
 
 
 def test_the_inner_of_two_blocks_takes_the_interrupt():
@@ -138,6 +155,72 @@ def test_what_is_whole_is_cut_off_behind_its_end():
         write()
         last(60.0)
     assert written == ["begin", "end"]
+
+
+class LastsInDestructor:
+    """What a signal raises there is printed, and goes no further."""
+
+    def __init__(self, destructor):
+        self.destructor = destructor
+
+    def __del__(self):
+        self.destructor()
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_what_python_swallows_is_cut_off_again():
+    with pytest.raises(CutOff), cut_off_after(Deadline(0.0)):
+        LastsInDestructor(lambda: last(60.0))
+        last(60.0)
+
+
+@pytest.fixture
+def heard(monkeypatch):
+    """Ctrl-C as a program of its own hears it."""
+    monkeypatch.setattr(sys, "unraisablehook", sys.unraisablehook)
+    hear_interrupts()
+
+
+def test_an_interrupt_that_python_swallows_comes_again(heard):
+    with pytest.raises(KeyboardInterrupt):
+        LastsInDestructor(press)
+        last(60.0)
+    assert signal.getsignal(signal.SIGALRM) is signal.SIG_DFL
+
+
+def test_an_interrupt_waits_for_the_end_of_an_import(heard, tmp_path, monkeypatch):
+    source = "import os, signal, time\nos.kill(os.getpid(), signal.SIGINT)\n"
+    source += "end = time.perf_counter() + 0.1\n"
+    source += "while time.perf_counter() < end:\n    pass\nis_whole = True\n"
+    (tmp_path / "imported_at_ctrl_c.py").write_text(source)
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(KeyboardInterrupt):
+        import imported_at_ctrl_c  # noqa: F401
+
+        last(60.0)
+    assert sys.modules.pop("imported_at_ctrl_c").is_whole
+
+
+def test_blocks_are_cut_off_with_those_around_them():
+    ended = []
+    began = time.perf_counter()
+    with pytest.raises(CutOff), cut_off_after(Deadline(0.0)):
+        with cut_off_after(Deadline(60.0)):
+            pass
+        with pytest.raises(CutOff), cut_off_after(Deadline(60.0)):
+            last(60.0)
+        ended.append("inner")
+        last(60.0)
+    assert ended == ["inner"]
+    assert time.perf_counter() - began < 30.0
+    assert signal.getsignal(signal.SIGALRM) is signal.SIG_DFL
+
+
+def test_an_inner_block_leaves_the_time_of_the_outer_one():
+    with cut_off_after(Deadline()):
+        with pytest.raises(CutOff), cut_off_after(Deadline(0.0)):
+            last(60.0)
+        assert signal.getitimer(signal.ITIMER_REAL)[0] == 0.0
 
 
 def test_what_ends_by_itself_is_not_cut_off():

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.sparse import csc_array, diags_array, hstack, vstack
+from scipy.sparse import csc_array, diags_array, eye_array, hstack, vstack
 from scipy.sparse.linalg import splu
 
 from bifurc.numerics.bordered import Bordered, SparseBordered
@@ -49,6 +49,30 @@ def test_the_border_does_not_fill_a_sparse_factorisation(monkeypatch):
     right = np.ones((501, 2))
     solved = SparseBordered(matrix, np.linspace(0.1, 1.0, 501)[None]).solve(right)
     assert np.allclose(matrix @ solved, 1.0, atol=1e-9)
+    assert made[0].L.nnz + made[0].U.nnz < 4 * matrix.nnz
+
+
+def test_a_border_fills_no_long_chain_with_a_fold(monkeypatch) -> None:
+    # about singular without the border: pivots fall along the chain, and the border grows
+    made = []
+
+    def factorise(*arguments, **options):
+        made.append(splu(*arguments, **options))
+        return made[-1]
+
+    monkeypatch.setattr("scipy.sparse.linalg.splu", factorise)
+    n = 20_000
+    second = diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(n, n))
+    lowest = 4 * np.sin(0.5 * np.pi / (n + 1)) ** 2
+    wave = np.sin(np.pi * np.arange(1, n + 1) / (n + 1))
+    matrix = csc_array(
+        hstack([second + lowest * eye_array(n), csc_array(wave[:, None])])
+    )
+    tangent = np.append(wave, 0.5)
+    right = np.append(np.zeros(n), 1.0)
+    solution = SparseBordered(matrix, tangent[None], may_be_singular=True).solve(right)
+    expected = np.append(wave, 0.0) / (wave @ wave)
+    assert np.allclose(solution, expected, atol=1e-6 * expected.max())
     assert made[0].L.nnz + made[0].U.nnz < 4 * matrix.nnz
 
 

@@ -479,7 +479,18 @@ def test_ctrl_c_during_the_imports_ends_in_one_line(monkeypatch, capsys):
     monkeypatch.delitem(sys.modules, "linkages.app.cli")
     monkeypatch.delattr(linkages.app, "cli")
     monkeypatch.setattr(sys, "meta_path", [Interrupted, *sys.meta_path])
+    monkeypatch.setattr("bifurc.limits.hear_interrupts", lambda: None)
     with pytest.raises(SystemExit) as end:
         start.main()
     assert end.value.code == ExitCode.INTERRUPTED
     assert capsys.readouterr().err == "interrupted\n"
+
+
+def test_ctrl_c_while_arguments_are_read_ends_in_one_line(monkeypatch):
+    def interrupt(*arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("click.Group.parse_args", interrupt)
+    result = bifurc("list")
+    assert result.exit_code == ExitCode.INTERRUPTED
+    assert result.stderr == "interrupted\n"
