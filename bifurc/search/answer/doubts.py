@@ -35,7 +35,7 @@ from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.search.answer.completeness import SearchDoubt
 from bifurc.search.findings import Findings
-from bifurc.search.own_units.unit_problem import UnitProblem
+from bifurc.search.own_units.unit_problem import sheets_beside
 from bifurc.search.records import RigidAssembly, TracedBranch
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
@@ -220,10 +220,9 @@ def _doubts_of_form(
     problem: Problem, index: int, traced: TracedBranch, points: Sequence[MeetingPoint]
 ) -> Iterator[Doubt]:
     """Whether a form is a curve, as far as doubles tell, and has no loose end."""
-    if isinstance(problem, UnitProblem):
-        apart = problem.sheets_beside(traced.branch)
-        if not is_multiple_curve(apart):
-            yield SearchDoubt.SEVERAL_CURVES.doubt(_name(index), apart)
+    apart = sheets_beside(problem, traced.branch, traced.profile.rank)
+    if not is_multiple_curve(apart):
+        yield SearchDoubt.SEVERAL_CURVES.doubt(_name(index), apart)
     branch, profile = traced.branch, traced.profile
     name = _name(index)
     is_regular = profile.rank == branch.n - 1
