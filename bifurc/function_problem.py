@@ -61,6 +61,7 @@ LARGEST_COMPARED = 200  # unknowns up to which a given derivative is compared
 START_SIZES = (1.0, 1e3, 1e-3, 1e6, 1e-6)  # of starts for unknowns without bounds
 FARTHEST = 100.0  # over the size of solutions, bounds where none are given
 NOISE_PROBES = 5  # points about which noise is measured
+DEVIATIONS = 4.0  # of noise by which the values at one point differ at most, as a rule
 HESSIAN_STEP = 1e-5  # third root of rounding: best for central differences of F'
 TINY = 1e-300  # keeps what is zero from being divided by
 NOT_RECORDED = Recording(None, "not asked for")
@@ -331,8 +332,12 @@ class FunctionProblem(EquationProblem):
         rng, value = np.random.default_rng(0), self.equations.value
         sizes = _sizes_within(self.domain)
         with np.errstate(all="ignore"):
+            before = np.array([value(probe) for probe in probes])
             noise = noise_of(value, probes[:NOISE_PROBES], sizes, rng)
             values = np.array([value(probe) for probe in probes])
+        if noise is not None:
+            drift = np.abs(values - before).max(axis=0) / DEVIATIONS
+            noise = np.maximum(noise, drift)
         if noise is not None:
             self._live_with(noise, values)
 

@@ -247,12 +247,8 @@ def _doubts_of_form(
     if branch.outcome in (Outcome.STEP_LIMIT, Outcome.TIME_LIMIT):
         yield SearchDoubt.TOO_LONG.doubt(name)
     if branch.outcome is Outcome.STALLED:
-        ends = {s for point in points for form, s in point.passes if form == index}
-        loose = [
-            branch(s)
-            for s in (0.0, branch.length)
-            if s not in ends and not np.any(_are_at_bounds(problem, branch(s)))
-        ]
+        passes = [s for point in points for form, s in point.passes if form == index]
+        loose = loose_ends(problem, branch, passes)
         if loose:
             reach = is_stub.threshold * problem.domain.scale
             rough = sum(not _is_smooth_within(problem, end, reach) for end in loose)
@@ -261,6 +257,18 @@ def _doubts_of_form(
                 yield kind.doubt(name, ends=len(loose), rough=rough)
             else:
                 yield SearchDoubt.STALLED.doubt(name, ends=len(loose))
+
+
+def loose_ends(
+    problem: Problem, branch: Branch, passes: Collection[float]
+) -> list[np.ndarray]:
+    """The ends (n,) of a branch that lie neither on the bounds nor at a singular point,
+    which it ``passes`` at these arclengths."""
+    return [
+        branch(s)
+        for s in (0.0, branch.length)
+        if s not in passes and not np.any(_are_at_bounds(problem, branch(s)))
+    ]
 
 
 def _is_smooth_within(problem: Problem, point: np.ndarray, reach: float) -> bool:

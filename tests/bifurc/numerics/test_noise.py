@@ -116,6 +116,18 @@ def test_noise_without_a_polynomial_is_refused_with_what_was_measured():
         FunctionProblem(noisy(steep, 1e-7), BOUNDS)
 
 
+def test_the_drift_of_a_function_from_call_to_call_is_noise():
+    calls = []
+
+    def drifting(u):
+        calls.append(u)
+        return circle(u) + 1e-6 * len(calls)
+
+    atlas = explore(FunctionProblem(drifting, BOUNDS))
+    assert len(atlas.forms) == 1
+    assert "noise" in {doubt.kind for doubt in atlas.completeness.doubts}
+
+
 def test_too_much_noise_is_refused_with_what_was_measured():
     with pytest.raises(
         ProblemError, match=r"noise of the values.*e-0[23] is not allowed"
