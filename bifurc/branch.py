@@ -28,6 +28,10 @@ class Outcome(Enum):
         "left the region: both ends lie on the bounds; "
         "widen the bounds to follow it further"
     )
+    ENDS_AT_A_POINT = (
+        "ends at a point: at a cusp or another singular point that is listed, or at two; "
+        "an end that is at none lies on the bounds"
+    )
     STALLED = (
         "stalled: no trusted step is left; "
         "look for a cusp or a singular point of higher order at the end"

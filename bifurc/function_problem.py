@@ -11,16 +11,19 @@ import numpy as np
 
 from bifurc.checks import UnknownName, check_callable, check_type, floats_of, name_of
 from bifurc.decisions import (
+    can_be_followed_in_noise,
     is_bearable_noise,
     is_derivative,
     is_free_of_noise,
     is_period,
+    is_plain_in_noise,
     is_solved_from_afar,
     is_whole_circle,
 )
 from bifurc.domain import Domain
 from bifurc.equations.evaluation import Equations, noise_of, sizes_of_rows
 from bifurc.equations.recording import Recording, record
+from bifurc.equations.smoothed import smoothed
 from bifurc.equations.system import CompiledSystem, ScaledTape
 from bifurc.equations.tape import Tape
 from bifurc.errors import ProblemError
@@ -60,6 +63,7 @@ LARGEST_COMPARED = 200  # unknowns up to which a given derivative is compared
 START_SIZES = (1.0, 1e3, 1e-3, 1e6, 1e-6)  # of starts for unknowns without bounds
 FARTHEST = 100.0  # over the size of solutions, bounds where none are given
 NOISE_PROBES = 5  # points about which noise is measured
+DEVIATIONS = 4.0  # of noise by which the values at one point differ at most, as a rule
 HESSIAN_STEP = 1e-5  # third root of rounding: best for central differences of F'
 TINY = 1e-300  # keeps what is zero from being divided by
 NOT_RECORDED = Recording(None, "not asked for")
@@ -364,22 +368,46 @@ class FunctionProblem(EquationProblem):
         rng, value = np.random.default_rng(0), self.equations.value
         sizes = _sizes_within(self.domain)
         with np.errstate(all="ignore"):
+            before = np.array([value(probe) for probe in probes])
             noise = noise_of(value, probes[:NOISE_PROBES], sizes, rng)
             values = np.array([value(probe) for probe in probes])
-        if noise is None:
-            return
+        if noise is not None:
+            drift = np.abs(values - before).max(axis=0) / DEVIATIONS
+            noise = np.maximum(noise, drift)
+        if noise is not None:
+            self._live_with(noise, values)
+
+    def _live_with(self, noise: np.ndarray, values: np.ndarray) -> None:
+        """Take the equations in ``noise`` (m,) for what can be done with them, given
+        ``values`` (k, m); raises `ProblemError` where that is nothing."""
         changes = np.ptp(values, axis=0) + np.abs(values).min(axis=0) + TINY
         share = float((noise / changes).max())
         if is_free_of_noise(share):
             return
-        if not is_bearable_noise(share):
+        self.equations = replace(self.equations, noise=noise, noise_share=share)
+        if is_plain_in_noise(share):
+            return
+        tape = self._smoothed(noise) if is_bearable_noise(share) else None
+        if tape is not None:
+            smooth = Recording(tape, "a polynomial next to its values")
+            self.equations = replace(self.equations, recording=smooth, noise=None)
+        elif not can_be_followed_in_noise(share):
             allowed = (
-                f"at most {is_bearable_noise.threshold:.0e} of what they change by within "
-                "the bounds, so that solutions can be told"
+                f"at most {can_be_followed_in_noise.threshold:.0e} of what they change by "
+                f"within the bounds, or {is_bearable_noise.threshold:.0e} where there is a "
+                "polynomial next to them, so that solutions can be told"
             )
             what = "noise of the values of the function"
             raise ProblemError(what, f"{share:.1e}", allowed)
-        self.equations = replace(self.equations, noise=noise, noise_share=share)
+
+    def _smoothed(self, noise: np.ndarray) -> Tape | None:
+        """Polynomials next to values that are noisy by ``noise`` (m,), where there are
+        some."""
+        domain = self.domain
+        is_box = np.isfinite(domain.bounds).all() and np.isinf(domain.periods).all()
+        if not is_box or self.equations.given_jacobian is not None:
+            return None
+        return smoothed(self.equations.value, domain.bounds, noise)
 
     # --- checks -----------------------------------------------------------------------
 
@@ -500,7 +528,7 @@ def accuracy_of(equations: Equations) -> Accuracy:
         derivatives=equations.derivatives,
         equations=origin,
         noise=equations.noise_share,
-        is_exact=is_recorded,
+        is_exact=is_recorded and not equations.noise_share,
         coefficient_rounding=equations.coefficient_rounding,
         hessian_error=EXACT_HESSIAN if is_recorded else HESSIAN_ERROR,
     )

@@ -4,7 +4,8 @@ Every curve of `data/curves.json` has a source and a known number of forms, clos
 open, of bifurcations with their half-branches, of cusps, of points where the rank drops
 on a single branch, and of isolated points; its forms have multiplicities, 1 as a rule.
 A cusp ends a form; through a point like that of x^3 = y^4, with half-branches to
-opposite sides, a single one passes. Each is explored as it stands, with its unknowns or
+opposite sides, a single one passes. Some have a parameter, and a known number of folds,
+Hopf points and events along it; some are known with noise only. Each is explored as it stands, with its unknowns or
 its equations in other units, turned, shifted, and from other random starts. An answer
 is right, or wrong and said to be in doubt, or wrong without a word, as an exception is.
 Seconds are those of the processor.
@@ -20,6 +21,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -40,8 +42,9 @@ FUNCTIONS = {name: getattr(np, name) for name in NAMES}
 class Answer(NamedTuple):
     """What is counted in an atlas: forms ``closed`` and ``open``, the numbers of
     half-branches of the ``bifurcations`` in order, ``cusps``, ``rank_drops``,
-    ``isolated`` points, ``others`` (surfaces, points of another kind) and the
-    ``multiplicities`` of the forms in order."""
+    ``isolated`` points, ``others`` (surfaces, points of another kind), the
+    ``multiplicities`` of the forms in order, and of a diagram the ``folds``, ``hopf``
+    points and ``events``."""
 
     closed: int
     open: int
@@ -51,6 +54,9 @@ class Answer(NamedTuple):
     isolated: int
     others: int = 0
     multiplicities: tuple[int, ...] = ()
+    folds: int = 0
+    hopf: int = 0
+    events: int = 0
 
     @staticmethod
     def of(atlas: Atlas) -> Answer:
@@ -59,6 +65,7 @@ class Answer(NamedTuple):
         closed = sum(form.branch.closed for form in atlas.forms)
         counted = (Kind.BIFURCATION, Kind.CUSP, Kind.RANK_DROP, Kind.ISOLATED)
         sizes = [len(point.point.half_branches) for point in atlas.bifurcations]
+        diagram = atlas.diagram
         return Answer(
             closed=closed,
             open=len(atlas.forms) - closed,
@@ -69,13 +76,18 @@ class Answer(NamedTuple):
             others=len(atlas.surfaces)
             + sum(kinds[kind] for kind in kinds if kind not in counted),
             multiplicities=tuple(sorted(form.multiplicity for form in atlas.forms)),
+            folds=0 if diagram is None else len(diagram.folds),
+            hopf=0 if diagram is None else len(diagram.hopf_points),
+            events=0 if diagram is None else len(diagram.events()),
         )
 
 
 @dataclass(frozen=True)
 class Curve:
     """A curve with its ``equations`` in the ``unknowns``, ``bounds`` (n, 2) and
-    ``periods`` (n,), its ``source`` and its right ``answer``."""
+    ``periods`` (n,), its ``source`` and its right ``answer``; with a diagram along the
+    ``parameter``, empty where there is none, and ``events`` where functions are zero.
+    Where there is ``noise``, a standard deviation, the equations are plain values."""
 
     name: str
     source: str
@@ -84,10 +96,29 @@ class Curve:
     bounds: np.ndarray
     periods: np.ndarray
     answer: Answer
+    parameter: str
+    events: tuple[str, ...]
+    noise: float
 
     def function(self) -> Callable[[np.ndarray], list[Any]]:
         """F (m,) of a point (n,)."""
-        codes = [compile(text, self.name, "eval") for text in self.equations]
+        exact = self._values_of(self.equations)
+        if not self.noise:
+            return exact
+        rng = np.random.default_rng(0)
+
+        def noisy(point: np.ndarray) -> list[Any]:
+            values = exact(np.array(np.real(point).tolist()))
+            return [value + self.noise * rng.normal() for value in values]
+
+        return noisy
+
+    def event_functions(self) -> list[Callable[[np.ndarray], list[Any]]]:
+        """What is zero at each event, as a list of one, of a point (n,)."""
+        return [self._values_of((text,)) for text in self.events]
+
+    def _values_of(self, texts: Sequence[str]) -> Callable[[np.ndarray], list[Any]]:
+        codes = [compile(text, self.name, "eval") for text in texts]
 
         def values(point: np.ndarray) -> list[Any]:
             names = dict(zip(self.unknowns, point, strict=True))
@@ -125,7 +156,13 @@ def _curve(entry: dict[str, Any]) -> Curve:
             rank_drops=entry["rank_drops"],
             isolated=entry["isolated"],
             multiplicities=tuple(entry.get("multiplicities", simple)),
+            folds=entry.get("folds", 0),
+            hopf=entry.get("hopf", 0),
+            events=entry.get("event_count", 0),
         ),
+        parameter=entry.get("parameter", ""),
+        events=tuple(entry.get("events", ())),
+        noise=entry.get("noise", 0.0),
     )
 
 
@@ -143,6 +180,16 @@ class Change:
     shift: np.ndarray
     mixing: np.ndarray
 
+    def events(self, curve: Curve) -> dict[str, Callable[[np.ndarray], Any]] | None:
+        """The events of the curve in v, None where there are none."""
+
+        def changed(event: Callable[[np.ndarray], list[Any]], point: np.ndarray) -> Any:
+            return event(self.matrix @ point + self.shift)[0]
+
+        functions = curve.event_functions()
+        named = zip(curve.events, functions, strict=True)
+        return {name: partial(changed, function) for name, function in named} or None
+
     def problem(self, curve: Curve) -> FunctionProblem:
         """The curve's equations so changed, in v."""
         function = curve.function()
@@ -158,7 +205,8 @@ class Change:
         if is_diagonal:
             bounds = np.diag(inverse)[:, None] * bounds
             periods = np.diag(inverse) * curve.periods
-            return FunctionProblem(changed, bounds, periods=periods)
+            names = curve.unknowns
+            return FunctionProblem(changed, bounds, periods=periods, names=names)
         corners = np.array(list(product(*bounds))) @ inverse.T
         around = np.column_stack([corners.min(axis=0), corners.max(axis=0)])
         return FunctionProblem(changed, around.tolist())
@@ -169,7 +217,8 @@ def changes_of(curve: Curve) -> Iterator[Change]:
     the last of them alone, five of the equations, mixed equations, a shift and two
     turns.
 
-    Turns are for closed curves that leave no bounds, and not for angles.
+    Turns are for closed curves that leave no bounds, and not for angles or a parameter;
+    mixed equations are for those that are no rates, of which there are Hopf points.
     """
     n, m = len(curve.unknowns), len(curve.equations)
     one, still, same = np.eye(n), np.zeros(n), np.eye(m)
@@ -178,13 +227,16 @@ def changes_of(curve: Curve) -> Iterator[Change]:
         yield Change("unknowns", f"unknowns {scale:g}", scale * one, still, same)
         last = np.diag([1.0] * (n - 1) + [scale])
         yield Change("unknown", f"last unknown {scale:g}", last, still, same)
+        if curve.answer.hopf:
+            continue
         weights = np.diag([scale] + [1.0] * (m - 1))
         yield Change("equations", f"first equation {scale:g}", one, still, weights)
     rng = np.random.default_rng(0)
     mixing = np.linalg.qr(rng.normal(size=(m, m)))[0] @ np.diag(np.geomspace(1, 5, m))
-    yield Change("mixed", "mixed equations", one, still, mixing)
+    if not curve.answer.hopf:
+        yield Change("mixed", "mixed equations", one, still, mixing)
     yield Change("shift", "shifted", one, rng.normal(size=n), same)
-    is_plain = not np.any(np.isfinite(curve.periods))
+    is_plain = not np.any(np.isfinite(curve.periods)) and not curve.parameter
     if is_plain and not curve.answer.open and np.all(np.isfinite(curve.bounds)):
         for number in range(2):
             turn = np.linalg.qr(rng.normal(size=(n, n)))[0]
@@ -234,7 +286,13 @@ def run_curve(curve: Curve, change: Change, seed: int, budget: float) -> Run:
     answer: Answer | str
     try:
         settings = SearchSettings(budget=budget)
-        atlas = explore(change.problem(curve), settings=settings, seed=seed)
+        atlas = explore(
+            change.problem(curve),
+            settings=settings,
+            seed=seed,
+            parameter=curve.parameter or None,
+            events=change.events(curve),
+        )
         verdict, answer = judge(curve, atlas), Answer.of(atlas)
     except Exception as error:  # whatever it is, a user would see it
         verdict, answer = Verdict.WRONG, f"{type(error).__name__}: {error}"

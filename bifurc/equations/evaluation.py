@@ -273,7 +273,8 @@ def noise_of(
         over_long = _along(function, point, LONG * sizes * heading)
         over_short = _along(function, point, SHORT * sizes * heading)
         if over_long is not None and over_short is not None:
-            is_smooth = over_long > SMOOTH * over_short
+            # values that do not change at all are rounded ones
+            is_smooth = (over_long > SMOOTH * over_short) & (over_short > 0.0)
             estimates.append(np.where(is_smooth, over_short, over_long))
     if not estimates:
         return None

@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from flint import fmpq_mpoly  # few searches need it
 
 BITS_OF_DOUBLES = 54  # ratios of more are no simpler than a double
-Ratio: TypeAlias = Callable[[float], Fraction]  # what a double stands for
+# units in the last place by which a number is off that is rounded, and that is computed
+ROUNDED, COMPUTED = 0.5, 4.0
 MOST_TERMS = 400  # of a polynomial whose factors are looked for
 
 
@@ -83,27 +84,37 @@ def written_factors(tape: Tape) -> Factors:
     return replace(factors, rims=rims, are_plain=are_plain)
 
 
-def polynomial_factors(
-    tape: Tape, rows: Sequence[int], region: np.ndarray, ratio: Ratio = Fraction
-) -> Factors:
+def polynomial_factors(tape: Tape, rows: Sequence[int], region: np.ndarray) -> Factors:
     """The same, with the square-free factors of polynomials for the equations ``rows``,
     where they are polynomials in the unknowns and in functions of them, of not too many
     terms.
 
     They are expanded about the middle of a ``region`` (n, 2) that is far from zero: there
     the terms of (u - c)^2 are as large as c^2, and what they add up to is lost. The
-    constants of the tape are what ``ratio`` makes of them.
+    constants of the tape are the decimals that are rounded to them, or where this leaves
+    no repeated factors next to them: 0.1**2 is not the double next to 0.01.
     """
+    exact = _factors_with(tape, rows, region, ROUNDED)
+    if exact.are_simpler:
+        return exact
+    loose = _factors_with(tape, rows, region, COMPUTED)
+    return loose if loose.are_simpler else exact
+
+
+def _factors_with(
+    tape: Tape, rows: Sequence[int], region: np.ndarray, units: float
+) -> Factors:
+    """The same with constants that are known to so many ``units`` in the last place."""
     written = written_factors(tape)
     writer = TapeWriter(tape.n)
     slots = tape.write_on(writer)
     of_factors = written.tape.write_on(writer)
     entries: list[tuple[int, int, int]] = []
-    origins = _origins(region)
+    polynomials = _Polynomials(writer, _origins(region), units)
     for row, slot in enumerate(tape.outputs.tolist()):
         found = None
         if row in rows and written.are_plain:
-            found = _polynomial_powers(writer, slots[slot], origins, ratio)
+            found = polynomials.powers_of(slots[slot])
         if found is None:
             found = {}
             for output, number, power in zip(
@@ -112,7 +123,7 @@ def polynomial_factors(
                 if number == row:
                     found[of_factors[output]] = power
             if row in rows and not written.are_plain:
-                found = _polynomial_parts(writer, found, origins, ratio)
+                found = polynomials.parts_of(found)
         for factor, power in found.items():
             entries.append((row, factor, power))
     factors = _factors(writer, entries)
@@ -203,50 +214,54 @@ def _origins(region: np.ndarray) -> list[float]:
     return origins
 
 
-def _polynomial_powers(
-    writer: TapeWriter, output: int, origins: Sequence[float], ratio: Ratio
-) -> dict[int, int] | None:
-    """The slots of the square-free factors of the polynomial in slot ``output``, newly
-    written in the unknowns less their ``origins`` (n,), and the power of each; None where
-    there is none."""
-    inner = _polynomial_part(writer, output)
-    nodes = {slot: writer.node(slot) for slot in inner}
-    if not all(math.isfinite(node.constant) for node in nodes.values()):
-        return None
-    generators = [
-        slot for slot in inner if nodes[slot].operation not in _OF_POLYNOMIALS
-    ]
-    if not generators or any(nodes[k].operation in _REFUSED for k in generators):
-        return None
-    shifts = {slot: _shift_of(nodes[slot], origins) for slot in generators}
-    polynomial = _expanded(nodes, output, shifts, ratio)
-    if polynomial is None or not polynomial:
-        return None
-    degrees = zip(generators, polynomial.degrees(), strict=True)
-    if any(not degree and nodes[k].operation in PARTIAL for k, degree in degrees):
-        return None  # log(x) - log(x) is zero for positive x only
-    _, factors = polynomial.factor_squarefree()
-    shifted = [
-        writer.add(slot, writer.constant(-shift)) if shift else slot
-        for slot, shift in shifts.items()
-    ]
-    return {_written(writer, factor, shifted): int(power) for factor, power in factors}
+@dataclass(frozen=True)
+class _Polynomials:
+    """Polynomials that stand on a tape while it is written, expanded in the unknowns less
+    their ``origins`` (n,), with constants known to so many ``units`` in the last
+    place."""
 
+    writer: TapeWriter
+    origins: Sequence[float]
+    units: float
 
-def _polynomial_parts(
-    writer: TapeWriter,
-    factors: Mapping[int, int],
-    origins: Sequence[float],
-    ratio: Ratio,
-) -> dict[int, int]:
-    """The same of each of the ``factors``, by their slots, with their powers; those that
-    are no polynomials as they are."""
-    parts: dict[int, int] = defaultdict(int)
-    for slot, power in factors.items():
-        found = _polynomial_powers(writer, slot, origins, ratio) or {slot: 1}
-        for part, multiplicity in found.items():
-            parts[part] += power * multiplicity
-    return parts
+    def powers_of(self, output: int) -> dict[int, int] | None:
+        """The slots of the square-free factors of the polynomial in slot ``output``, newly
+        written, and the power of each; None where there is none."""
+        writer = self.writer
+        inner = _polynomial_part(writer, output)
+        nodes = {slot: writer.node(slot) for slot in inner}
+        if not all(math.isfinite(node.constant) for node in nodes.values()):
+            return None
+        generators = [
+            slot for slot in inner if nodes[slot].operation not in _OF_POLYNOMIALS
+        ]
+        if not generators or any(nodes[k].operation in _REFUSED for k in generators):
+            return None
+        shifts = {slot: _shift_of(nodes[slot], self.origins) for slot in generators}
+        polynomial = _expanded(nodes, output, shifts, self.units)
+        if polynomial is None or not polynomial:
+            return None
+        degrees = zip(generators, polynomial.degrees(), strict=True)
+        if any(not degree and nodes[k].operation in PARTIAL for k, degree in degrees):
+            return None  # log(x) - log(x) is zero for positive x only
+        _, factors = polynomial.factor_squarefree()
+        shifted = [
+            writer.add(slot, writer.constant(-shift)) if shift else slot
+            for slot, shift in shifts.items()
+        ]
+        return {
+            _written(writer, factor, shifted): int(power) for factor, power in factors
+        }
+
+    def parts_of(self, factors: Mapping[int, int]) -> dict[int, int]:
+        """The same of each of the ``factors``, by their slots, with their powers; those
+        that are no polynomials as they are."""
+        parts: dict[int, int] = defaultdict(int)
+        for slot, power in factors.items():
+            found = self.powers_of(slot) or {slot: 1}
+            for part, multiplicity in found.items():
+                parts[part] += power * multiplicity
+        return parts
 
 
 def _shift_of(generator: Node, origins: Sequence[float]) -> float:
@@ -272,13 +287,15 @@ def _polynomial_part(writer: TapeWriter, output: int) -> list[int]:
     return sorted(needed)
 
 
-def simplest_ratio(number: float) -> Fraction:
-    """The ratio of fewest digits, as a rule, that is rounded to a double: 9/100 of
-    0.09. With it x^2 - 0.6 x + 0.09 is a square, which it is not in doubles."""
+def simplest_ratio(number: float, units: float = ROUNDED) -> Fraction:
+    """The ratio of fewest digits, as a rule, that is so many ``units`` in the last place
+    from a double: 9/100 of 0.09. With it x^2 - 0.6 x + 0.09 is a square, which it is not
+    in doubles."""
     exact = Fraction(number)
+    reach = Fraction(units) * Fraction(math.ulp(number))
     for bits in range(0, BITS_OF_DOUBLES, 3):
         near = exact.limit_denominator(1 << bits)
-        if float(near) == number:
+        if abs(near - exact) <= reach:
             return near
     return exact
 
@@ -287,11 +304,11 @@ def _expanded(
     nodes: dict[int, Node],
     output: int,
     shifts: dict[int, float],
-    ratio: Ratio,
+    units: float,
 ) -> fmpq_mpoly | None:
     """The polynomial in slot ``output`` over the rational numbers, in the generators,
     given by their slots, less the ``shifts`` of them; None where it has more than
-    `MOST_TERMS`. Its constants are what ``ratio`` makes of doubles."""
+    `MOST_TERMS`."""
     from flint import fmpq, fmpq_mpoly_ctx
 
     domain = fmpq_mpoly_ctx.get([f"g{slot}" for slot in shifts])
@@ -302,7 +319,7 @@ def _expanded(
     for slot, node in nodes.items():
         if slot in values:
             continue
-        number = fmpq(*ratio(node.constant).as_integer_ratio())
+        number = fmpq(*simplest_ratio(node.constant, units).as_integer_ratio())
         values[slot] = _value(node, domain.constant(number), values)
         if len(values[slot]) > MOST_TERMS:
             return None

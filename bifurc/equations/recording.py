@@ -25,7 +25,8 @@ SMALLEST = 1e-300  # difference that counts where the value is 0 and exact
 
 @dataclass(frozen=True)
 class Recording:
-    """What came of recording: a ``tape``, or None and the ``reason`` why not."""
+    """What came of recording: a ``tape``, or None and the ``reason`` why not; of a tape
+    that is not the function itself, what it is."""
 
     tape: Tape | None
     reason: str = ""
@@ -33,7 +34,7 @@ class Recording:
     def __str__(self) -> str:
         if self.tape is None:
             return f"not recorded: {self.reason}"
-        return f"recorded ({self.tape.size} operations)"
+        return f"{self.reason or 'recorded'} ({self.tape.size} operations)"
 
 
 def record(function: Callable[[np.ndarray], Any], points: np.ndarray) -> Recording:

@@ -174,20 +174,27 @@ class Tape:
                 needed.add(right)
         return sorted(needed)
 
-    def over(self, unknowns: Sequence[Any], library: Any) -> list[Any]:
-        """F, m numbers, of n ``unknowns`` of any kind, with the constructor ``mpf`` and
-        the functions of a ``library`` like mpmath."""
+    def over(
+        self,
+        unknowns: Sequence[Any],
+        library: Any,
+        number_of: Callable[[float], Any] | None = None,
+    ) -> list[Any]:
+        """F, m numbers, of n ``unknowns`` of any kind, with the functions of a ``library``
+        like mpmath, and constants that are what ``number_of`` makes of doubles, or the
+        constructor ``mpf`` of the library."""
+        number_of = number_of or library.mpf
         values: dict[int, Any] = {}
         for slot, (operation, left, right, constant) in self._program:
             if operation is Operation.UNKNOWN:
                 values[slot] = unknowns[left]
             elif operation is Operation.CONSTANT:
-                values[slot] = library.mpf(constant)
+                values[slot] = number_of(constant)
             elif operation in BINARY:
                 second = values[right]
                 values[slot] = _binary(operation, library)(values[left], second)
             elif operation in _WITH_CONSTANT:
-                number = library.mpf(constant)
+                number = number_of(constant)
                 values[slot] = _WITH_CONSTANT[operation](values[left], number)
             else:
                 function = getattr(library, operation.name.lower())

@@ -41,11 +41,19 @@ SAMPLE = [
     ("rim and two rays outside it", "unknowns 1e-06"),
     ("rim of a power and a line that ends on it", "last unknown 10"),
     ("rim of an inverse cosine", "shifted"),
+    ("rim in space", "unknowns 1000"),
+    ("circle in noise of 1e-7", "first equation 1e-06"),
+    ("sine in noise of 1e-8", "unknowns 1e+06"),
+    ("space curve in noise of 1e-7", "last unknown 10"),
+    ("two folds of a cubic", "mixed equations"),
+    ("fold and three events at one place", "shifted"),
+    ("two Hopf points at one place, in opposite directions", "unknowns 1e-06"),
+    ("Hopf point and an event at one place", "last unknown 1000"),
 ]
 
 
 def test_every_curve_has_a_source_and_a_name_of_its_own():
-    assert len(CURVES) == len(load_curves()) >= 150
+    assert len(CURVES) == len(load_curves()) >= 250
     for curve in CURVES.values():
         assert curve.source
         assert len(curve.bounds) == len(curve.unknowns) == len(curve.periods)

@@ -17,6 +17,7 @@ from bifurc.atlas import (
     Provenance,
     Surface,
 )
+from bifurc.branch import Branch, Outcome
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.minima import stand_out
 from bifurc.curves.monitor import dead_points
@@ -32,6 +33,7 @@ from bifurc.search.answer.doubts import (
     doubts_of,
     doubts_of_findings,
     doubts_of_near_misses,
+    loose_ends,
 )
 from bifurc.search.answer.meeting_points import meeting_points
 from bifurc.search.branches.certification import certificate_of
@@ -129,7 +131,7 @@ def _forms(
         passes = [s for point in points for form, s in point.passes if form == index]
         form = Form(
             name=f"Form {index + 1}",
-            branch=branch.branch,
+            branch=_with_known_ends(problem, branch.branch, passes),
             profile=branch.profile,
             min_singular_value=smallest,
             component=component,
@@ -139,6 +141,16 @@ def _forms(
         )
         forms.append(form)
     return tuple(forms)
+
+
+def _with_known_ends(
+    problem: Problem, branch: Branch, passes: Sequence[float]
+) -> Branch:
+    """A branch that stalled, where it did at points that it ``passes`` as at an end."""
+    is_stalled = branch.outcome is Outcome.STALLED
+    if not is_stalled or loose_ends(problem, branch, passes):
+        return branch
+    return replace(branch, outcome=Outcome.ENDS_AT_A_POINT)
 
 
 def _certificate(

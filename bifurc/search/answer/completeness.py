@@ -51,7 +51,7 @@ def _claims(findings: Findings, provenance: Provenance, left: int) -> tuple[Clai
     """What is claimed beside the estimate, with so many starts ``left``."""
     # what an audit says holds once all that it led to is looked at
     if provenance.out_of_time:
-        budget = provenance.settings.budget
+        budget = float(provenance.settings.budget)
         level = Level.OUT_OF_TIME
         out_of_time = SearchClaim.OUT_OF_TIME
         return (out_of_time.claim(Scope.SEARCH, level, budget=budget, left=left),)

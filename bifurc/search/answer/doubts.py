@@ -35,7 +35,7 @@ from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.search.answer.completeness import SearchDoubt
 from bifurc.search.findings import Findings
-from bifurc.search.own_units.unit_problem import UnitProblem
+from bifurc.search.own_units.unit_problem import sheets_beside
 from bifurc.search.records import RigidAssembly, TracedBranch
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
@@ -220,10 +220,9 @@ def _doubts_of_form(
     problem: Problem, index: int, traced: TracedBranch, points: Sequence[MeetingPoint]
 ) -> Iterator[Doubt]:
     """Whether a form is a curve, as far as doubles tell, and has no loose end."""
-    if isinstance(problem, UnitProblem):
-        apart = problem.sheets_beside(traced.branch)
-        if not is_multiple_curve(apart):
-            yield SearchDoubt.SEVERAL_CURVES.doubt(_name(index), apart)
+    apart = sheets_beside(problem, traced.branch, traced.profile.rank)
+    if not is_multiple_curve(apart):
+        yield SearchDoubt.SEVERAL_CURVES.doubt(_name(index), apart)
     branch, profile = traced.branch, traced.profile
     name = _name(index)
     is_regular = profile.rank == branch.n - 1
@@ -248,12 +247,8 @@ def _doubts_of_form(
     if branch.outcome in (Outcome.STEP_LIMIT, Outcome.TIME_LIMIT):
         yield SearchDoubt.TOO_LONG.doubt(name)
     if branch.outcome is Outcome.STALLED:
-        ends = {s for point in points for form, s in point.passes if form == index}
-        loose = [
-            branch(s)
-            for s in (0.0, branch.length)
-            if s not in ends and not np.any(_are_at_bounds(problem, branch(s)))
-        ]
+        passes = [s for point in points for form, s in point.passes if form == index]
+        loose = loose_ends(problem, branch, passes)
         if loose:
             reach = is_stub.threshold * problem.domain.scale
             rough = sum(not _is_smooth_within(problem, end, reach) for end in loose)
@@ -262,6 +257,18 @@ def _doubts_of_form(
                 yield kind.doubt(name, ends=len(loose), rough=rough)
             else:
                 yield SearchDoubt.STALLED.doubt(name, ends=len(loose))
+
+
+def loose_ends(
+    problem: Problem, branch: Branch, passes: Collection[float]
+) -> list[np.ndarray]:
+    """The ends (n,) of a branch that lie neither on the bounds nor at a singular point,
+    which it ``passes`` at these arclengths."""
+    return [
+        branch(s)
+        for s in (0.0, branch.length)
+        if s not in passes and not np.any(_are_at_bounds(problem, branch(s)))
+    ]
 
 
 def _is_smooth_within(problem: Problem, point: np.ndarray, reach: float) -> bool:

@@ -13,9 +13,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
-from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple, TypeGuard
 
 import numpy as np
 
@@ -25,20 +26,22 @@ from bifurc.decisions import (
     is_far_smaller,
     is_flat_equation,
     is_on_the_way,
+    is_seen_through_rounding,
     may_repeat_factors,
 )
 from bifurc.domain import Domain
 from bifurc.equations.differentiation import with_gradients
+from bifurc.equations.evaluation import Equations
 from bifurc.equations.factors import (
     Factors,
-    Ratio,
     polynomial_factors,
     simplest_ratio,
     written_factors,
 )
+from bifurc.equations.recording import Recording
 from bifurc.equations.rims import NO_RIMS, Rims
 from bifurc.equations.system import LARGEST_DENSE
-from bifurc.equations.tape import Tape, TapeWriter, rounding_of_constants
+from bifurc.equations.tape import Tape, TapeWriter, real_values
 from bifurc.function_problem import (
     PROBES,
     EquationProblem,
@@ -234,6 +237,12 @@ class UnitProblem(EquationProblem):
         units: the product over them of the powers of the factors that vanish there."""
         if self.simplified is None:
             return 1
+        return self.simplified.order * math.prod(self._powers_along(branch).values())
+
+    def _powers_along(self, branch: Branch) -> dict[int, int]:
+        """The sum of the powers of the factors that vanish all along a ``branch`` in
+        these units, by their equation."""
+        assert self.simplified is not None
         factors = self.simplified.factors
         places = branch(branch.length * PLACES)
         points = np.ascontiguousarray(self.own_units.outwards(places))
@@ -245,31 +254,67 @@ class UnitProblem(EquationProblem):
         for number, row in enumerate(factors.rows):
             if is_factor_of_form(float(distances[number]), self.domain.scale):
                 powers[row] = powers.get(row, 0) + factors.powers[number]
-        return self.simplified.order * math.prod(powers.values())
+        return powers
 
-    def sheets_beside(self, branch: Branch) -> float:
+    def sheets_beside(self, branch: Branch, rank: int) -> float:
         """How far from each other, over the scale, several curves would be that were taken
-        for one, a ``branch`` in these units along which derivatives are zero as well; 0
-        where there are none."""
-        if self.simplified is None or self.simplified.order == 1:
+        for one, a ``branch`` in these units along which equations are zero with their
+        derivatives, or F' has a lower ``rank`` than n - 1; 0 where there are none.
+
+        It is what the user's equations miss along it in the directions in which F' does
+        not change them, in many digits and with their numbers as decimals, or no less
+        than rounding where they are not recorded.
+        """
+        lost = self.n - 1 - rank
+        if lost > 1 or (lost == 0 and self.multiplicity_along(branch) == 1):
             return 0.0
+        points = self.own_units.outwards(branch(branch.length * PLACES[::4]))
+        tape, orders = self._multiple_equations(branch)
+        equations = replace(self.problem.equations, recording=Recording(tape))
+        scale = self.problem.domain.scale
+        anywhere = self.own_units.outwards(self._matrices()[0])
+        slopes = np.linalg.norm(equations.jacobians(anywhere), axis=2)
+        units = np.median(slopes, axis=0) * scale + TINY
+        missed = self._missed(equations, points) / units
+        matrices = equations.jacobians(points) * scale / units[:, None]
+        return _unseen(missed, matrices, (lost + 1) * orders)
+
+    def _multiple_equations(self, branch: Branch) -> tuple[Tape | None, np.ndarray]:
+        """The user's equations, or where these have roots their factors, and the powers
+        (m,) of what vanishes all along a ``branch`` in each."""
+        tape = self.problem.equations.tape
+        if self.simplified is None:
+            return tape, np.ones(self.problem.equations.m, dtype=int)
+        powers = self._powers_along(branch)
+        if tape is None or not self.simplified.factors.are_plain:
+            tape, powers = self.simplified.factors.radical(), {}
+        order = self.simplified.order
+        return tape, np.array([order * powers.get(row, 1) for row in range(tape.m)])
+
+    def _missed(self, equations: Equations, points: np.ndarray) -> np.ndarray:
+        """By how much user's ``equations`` miss zero (k, m) at points (k, n)."""
+        tape = equations.tape
+        if tape is None:
+            floor = np.finfo(float).eps * self.problem.magnitude
+            missed: np.ndarray = np.maximum(np.abs(equations.residuals(points)), floor)
+            return missed
         import mpmath  # it takes longer to import than a small problem to solve
 
-        # coefficients of factors are rounded, and so those of the user are taken
-        factors, tape = self.simplified.factors, self.problem.equations.tape
-        if tape is None or not factors.are_plain:
-            tape = factors.radical()
-        anywhere = np.ascontiguousarray(self.own_units.outwards(self._matrices()[0]))
-        slopes = np.linalg.norm(tape.compiled.jacobians(anywhere), axis=(1, 2))
-        unit = float(np.median(slopes)) * self.problem.domain.scale
-        largest = 0.0
+        def decimal(number: float) -> mpmath.mpf:
+            ratio = simplest_ratio(number)
+            return mpmath.mpf(ratio.numerator) / ratio.denominator
+
+        is_given = tape is self.problem.equations.tape
+        precise = self.problem.precise_residual()
+        if not is_given or not self.problem.has_exact_constants or precise is None:
+            precise = partial(tape.over, library=mpmath, number_of=decimal)
+        missed = np.zeros((len(points), tape.m))
         with mpmath.workdps(DIGITS):
-            for point in self.own_units.outwards(branch(branch.length * PLACES[::4])):
-                values = tape.over([mpmath.mpf(float(x)) for x in point], mpmath)
-                missed = np.array([float(abs(value)) for value in values])
-                missed[missed <= rounding_of_constants(tape, point)] = 0.0
-                largest = max(largest, float(missed.max()))
-        return float((largest / (unit or 1.0)) ** (1.0 / self.simplified.order))
+            for row, point in zip(missed, points, strict=True):
+                unknowns = [mpmath.mpf(float(x)) for x in point]
+                with suppress(ValueError):  # a point beyond a rim, by rounding
+                    row[:] = [float(value) for value in real_values(precise(unknowns))]
+        return missed
 
     def _matrices(self) -> tuple[np.ndarray, np.ndarray]:
         """Random points (k, n) of the region where F' is finite, and F' (k, m, n)."""
@@ -372,6 +417,19 @@ class UnitProblem(EquationProblem):
             more=None if seeds.more is None else more,
         )
 
+    @property
+    def is_blurred(self) -> bool:
+        """Whether rounding of an equation hides its solutions in the region."""
+        tape = self.equations.tape
+        if tape is None:
+            return False
+        rng = np.random.default_rng(0)
+        points = rng.uniform(self.region[:, 0], self.region[:, 1], (PROBES, self.n))
+        low, high = tape.compiled.value_bounds(points, points)
+        largest = np.nanmax(np.maximum(np.abs(low), np.abs(high)), axis=0)
+        rounding = np.nanmedian(high - low, axis=0)
+        return not np.all(is_seen_through_rounding(rounding, largest + TINY))
+
     def ends(self, count: int) -> np.ndarray:
         """Points (k, n), in the user's units, at which ``count`` random starts in the
         region end: solutions, or where most reach none points on the way to them; of
@@ -407,23 +465,55 @@ def in_own_units(problem: Problem) -> UnitProblem | None:
     """The equations of a function in units of their own; None for any other problem,
     and where they are in such units as they stand. What is not known of their solutions
     when the time is over does not count."""
-    if not isinstance(problem, FunctionProblem):
-        return None
-    has_own_equations = any(_has_own(problem, name) for name in OF_EQUATIONS)
-    if has_own_equations or problem.domain.rim is not None:
+    if not _is_of_equations(problem) or problem.domain.rim is not None:
         return None
     has_own_answers = any(_has_own(problem, name) for name in OF_ONE_UNIT)
     own = None
     if not has_own_answers and problem.n <= LARGEST_DENSE:
         own = _in_units_of_solutions(problem)
     if own is None:
-        sizes = np.full(problem.n, _unit_of(problem))
-        weights = np.ones(problem.equations.m)
-        own = UnitProblem(problem, Units(np.zeros(problem.n), sizes, weights))
+        own = _in_one_unit(problem, _unit_of(problem))
     units = own.own_units
     has_gained = np.any(units.origin) or own.simplified is not None
     has_sizes = np.any(units.sizes != 1.0) or np.any(units.weights != 1.0)
     return own if has_gained or has_sizes or _unit_of(problem) != 1.0 else None
+
+
+def sheets_beside(problem: Problem, branch: Branch, rank: int) -> float:
+    """`UnitProblem.sheets_beside` of any problem; 0 where it is none of equations."""
+    if isinstance(problem, UnitProblem):
+        return problem.sheets_beside(branch, rank)
+    if not _is_of_equations(problem):
+        return 0.0
+    return _in_one_unit(problem, 1.0).sheets_beside(branch, rank)
+
+
+def _unseen(missed: np.ndarray, matrices: np.ndarray, orders: np.ndarray) -> float:
+    """How far from a curve solutions are by what equations miss (k, m) at its points, in
+    the directions in which F' (k, m, n) does not change them; the ``orders`` (m,) are
+    the powers of the distance that they grow with."""
+    left, sigma, _ = np.linalg.svd(matrices)
+    largest = 0.0
+    for values, vectors, sizes in zip(missed, left.swapaxes(1, 2), sigma, strict=True):
+        is_flat = np.ones(len(vectors), dtype=bool)
+        is_flat[: len(sizes)] = is_flat_equation(sizes)
+        for vector in vectors[is_flat]:
+            order = orders[np.abs(vector).argmax()]
+            largest = max(largest, float(abs(vector @ values) ** (1.0 / order)))
+    return largest
+
+
+def _is_of_equations(problem: Problem) -> TypeGuard[FunctionProblem]:
+    """Whether a problem is the equations of a function, and nothing else."""
+    return isinstance(problem, FunctionProblem) and not any(
+        _has_own(problem, name) for name in OF_EQUATIONS
+    )
+
+
+def _in_one_unit(problem: FunctionProblem, unit: float) -> UnitProblem:
+    """The equations with all unknowns counted in one unit."""
+    sizes, weights = np.full(problem.n, unit), np.ones(problem.equations.m)
+    return UnitProblem(problem, Units(np.zeros(problem.n), sizes, weights))
 
 
 def _has_own(problem: FunctionProblem, name: str) -> bool:
@@ -472,8 +562,11 @@ def _closer_and_closer(problem: FunctionProblem) -> Iterator[UnitProblem]:
                 continue
         # what shrinks without end is a point, and looked at from where it is
         is_point |= _is_point(closer, whole)
-        region = np.where(is_point[:, None], whole, closer)
-        own = _problem_on(problem, region, simplified)
+        closer = np.where(is_point[:, None], whole, closer)
+        there = _problem_on(problem, closer, simplified)
+        if there.is_blurred:
+            break
+        region, own = closer, there
     else:
         own = _problem_on(problem, whole, simplified)
     if not np.array_equal(region, whole):
@@ -576,7 +669,7 @@ def _with_written_factors(problem: FunctionProblem) -> Simplified | None:
         # what a root leaves may be a square, along which starts seem to shrink to a point
         rows = sorted(set(factors.rows))
         region = _first_region(problem)
-        factors = polynomial_factors(tape, rows, region, _ratio_of(problem))
+        factors = polynomial_factors(tape, rows, region)
     return Simplified(factors.radical(), factors) if factors.are_simpler else None
 
 
@@ -614,12 +707,7 @@ def _factors_where_flat(own: UnitProblem, flatness: np.ndarray) -> Factors | Non
     if tape is None or not len(rows):
         return None
     region = own.own_units.outwards(own.region.T).T
-    return polynomial_factors(tape, rows.tolist(), region, _ratio_of(own.problem))
-
-
-def _ratio_of(problem: FunctionProblem) -> Ratio:
-    """What the doubles on the tape of a problem stand for."""
-    return simplest_ratio if problem.has_exact_constants else Fraction
+    return polynomial_factors(tape, rows.tolist(), region)
 
 
 def _with_derivatives(

@@ -87,8 +87,14 @@ def test_a_square_is_one_in_any_units_and_in_functions_of_the_unknowns():
     assert is_multiple_of(radical_of(factors), 0.1 * x + 0.7 * y - np.exp(x))
 
 
-def test_factors_of_a_square_that_is_none_but_for_rounding_are_not_made_up():
-    tape = tape_of(lambda u: [u[0] ** 2 - 0.2 * u[0] + 0.01])  # 0.1 ** 2 is not 0.01
+@pytest.mark.parametrize("last", [0.01, 0.1**2, 0.01 + 5e-18])
+def test_decimals_next_to_doubles_make_a_square_that_these_do_not(last):
+    tape = tape_of(lambda u: [u[0] ** 2 - 0.2 * u[0] + last])
+    assert polynomial_factors(tape, [0], REGION).powers == (2,)
+
+
+def test_what_is_a_square_but_for_more_than_rounding_is_none():
+    tape = tape_of(lambda u: [u[0] ** 2 - 0.2 * u[0] + 0.01 + 1e-16])
     assert not polynomial_factors(tape, [0], REGION).are_simpler
 
 

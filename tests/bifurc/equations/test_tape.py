@@ -6,6 +6,7 @@ import pickle
 import mpmath
 import numpy as np
 import pytest
+from flint import arb, ctx
 
 from bifurc import _core
 from bifurc.equations.recording import record
@@ -100,6 +101,35 @@ def test_the_series_of_a_curve_is_exact():
 def taylor_of_circle(k):
     sign = (-1.0) ** (k // 2) / float(mpmath.factorial(k))
     return (0.0, sign) if k % 2 else (sign, 0.0)
+
+
+# where each function is looked at, by the least and the largest logarithm of |x|
+REACHES = {
+    **dict.fromkeys(("log", "sqrt", "cbrt", "asinh", "atan"), (-600.0, 600.0)),
+    **dict.fromkeys(("asin", "acos", "atanh"), (-30.0, 0.0)),
+    **dict.fromkeys(("sin", "cos", "tan"), (-30.0, 14.0)),
+    "acosh": (0.0, 600.0),
+    "tanh": (-30.0, 3.0),
+}
+
+
+def in_many_digits(name, x):
+    """A function as a ball of 200 bits."""
+    is_root = name == "cbrt"  # of what is negative a ball has none
+    return arb(abs(x)).root(3) * np.sign(x) if is_root else getattr(arb(x), name)()
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_the_bounds_of_a_function_hold_what_it_is_in_many_digits(name, monkeypatch):
+    rng = np.random.default_rng(0)
+    x = np.exp(rng.uniform(*REACHES.get(name, (-30.0, 6.0)), 400))
+    x[::2] *= -1.0 if name not in ("log", "sqrt", "acosh", "log1p") else 1.0
+    writer = TapeWriter(1)
+    tape = writer.tape([writer.apply(FUNCTIONS[name], writer.unknown(0))])
+    monkeypatch.setattr(ctx, "prec", 200)
+    low, high = tape.compiled.value_bounds(x[:, None], x[:, None])
+    for argument, least, most in zip(x, low[:, 0], high[:, 0], strict=True):
+        assert arb(least) <= in_many_digits(name, argument) <= arb(most)
 
 
 def test_a_tape_is_copied_and_pickled():

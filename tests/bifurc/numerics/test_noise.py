@@ -41,6 +41,7 @@ def test_random_noise_is_measured_in_any_units(noise, scale):
         (lambda u: np.array(u, dtype=np.float32)[:1] ** 2 + 1, 1e-7),
         (lambda u: np.round(np.sin(u[:1]) * u[1:], 8), 1e-8),
         (lambda u: np.round(np.sin(u[:1]) * u[1:], 3), 1e-3),
+        (lambda u: np.round(u[1:] - np.sin(u[:1]), 3), 1e-3),
     ],
 )
 def test_rounded_values_are_noisy_to_what_is_rounded(function, size):
@@ -72,6 +73,59 @@ def test_a_noisy_curve_is_found_and_the_noise_is_said(noise):
     assert form.branch.length == pytest.approx(2 * np.pi, rel=100 * noise + 1e-9)
     assert "noise" in {doubt.kind for doubt in atlas.completeness.doubts}
     assert "noisy to" in atlas.provenance.equations
+
+
+def crossing(u):
+    x, y = np.real(u).tolist()
+    return np.array([x * y])
+
+
+def wave(u):
+    x, y = np.real(u).tolist()
+    return np.array([y - np.sin(x)])
+
+
+NOISES = {
+    "1e-8": lambda f: noisy(f, 1e-8),
+    "1e-7": lambda f: noisy(f, 1e-7),
+    "1e-5": lambda f: noisy(f, 1e-5),
+    "single precision": lambda f: lambda u: np.float32(f(np.float32(u))),
+    "six digits": lambda f: lambda u: np.round(f(u), 6),
+    "three digits": lambda f: lambda u: np.round(f(u), 3),
+}
+
+
+@pytest.mark.parametrize("noise", NOISES)
+@pytest.mark.parametrize(
+    ("function", "length"), [(circle, 2 * np.pi), (crossing, 4.05), (wave, 4.6895)]
+)
+def test_curves_in_more_noise_are_those_of_polynomials(noise, function, length):
+    atlas = explore(FunctionProblem(NOISES[noise](function), BOUNDS))
+    assert len(atlas.forms) == (2 if function is crossing else 1)
+    for form in atlas.forms:
+        assert form.branch.length == pytest.approx(length, abs=0.1)
+    assert "noise" in {doubt.kind for doubt in atlas.completeness.doubts}
+    assert "a polynomial next to its values" in atlas.provenance.equations
+
+
+def test_noise_without_a_polynomial_is_refused_with_what_was_measured():
+    def steep(u):
+        return np.tanh(30 * circle(u))
+
+    with pytest.raises(ProblemError, match=r"e-08 is not allowed.*at most 1e-09"):
+        FunctionProblem(noisy(steep, 1e-7), BOUNDS)
+
+
+def test_the_drift_of_a_function_from_call_to_call_is_noise():
+    calls = []
+
+    def drifting(u):
+        calls.append(u)
+        return circle(u) + 1e-6 * len(calls)
+
+    atlas = explore(FunctionProblem(drifting, BOUNDS))
+    assert len(atlas.forms) == 1
+    assert "noise" in {doubt.kind for doubt in atlas.completeness.doubts}
 
 
 def test_too_much_noise_is_refused_with_what_was_measured():

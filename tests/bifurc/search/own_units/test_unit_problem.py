@@ -484,18 +484,28 @@ def two(curve):
     return lambda apart: lambda u: [curve(*u) * (curve(*u) - apart)]
 
 
+def square(f, c):
+    """(f - c)^2 multiplied out, with coefficients that are rounded."""
+    return f**2 - 2 * c * f + c**2
+
+
 NEAR_CURVES = {
     "circles": two(lambda x, y: x**2 + y**2 - 1),
     "lines": two(lambda x, y: y - 0.3 * x),
     "parabolas": two(lambda x, y: y - x**2),
     "none": lambda apart: lambda u: [(u[1] - u[0] ** 2) ** 2 + apart**2],
+    "upright lines": lambda apart: lambda u: [square(u[0], 0.1) - apart**2],
+    "lines in a sum": lambda apart: (
+        lambda u: [u[1] - u[2] + square(u[0], 0.1) - apart**2, u[1] - u[2]]
+    ),
 }
 
 
 @pytest.mark.parametrize("apart", [3e-6, 1e-6, 1e-8, 1e-10])
 @pytest.mark.parametrize("name", NEAR_CURVES)
 def test_curves_next_to_each_other_are_never_one_without_a_word(name, apart) -> None:
-    problem = bifurc.FunctionProblem(NEAR_CURVES[name](apart), BOX)
+    bounds = [*BOX, (-2.5, 2.6)] if name == "lines in a sum" else BOX
+    problem = bifurc.FunctionProblem(NEAR_CURVES[name](apart), bounds)
     atlas = bifurc.explore(problem)
     kinds = [doubt.kind for doubt in atlas.completeness.doubts]
     assert len(atlas.forms) == 2 or "several curves" in kinds
@@ -507,12 +517,23 @@ def test_curves_next_to_each_other_are_never_one_without_a_word(name, apart) -> 
         lambda u: [1 - np.cos(u[0] - u[1])],
         lambda u: [np.exp(u[0] - u[1]) - 1 - u[0] + u[1]],
         lambda u: [u[0] ** 2 - 0.2 * u[0] * u[1] + 0.01 * u[1] ** 2],
+        lambda u: [u[0] ** 2 - 0.2 * u[0] + 0.01],
+        lambda u: [np.sin(u[0]) ** 2 - 0.2 * np.sin(u[0]) + 0.01],
     ],
 )
 def test_a_double_curve_is_one(function) -> None:
     atlas = bifurc.explore(bifurc.FunctionProblem(function, BOX))
     assert [form.multiplicity for form in atlas.forms] == [2]
     assert not atlas.completeness.doubts
+
+
+@pytest.mark.parametrize("c", [0.1, 0.7, np.pi / 20])
+def test_a_line_that_coefficients_make_double_to_rounding_is_in_doubt(c) -> None:
+    atlas = bifurc.explore(bifurc.FunctionProblem(lambda u: [square(u[0], c)], BOX))
+    assert [form.multiplicity for form in atlas.forms] == [2]
+    (doubt,) = atlas.completeness.doubts
+    assert doubt.kind == "several curves"
+    assert doubt.amount < 1e-7
 
 
 @pytest.mark.parametrize(
