@@ -51,6 +51,11 @@ class RestProblem(NumericalProblem):
         jacobian = self.jacobians(self.start[None])[0]
         self.magnitude = float(np.linalg.norm(jacobian, 2))
 
+    @property
+    def parameters(self) -> slice:
+        """Where the parameters stand among the unknowns."""
+        return slice(self.places.size, len(self.start))
+
     def place(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """u (..., K, n) and p (..., q) at points (..., K n + q)."""
         count, n = self.places.shape

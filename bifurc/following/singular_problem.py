@@ -72,6 +72,11 @@ class SingularPointProblem(NumericalProblem):
         """None: these equations are small."""
         return NO_SHORTCUTS
 
+    @property
+    def parameters(self) -> slice:
+        """Where the parameters stand among the unknowns."""
+        return slice(self.parametrised.n, len(self.sizes))
+
     def place(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """u (..., n) and p (..., q) at points (..., n + q + n nullity)."""
         n = self.parametrised.n

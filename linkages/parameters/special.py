@@ -87,7 +87,8 @@ class MapChange:
     """The map changes at this ``value`` of the parameter, known to ``error``: the
     ``kind`` says why, in a configuration ``u`` (n,) where there is one, and with the
     ``joints`` (from 1) that rest along a form at this value alone; the maps ``before``,
-    ``at`` the value and ``after`` it, None where there is no member."""
+    ``at`` the value and ``after`` it, None where there is no member; the ``problem`` whose
+    ``solution`` it is, None where there is none."""
 
     value: float
     error: float
@@ -98,6 +99,8 @@ class MapChange:
     after: MapShape | None = None
     point: Kind | None = None
     joints: tuple[int, ...] = ()
+    problem: SingularPointProblem | RestProblem | None = None
+    solution: np.ndarray | None = None
 
     @property
     def what(self) -> str:
@@ -233,7 +236,9 @@ class _SpecialSearch:
         if not np.any(is_null(sigma[0])):
             size = float(problem.sizes[-1])
             error = ROUNDING * (size + abs(found)) / float(sigma[0, -1])
-            self._add(MapChange(found, error, ChangeKind.SINGULAR, place))
+            kind = ChangeKind.SINGULAR
+            change = MapChange(found, error, kind, place)
+            self._add(replace(change, problem=problem, solution=points[0]))
             return
         self._follow(place, parameters, nullity)
 
@@ -277,7 +282,8 @@ class _SpecialSearch:
         lever = float(np.linalg.norm(right[:, -1] / sigma))
         error = ROUNDING * (abs(found) + lever * problem.magnitude)
         joints = (problem.resting + 1,)
-        self._add(MapChange(found, error, ChangeKind.REST, None, joints=joints))
+        change = MapChange(found, error, ChangeKind.REST, None, joints=joints)
+        self._add(replace(change, problem=problem, solution=points[0]))
 
     def _add(self, change: MapChange) -> None:
         low, high = self.range

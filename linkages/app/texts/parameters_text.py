@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from linkages.app.texts.numbers import in_degrees
 from linkages.entry import Parameter, ParameterKind
 from linkages.parameters.followed import Followed, MemberComparison
 from linkages.parameters.members import Members
+from linkages.parameters.relations import PreciseChange
 from linkages.parameters.special import MapChange, MapShape, SpecialValues
 
 SAMPLES = 200  # of a curve in JSON
@@ -177,8 +179,14 @@ def _row(
 # --- special --------------------------------------------------------------------------
 
 
-def describe_changes(members: Members, refusal: str, special: SpecialValues) -> str:
-    """The values at which the map changes."""
+def describe_changes(
+    members: Members,
+    refusal: str,
+    special: SpecialValues,
+    precise: Sequence[PreciseChange | None] | None = None,
+) -> str:
+    """The values at which the map changes, and where they were looked for what is known
+    of these more exactly."""
     (parameter,) = members.free
     lines = [_headline(members)]
     if refusal:
@@ -187,9 +195,11 @@ def describe_changes(members: Members, refusal: str, special: SpecialValues) -> 
         lines.append("The search was ended early: there may be more than is listed.")
     if not special.changes:
         lines.append("No value was found at which the map changes.")
-    for change in special.changes:
+    for k, change in enumerate(special.changes):
         value = _known(parameter, change.value, change.error)
         lines += ["", f"{parameter.name} = {value}: {change.what}"]
+        if precise is not None:
+            lines.append(f"  {_relation_text(precise[k : k + 1])}")
         if change.u is not None:
             lines.append(f"  at {_angles(change.u)}")
         for where, shape in (
@@ -205,6 +215,22 @@ def describe_changes(members: Members, refusal: str, special: SpecialValues) -> 
         "missing.",
     ]
     return "\n".join(lines)
+
+
+def _relation_text(precise: Sequence[PreciseChange | None]) -> str:
+    """Of one change, or of none where the time was over before it."""
+    if not precise:
+        return "no relation was looked for: the time was over"
+    (change,) = precise
+    if change is None:
+        return "no relation was looked for: it was not found to more digits"
+    relation = change.relation
+    if relation is None:
+        return "no simple relation of the parameters was found that it follows"
+    return (
+        f"{relation.text}; holds for {relation.held} of "
+        f"{count_of(relation.members, 'random member')} to {relation.digits} digits"
+    )
 
 
 def _shape_text(shape: MapShape | None) -> str:
@@ -224,8 +250,12 @@ def _shape_text(shape: MapShape | None) -> str:
     return text
 
 
-def changes_document(members: Members, special: SpecialValues) -> dict[str, Any]:
-    """The same as plain values, angles in rad."""
+def changes_document(
+    members: Members,
+    special: SpecialValues,
+    precise: Sequence[PreciseChange | None] | None = None,
+) -> dict[str, Any]:
+    """The same as plain values, angles in rad; ``precise`` ones in decimals, as text."""
     (parameter,) = members.free
     names = members.problem.domain.names
     return {
@@ -243,10 +273,19 @@ def changes_document(members: Members, special: SpecialValues) -> dict[str, Any]
                 "before": _shape_row(change.before),
                 "at": _shape_row(change.at),
                 "after": _shape_row(change.after),
+                **({} if precise is None else _precise_row(precise[k : k + 1])),
             }
-            for change in special.changes
+            for k, change in enumerate(special.changes)
         ],
     }
+
+
+def _precise_row(precise: Sequence[PreciseChange | None]) -> dict[str, Any]:
+    if not precise or precise[0] is None:
+        return {"precise": None, "relation": None}
+    relation = precise[0].relation
+    row = None if relation is None else asdict(relation)
+    return {"precise": precise[0].value, "relation": row}
 
 
 def _digits(change: MapChange) -> int:
