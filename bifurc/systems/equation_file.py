@@ -108,18 +108,22 @@ class EquationSystem:
 
 
 def read_equations(
-    path: Path | str, values: Mapping[str, float] | None = None
+    path: Path | str,
+    values: Mapping[str, float] | None = None,
+    free: Mapping[str, tuple[float, float]] | None = None,
 ) -> EquationSystem:
     """The system of equations that a TOML file describes; docs/equations.md says how.
 
-    ``values`` replace those of the parameters in the file. Nothing in the file is run.
+    ``values`` replace those of the parameters in the file; those that are ``free``
+    within bounds are further unknowns of the problem, after the others. Nothing in the
+    file is run.
     Raises `EquationFileError` for a file that cannot be read, and for anything wrong in
     it, with the name of the entry.
     """
     path = Path(path)
     content = _parsed(path)
     try:
-        return _Reading(path, content, dict(values or {})).system()
+        return _Reading(path, content, dict(values or {}), dict(free or {})).system()
     except _Refusal as refusal:
         raise EquationFileError(path, str(refusal)) from None
     except ProblemError as error:
@@ -128,6 +132,15 @@ def read_equations(
 
 class _Refusal(Exception):
     """Something wrong in the file."""
+
+
+def holds_equations(path: Path | str) -> bool:
+    """Whether a file is one of equations rather than of a linkage; what cannot be read
+    is not."""
+    try:
+        return set(REQUIRED) <= set(read_toml(Path(path), parse_float=str))
+    except TextFileError:
+        return False
 
 
 def _parsed(path: Path) -> Content:
@@ -159,12 +172,13 @@ class _Equation(NamedTuple):
 
 @dataclass
 class _Reading:
-    """A file while it is read: ``content``, ``overrides`` of parameters, and the
-    symbols that are known so far."""
+    """A file while it is read: ``content``, ``overrides`` of parameters, the bounds of
+    those that are ``free``, and the symbols that are known so far."""
 
     path: Path
     content: Content
     overrides: dict[str, float]
+    free: dict[str, tuple[float, float]]
     symbols: dict[str, Part] = field(default_factory=dict)
     program: Program = field(default_factory=Program)
 
@@ -183,13 +197,15 @@ class _Reading:
         if is_flow:
             order = list(unknowns)
             equations.sort(key=lambda one: order.index(one.rate_of))
+        further = {name: _Unknown(*self.free[name], math.inf, "") for name in self.free}
+        all_unknowns = {**unknowns, **further}
         problem = ExpressionProblem(
             self.program,
             [equation.part.place for equation in equations],
-            list(unknowns),
-            [(one.low, one.high) for one in unknowns.values()],
-            periods=[one.period for one in unknowns.values()],
-            units=[one.unit for one in unknowns.values()],
+            list(all_unknowns),
+            [(one.low, one.high) for one in all_unknowns.values()],
+            periods=[one.period for one in all_unknowns.values()],
+            units=[one.unit for one in all_unknowns.values()],
         )
         return EquationSystem(
             name=self._text("name", self.path.stem),
@@ -206,7 +222,7 @@ class _Reading:
     def _parameters(self) -> dict[str, float]:
         """The constants by their names."""
         table = self._table("parameters")
-        for name in self.overrides:
+        for name in (*self.overrides, *self.free):
             if name not in table:
                 hint = _nearest(name, table)
                 raise _Refusal(f"parameters.{name}: there is none in the file{hint}")
@@ -219,8 +235,10 @@ class _Reading:
                 raise _Refusal(f"{label}: {refused} is not a finite number")
             value = repr(self.overrides[name]) if name in self.overrides else given
             part = self._constant(label, value)
-            self.symbols[name] = part
             values[name] = float(part.value or 0.0)
+            if name in self.free:
+                part = Part(self.program.place(Step(name)))
+            self.symbols[name] = part
         return values
 
     def _unknowns(self) -> dict[str, _Unknown]:
@@ -301,9 +319,10 @@ class _Reading:
         self, equations: Sequence[_Equation], unknowns: Sequence[str]
     ) -> None:
         """Refuse equations whose two sides are the same."""
-        writer = TapeWriter(len(unknowns))
+        names = [*unknowns, *self.free]
+        writer = TapeWriter(len(names))
         places = [equation.part.place for equation in equations]
-        slots = self.program.write_on(writer, places, unknowns)
+        slots = self.program.write_on(writer, places, names)
         for equation, slot in zip(equations, slots, strict=True):
             if writer.value(slot) is not None:
                 label = f"equations.{equation.label}"
@@ -361,7 +380,8 @@ class _Reading:
             part = self._part(f"events.{name}", text)
             if part.value is not None:
                 raise _Refusal(f"events.{name}: {text!r} holds no unknown")
-            events[name] = FirstOutput(tape_of(self.program, [part.place], unknowns))
+            names = [*unknowns, *self.free]
+            events[name] = FirstOutput(tape_of(self.program, [part.place], names))
         return events
 
     # --- entries ----------------------------------------------------------------------

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 CHECKED = 50  # members at which a relation is to hold
 TRIED = 100  # of which some may be none, or lie beyond a place where the change ends
-AWAY = 0.1  # of its value: how far each parameter is moved
+AWAY = 0.1  # of its value: how far each parameter is moved, so that what is 0 stays
 LARGEST = 12  # whole number in it
 MOST_ANGLES, MOST_LENGTHS = 4, 4  # in a polynomial
 
@@ -49,7 +49,7 @@ class _Shape(NamedTuple):
 
 @dataclass(frozen=True)
 class Relation:
-    """The ``text`` of an equation between parameters, that holds at ``held`` out of so
+    """The ``text`` of an equation between parameters, those left out that are 0, that holds at ``held`` out of so
     many ``members``, at which the change was solved for anew, to ``digits`` at least, 0 where
     it holds for none."""
 
@@ -113,7 +113,8 @@ def _relation(
     others; None where there is none among those that are looked for."""
     if not members:
         return None
-    for shape in _shapes(family, free):
+    for any_terms in _shapes(family, free):
+        shape = _without_zeros(any_terms, members[0])
         whole = _whole_numbers(shape, members[0])
         if whole is not None:
             return _checked(shape, whole, members[1:])
@@ -127,7 +128,7 @@ def _other_members(
     rng = np.random.default_rng(0)
     for _ in range(TRIED):
         others = {
-            name: value + AWAY * rng.uniform(-1.0, 1.0) * (value or 1.0)
+            name: value * (1.0 + AWAY * rng.uniform(-1.0, 1.0))
             for name, value in values.items()
         }
         member = change.at(others)
@@ -161,11 +162,25 @@ def _numbers(shape: _Shape, member: Mapping[str, Any]) -> list[Any]:
     return [mpmath.log(abs(v)) for v in values] if shape.is_product else values
 
 
+def _without_zeros(shape: _Shape, member: Mapping[str, Any]) -> _Shape:
+    """The terms that are not 0, nor factors of 1, at a member."""
+    values = [term.value(member) for term in shape.terms]
+    idle = (0, 1) if shape.is_product else (0,)
+    terms = [
+        term
+        for term, value in zip(shape.terms, values, strict=True)
+        if abs(value) not in idle
+    ]
+    return shape._replace(terms=tuple(terms))
+
+
 def _whole_numbers(shape: _Shape, member: Mapping[str, Any]) -> list[int] | None:
     """The whole numbers of a relation that holds at a member, None where there is
     none."""
     import mpmath
 
+    if len(shape.terms) < 2:
+        return None
     tolerance = mpmath.mpf(holds_as_relation.threshold)
     numbers = _numbers(shape, member)
     found = mpmath.pslq(numbers, tol=tolerance, maxcoeff=LARGEST, maxsteps=100_000)

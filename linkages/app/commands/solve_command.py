@@ -10,7 +10,7 @@ import click
 
 from bifurc.limits import HeldInterrupt
 from linkages.app import options
-from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
+from linkages.app.exit_codes import ExitCode, exit_code_table
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas
@@ -67,9 +67,9 @@ def solve_command(
       bifurc solve reaction.toml --param B=12 --json
     """
     from bifurc.systems.document import make_document
-    from bifurc.systems.equation_file import read_equations
     from bifurc.systems.summary import make_summary
     from bifurc.systems.verdict import verdict_of
+    from linkages.app.atlas_source import explore_system
     from linkages.app.output import (
         require_folder,
         require_out,
@@ -79,7 +79,7 @@ def solve_command(
         writing_to,
     )
 
-    system = read_equations(equations, _values(parameters))
+    system = _read(equations, parameters)
     require_out(out)
     require_folder(out)
     paths: list[Path] = []
@@ -113,13 +113,12 @@ def solve_command(
     click.get_current_context().exit(code)
 
 
-def explore_system(system: EquationSystem, search: options.SearchOptions) -> Atlas:
-    """The atlas of a system; progress is shown on standard error."""
-    from linkages.app.output import StatusLine
+def _read(path: str, parameters: tuple[str, ...]) -> EquationSystem:
+    """The equations of a file, with other values of its parameters."""
+    from bifurc.systems.equation_file import read_equations
+    from linkages.app.choice import read_constants
 
-    settings = search.settings()
-    with StatusLine() as status:
-        return system.explore(settings=settings, seed=search.seed, progress=status)
+    return read_equations(path, read_constants(parameters))
 
 
 def exit_code_of(atlas: Atlas) -> ExitCode:
@@ -135,20 +134,3 @@ def exit_code_of(atlas: Atlas) -> ExitCode:
     if is_open or atlas.completeness.level is Level.OUT_OF_TIME:
         return ExitCode.NOTHING_KNOWN
     return ExitCode.DOES_NOT_MOVE
-
-
-def _values(texts: tuple[str, ...]) -> dict[str, float]:
-    """The parameters in "key=value"; raises `CommandError`."""
-    values = {}
-    for text in texts:
-        key, equals, number = text.partition("=")
-        try:
-            value = float(number)
-        except ValueError:
-            equals = ""
-        if not equals or not key.strip():
-            raise CommandError(f"--param {text}: it must be KEY=NUMBER")
-        if key.strip() in values:
-            raise CommandError(f"--param {text}: {key.strip()} is given twice")
-        values[key.strip()] = value
-    return values

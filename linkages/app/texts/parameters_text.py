@@ -17,19 +17,20 @@ from bifurc.torus import wrap
 from linkages.app.texts.numbers import in_degrees
 from linkages.entry import Parameter, ParameterKind
 from linkages.parameters.followed import Followed, MemberComparison
-from linkages.parameters.members import Members
+from linkages.parameters.members import FreeParameters, Members
 from linkages.parameters.relations import PreciseChange
 from linkages.parameters.special import MapChange, MapShape, SpecialValues
 
 SAMPLES = 200  # of a curve in JSON
 MOST_DIGITS = 15
+LEAST = 1e-12  # of the scale: what is less of an unknown is shown as 0
 
 
 # --- follow ---------------------------------------------------------------------------
 
 
 def describe_followed(
-    members: Members, refusals: Mapping[str, str], points: Sequence[Followed]
+    members: FreeParameters, refusals: Mapping[str, str], points: Sequence[Followed]
 ) -> str:
     """What became of each point; ``refusals``: why there are no members beyond the range
     of a parameter."""
@@ -45,16 +46,16 @@ def describe_followed(
     return "\n".join(lines)
 
 
-def _headline(members: Members) -> str:
+def _headline(members: FreeParameters) -> str:
     spans = [
         f"{one.name} from {_shown(one, members.ranges[one.name][0])} to "
         f"{_shown(one, members.ranges[one.name][1])}"
         for one in members.free
     ]
-    return f"{members.family.title}: {' and '.join(spans)}"
+    return f"{members.title}: {' and '.join(spans)}"
 
 
-def _lines(members: Members, point: Followed) -> list[str]:
+def _lines(members: FreeParameters, point: Followed) -> list[str]:
     curve, comparison = point.curve, point.comparison
     if curve is None or comparison is None:
         return [f"not followed: {point.reason}"]
@@ -76,7 +77,7 @@ def _comparison_lines(comparison: MemberComparison, nullity: int) -> list[str]:
     return lines
 
 
-def _course(members: Members, curve: FollowedPoint) -> str:
+def _course(members: FreeParameters, curve: FollowedPoint) -> str:
     """From where to where a curve goes."""
     if curve.branch.closed:
         return "a closed curve"
@@ -93,7 +94,7 @@ def _course(members: Members, curve: FollowedPoint) -> str:
     return f"{course}; it ended, {curve.branch.outcome.value}"
 
 
-def _place_line(members: Members, place: FollowedPlace) -> str:
+def _place_line(members: FreeParameters, place: FollowedPlace) -> str:
     values = ", ".join(
         f"{one.name} = {_known(one, value, place.error)}"
         for one, value in zip(members.free, place.p, strict=True)
@@ -105,7 +106,19 @@ def _place_line(members: Members, place: FollowedPlace) -> str:
     elif place.parameter is not None:
         extreme = "least" if place.is_minimum else "largest"
         what = f"{members.free[place.parameter].name} is {extreme}"
-    return f"{values}: {what}, at {_angles(place.u)}"
+    return f"{values}: {what}, at {_place(members, place.u)}"
+
+
+def _place(members: FreeParameters, u: np.ndarray) -> str:
+    """The unknowns (n,), of joints without their names."""
+    domain = members.problem.domain
+    if all(period < np.inf for period in domain.periods):
+        return _angles(u)
+    least = LEAST * domain.scale
+    return ", ".join(
+        f"{name} = {0.0 if abs(x) < least else x:.10g}"
+        for name, x in zip(domain.names, u.tolist(), strict=True)
+    )
 
 
 def _angles(u: np.ndarray) -> str:
@@ -121,13 +134,17 @@ def _shown(parameter: Parameter, value: float, digits: int = 6) -> str:
 
 
 def _known(parameter: Parameter, value: float, error: float) -> str:
-    """A value with the digits that are known."""
-    size = abs(value) or 1.0
+    """A value with the digits that are known, 0 where that is all there is to it."""
+    if abs(value) <= error:
+        return _shown(parameter, 0.0)
+    size = abs(value)
     digits = int(-math.log10(max(error / size, 10.0**-MOST_DIGITS)))
     return _shown(parameter, value, max(digits, 1))
 
 
-def followed_document(members: Members, points: Sequence[Followed]) -> dict[str, Any]:
+def followed_document(
+    members: FreeParameters, points: Sequence[Followed]
+) -> dict[str, Any]:
     """The same as plain values, angles in rad: ``curves`` by samples, and the ``points``
     at which something happens on them."""
     names = members.problem.domain.names
@@ -201,7 +218,7 @@ def describe_changes(
         if precise is not None:
             lines.append(f"  {_relation_text(precise[k : k + 1])}")
         if change.u is not None:
-            lines.append(f"  at {_angles(change.u)}")
+            lines.append(f"  at {_place(members, change.u)}")
         for where, shape in (
             ("below", change.before),
             ("there", change.at),

@@ -10,6 +10,7 @@ from bifurc.errors import ProblemError
 from bifurc.following.follow import FollowError, follow_singular_point
 from bifurc.following.places import PlaceKind
 from bifurc.following.singular_problem import SingularPointProblem
+from bifurc.function_problem import FunctionProblem
 from bifurc.parametrised import ParametrisedProblem
 
 
@@ -161,6 +162,22 @@ def test_zero_hopf_and_bogdanov_takens_points_of_the_extended_lorenz_model():
         rtol=0,
         atol=1e-9,
     )
+
+
+def test_any_unknowns_of_a_problem_can_be_its_parameters():
+    problem = FunctionProblem(
+        lambda u: [u[0] * u[1] - u[2], u[1] - u[3] ** 2],
+        [(0, 1), (0, 2), (0, 3), (0, 4)],
+        names=["a", "b", "c", "d"],
+    )
+    split = ParametrisedProblem.of(problem, ["c", "a"])
+    assert split.domain.names == ("b", "d")
+    assert split.parameters.names == ("c", "a")
+    assert split.parameters.bounds.tolist() == [[0, 3], [0, 1]]
+    a, b, c, d = 0.3, 0.7, 1.1, 1.7
+    (own,) = problem.residuals(np.array([[a, b, c, d]]))
+    (other,) = split.tape.compiled.residuals(np.array([[b, d, c, a]]))
+    assert other.tolist() == own.tolist()
 
 
 # --- crossings over one parameter -----------------------------------------------------

@@ -87,7 +87,7 @@ def test_there_are_members_up_to_the_end_that_geometry_sets():
 def test_followed_bifurcations_are_those_of_maps_of_their_own():
     chosen = members("reconfigurable-bricard-1", alpha=(0.3, 1.9))
     atlas = map_linkage(chosen.load(chosen.start), settings=QUICK)
-    followed = follow_points(chosen, atlas.points)
+    followed = follow_points(chosen, chosen.points(atlas))
     assert len(followed) == 2
     for one in followed:
         assert one.comparison.members == 50
@@ -107,7 +107,7 @@ def test_followed_bifurcations_are_those_of_maps_of_their_own():
 def test_over_two_parameters_a_spherical_four_bar_keeps_grashofs_equality():
     chosen = members("spherical-four-bar", alpha12=(0.7, 2.1), alpha23=(0.7, 2.1))
     atlas = map_linkage(chosen.load(chosen.start), settings=QUICK)
-    (followed,) = follow_points(chosen, atlas.bifurcations)
+    (followed,) = follow_points(chosen, chosen.points(atlas))
     s = np.linspace(0.0, followed.curve.branch.length, 40)
     first, second = followed.curve.parameters(s).T
     rest = abs(chosen.values["alpha34"] - chosen.values["alpha41"])
@@ -119,7 +119,7 @@ def test_over_two_parameters_a_spherical_four_bar_keeps_grashofs_equality():
 def test_what_is_there_for_one_value_alone_is_said_to_be():
     chosen = members("spherical-four-bar", alpha12=(0.7, 2.1))
     atlas = map_linkage(chosen.load(chosen.start), settings=QUICK)
-    (followed,) = follow_points(chosen, atlas.bifurcations)
+    (followed,) = follow_points(chosen, chosen.points(atlas))
     assert followed.curve is None
     assert "free one more parameter" in followed.reason
 
