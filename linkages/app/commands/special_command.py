@@ -11,7 +11,7 @@ from linkages.app.exit_codes import ExitCode, exit_code_table
 
 
 @click.command("special", epilog=exit_code_table())
-@click.argument("linkage", metavar="NAME")
+@click.argument("linkage", metavar="NAME|FILE.toml")
 @options.free_param_option
 @click.option(
     "--relations",
@@ -33,7 +33,8 @@ def special_command(
 
     Every value is the solution of equations, and is known to nearly all digits of a
     double; maps beside it and at it show what changes. The parameter is free as --param
-    gamma or --param gamma=10:20, others have values; angles are in degrees.
+    gamma or --param gamma=10:20, others have values; angles are in degrees. In a file with a
+    table its entries are the parameters: a12, alpha12 and R1, and so on.
 
     \b
     Examples:
