@@ -30,6 +30,8 @@ TRIED = 100  # of which some may be none, or lie beyond a place where the change
 AWAY = 0.1  # of its value: how far each parameter is moved, so that what is 0 stays
 LARGEST = 12  # whole number in it
 MOST_ANGLES, MOST_LENGTHS = 4, 4  # in a polynomial
+MOST_TERMS = 32  # of a relation
+BY_CHANCE = 30  # digits that whole numbers of a relation have together, of DIGITS
 
 
 class _Term(NamedTuple):
@@ -109,15 +111,18 @@ def _precise_change(members: Members, change: MapChange) -> PreciseChange | None
 def _relation(
     family: Entry, free: str, members: Sequence[Mapping[str, Any]]
 ) -> Relation | None:
-    """The simplest relation that holds at the first one of the members, checked at the
-    others; None where there is none among those that are looked for."""
+    """The simplest relation that holds at the first one of the members and any other,
+    checked at all others; None where there is none among those that are looked for."""
     if not members:
         return None
     for any_terms in _shapes(family, free):
         shape = _without_zeros(any_terms, members[0])
         whole = _whole_numbers(shape, members[0])
-        if whole is not None:
-            return _checked(shape, whole, members[1:])
+        if whole is None:
+            continue
+        relation = _checked(shape, whole, members[1:])
+        if relation.held:
+            return relation
     return None
 
 
@@ -183,7 +188,9 @@ def _whole_numbers(shape: _Shape, member: Mapping[str, Any]) -> list[int] | None
         return None
     tolerance = mpmath.mpf(holds_as_relation.threshold)
     numbers = _numbers(shape, member)
-    found = mpmath.pslq(numbers, tol=tolerance, maxcoeff=LARGEST, maxsteps=100_000)
+    # as many as no number of so many digits fits by chance
+    largest = min(LARGEST, int(0.5 * (10.0 ** (BY_CHANCE / len(numbers)) - 1.0)))
+    found = mpmath.pslq(numbers, tol=tolerance, maxcoeff=largest, maxsteps=100_000)
     return None if found is None else [int(n) for n in found]
 
 
@@ -197,7 +204,7 @@ def _shapes(family: Entry, free: str) -> Iterator[_Shape]:
     angles = [name for name, kind in kinds.items() if kind is ParameterKind.ANGLE]
     others = [name for name in kinds if name not in angles]
     plain = [_Term(name, _value_of(name)) for name in others]
-    half_tangents = [_half_tangent(name) for name in angles]
+    half_tangents = [_of_angle(name, "tan", 2) for name in angles]
     if free in angles:
         own = [_Term(name, _value_of(name)) for name in angles]
         yield _Shape((*own, PI))
@@ -207,6 +214,7 @@ def _shapes(family: Entry, free: str) -> Iterator[_Shape]:
     for function in ("sin", "cos"):
         of_angles = [_of_angle(name, function) for name in angles]
         yield _Shape((*plain, *of_angles, TWO), is_product=True)
+    yield from _products_with_sums(others, angles)
     if free in angles and len(angles) <= MOST_ANGLES:
         yield _Shape(_monomials(half_tangents))
     if free not in angles and len(others) <= MOST_LENGTHS:
@@ -229,22 +237,65 @@ def _two(_: Mapping[str, Any]) -> Any:
 PI, TWO = _Term("pi", _pi), _Term("2", _two)
 
 
+def _products_with_sums(
+    others: Sequence[str], angles: Sequence[str]
+) -> Iterator[_Shape]:
+    """Products in which sums and differences of two lengths or angles stand as well: those
+    of lengths and sines, as in the ratios of a Bennett linkage whose links are joined of
+    two, and those of sines of half the angles; then sums of sines of sums of three."""
+    lengths = [_sum(parts) for parts in _signed_sums(others, 2)]
+    sines = [_sine(parts, 1) for parts in _signed_sums(angles, 2)]
+    half_sines = [_sine(parts, 2) for parts in _signed_sums(angles, 2)]
+    half_cosines = [_of_angle(name, "cos", 2) for name in angles]
+    for terms in ([*lengths, *sines, TWO], [*half_sines, *half_cosines]):
+        if len(terms) <= MOST_TERMS:
+            yield _Shape(tuple(terms), is_product=True)
+    sums = [_sine(parts, 1) for parts in _signed_sums(angles, 3)]
+    if len(sums) <= MOST_TERMS:
+        yield _Shape(tuple(sums))
+
+
+def _signed_sums(
+    names: Sequence[str], most: int
+) -> Iterator[tuple[tuple[int, str], ...]]:
+    """The sums of up to so many, with signs of which the first is +."""
+    for size in range(1, most + 1):
+        for chosen in itertools.combinations(names, size):
+            for signs in itertools.product((1, -1), repeat=size - 1):
+                yield tuple(zip((1, *signs), chosen, strict=True))
+
+
+def _sum(parts: Sequence[tuple[int, str]]) -> _Term:
+    """A sum of parameters with signs."""
+    text = " ".join(f"{'-' if sign < 0 else '+'} {name}" for sign, name in parts)[2:]
+    whole = text if len(parts) == 1 else f"({text})"
+    return _Term(whole, lambda member: sum(sign * member[name] for sign, name in parts))
+
+
+def _sine(parts: Sequence[tuple[int, str]], divisor: int) -> _Term:
+    """The sine of a sum of angles over a whole number."""
+    import mpmath
+
+    total = _sum(parts)
+    text = total.text.strip("()") if divisor == 1 else f"{total.text}/{divisor}"
+    return _Term(
+        f"sin({text})", lambda member: mpmath.sin(total.value(member) / divisor)
+    )
+
+
 def _value_of(name: str) -> Callable[[Mapping[str, Any]], Any]:
     return lambda member: member[name]
 
 
-def _of_angle(name: str, function: str) -> _Term:
+def _of_angle(name: str, function: str, divisor: int = 1) -> _Term:
+    """A function of an angle over a whole number."""
     import mpmath
 
+    text = name if divisor == 1 else f"{name}/{divisor}"
     return _Term(
-        f"{function}({name})", lambda member: getattr(mpmath, function)(member[name])
+        f"{function}({text})",
+        lambda member: getattr(mpmath, function)(member[name] / divisor),
     )
-
-
-def _half_tangent(name: str) -> _Term:
-    import mpmath
-
-    return _Term(f"tan({name}/2)", lambda member: mpmath.tan(member[name] / 2))
 
 
 def _monomials(terms: Sequence[_Term]) -> tuple[_Term, ...]:
