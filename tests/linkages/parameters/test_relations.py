@@ -148,6 +148,21 @@ def test_a_search_without_time_looks_for_none():
     assert precise_changes(chosen, [change], Deadline(0.0)) == []
 
 
+def test_ctrl_c_keeps_what_is_known(monkeypatch):
+    answers = iter([None])
+
+    def interrupted(*_):
+        try:
+            return next(answers)
+        except StopIteration:
+            raise KeyboardInterrupt from None
+
+    monkeypatch.setattr(relations, "_precise_change", interrupted)
+    chosen = members("four-bar", "d", 0.1, 6.0, d=3.4)
+    change = singular(chosen, (0, PI, 0, PI))
+    assert precise_changes(chosen, [change, change], NEVER) == [None]
+
+
 def test_a_relation_stands_under_its_value():
     chosen = members("four-bar", "d", 0.1, 6.0, d=3.4)
     change = singular(chosen, (0, PI, 0, PI))
