@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from bifurc.domain import Domain
-from bifurc.equations.tape import Tape
+from bifurc.equations.tape import Tape, TapeWriter
 from bifurc.errors import ProblemError
-from bifurc.function_problem import FunctionProblem
+from bifurc.function_problem import EquationProblem, FunctionProblem
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,12 +69,28 @@ class ParametrisedProblem:
             [*bounds, *parameter_bounds],
             names=all_names,
         )
+        return ParametrisedProblem.of(problem, all_names[n:])
+
+    @staticmethod
+    def of(problem: EquationProblem, parameters: Sequence[str]) -> ParametrisedProblem:
+        """The problem with those of its unknowns for parameters, in this order. Raises
+        `ProblemError` where it is not recorded, with the reason."""
         tape = problem.equations.tape
         if tape is None:
             allowed = f"of functions that can be recorded; {problem.recording.reason}"
-            raise ProblemError("function", function, allowed)
+            raise ProblemError("function", problem, allowed)
+        names = problem.domain.names
+        last = [names.index(name) for name in parameters]
+        order = [k for k in range(len(names)) if k not in last] + last
+        n = len(order) - len(last)
+        writer = TapeWriter(tape.n)
+        slots = tape.write_on(
+            writer, [writer.unknown(place) for place in np.argsort(order).tolist()]
+        )
         return ParametrisedProblem(
-            tape, _part(problem.domain, slice(n)), _part(problem.domain, slice(n, None))
+            writer.tape([slots[slot] for slot in tape.outputs.tolist()]),
+            _part(problem.domain, order[:n]),
+            _part(problem.domain, order[n:]),
         )
 
 
@@ -87,13 +103,15 @@ def _sizes(domain: Domain) -> np.ndarray:
     return np.where(np.isfinite(widths), 0.25 * widths, of_circles)
 
 
-def _part(domain: Domain, part: slice) -> Domain:
-    """The domain of some of the unknowns."""
-    bounds = domain.bounds[part]
+def _part(domain: Domain, numbers: Sequence[int]) -> Domain:
+    """The domain of the unknowns with these numbers (from 0)."""
+    bounds = domain.bounds[numbers]
+    widths = np.diff(bounds, axis=1)
+    finite = widths[np.isfinite(widths)]
     return Domain(
-        domain.names[part],
-        domain.units[part],
-        domain.periods[part],
+        tuple(domain.names[k] for k in numbers),
+        tuple(domain.units[k] for k in numbers),
+        domain.periods[numbers],
         bounds,
-        scale=float(np.median(np.diff(bounds, axis=1))) / 4.0,
+        scale=float(np.median(finite)) / 4.0 if len(finite) else domain.scale,
     )

@@ -30,6 +30,7 @@ import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple, TypeAlias
 
 from bifurc.atlas import Atlas
@@ -108,11 +109,15 @@ class EquationSystem:
 
 
 def read_equations(
-    path: Path | str, values: Mapping[str, float] | None = None
+    path: Path | str,
+    values: Mapping[str, float] | None = None,
+    free: Mapping[str, tuple[float, float]] | None = None,
 ) -> EquationSystem:
     """The system of equations that a TOML file describes; docs/equations.md says how.
 
-    ``values`` replace those of the parameters in the file. Nothing in the file is run.
+    ``values`` replace those of the parameters in the file; those that are ``free``
+    within bounds are further unknowns of the problem, after the others. Nothing in the
+    file is run.
     Raises `EquationFileError` for a file that cannot be read, and for anything wrong in
     it, with the name of the entry.
 
@@ -130,7 +135,7 @@ def read_equations(
     >>> form.branch.closed, round(form.branch.length, 9)
     (True, 12.566370614)
     """
-    return EquationFile.read(path).system(values or {})
+    return EquationFile.read(path).system(values or {}, free or {})
 
 
 @dataclass(frozen=True)
@@ -160,10 +165,15 @@ class EquationFile:
         table = self.content.get("parameters", {})
         return list(table) if isinstance(table, dict) else []
 
-    def system(self, values: Mapping[str, float]) -> EquationSystem:
-        """The system with these ``values`` of constants; raises `EquationFileError`."""
+    def system(
+        self,
+        values: Mapping[str, float],
+        free: Mapping[str, tuple[float, float]] = MappingProxyType({}),
+    ) -> EquationSystem:
+        """The system with these ``values`` of constants, and with others ``free`` within
+        bounds; raises `EquationFileError`."""
         try:
-            return _Reading(self.path, self.content, dict(values)).system()
+            return _Reading(self.path, self.content, dict(values), dict(free)).system()
         except _Refusal as refusal:
             raise EquationFileError(self.path, str(refusal)) from None
         except ProblemError as error:
@@ -172,6 +182,15 @@ class EquationFile:
 
 class _Refusal(Exception):
     """Something wrong in the file."""
+
+
+def holds_equations(path: Path | str) -> bool:
+    """Whether a file is one of equations rather than of a linkage; what cannot be read
+    is not."""
+    try:
+        return EquationFile.read(path).is_of_equations
+    except EquationFileError:
+        return False
 
 
 class _Unknown(NamedTuple):
@@ -195,12 +214,13 @@ class _Equation(NamedTuple):
 
 @dataclass
 class _Reading:
-    """A file while it is read: ``content``, ``overrides`` of parameters, and the
-    symbols that are known so far."""
+    """A file while it is read: ``content``, ``overrides`` of parameters, the bounds of
+    those that are ``free``, and the symbols that are known so far."""
 
     path: Path
     content: Content
     overrides: dict[str, float]
+    free: dict[str, tuple[float, float]]
     symbols: dict[str, Part] = field(default_factory=dict)
     program: Program = field(default_factory=Program)
 
@@ -219,13 +239,15 @@ class _Reading:
         if is_flow:
             order = list(unknowns)
             equations.sort(key=lambda one: order.index(one.rate_of))
+        further = {name: _Unknown(*self.free[name], math.inf, "") for name in self.free}
+        all_unknowns = {**unknowns, **further}
         problem = ExpressionProblem(
             self.program,
             [equation.part.place for equation in equations],
-            list(unknowns),
-            [(one.low, one.high) for one in unknowns.values()],
-            periods=[one.period for one in unknowns.values()],
-            units=[one.unit for one in unknowns.values()],
+            list(all_unknowns),
+            [(one.low, one.high) for one in all_unknowns.values()],
+            periods=[one.period for one in all_unknowns.values()],
+            units=[one.unit for one in all_unknowns.values()],
         )
         return EquationSystem(
             name=self._text("name", self.path.stem),
@@ -242,7 +264,7 @@ class _Reading:
     def _parameters(self) -> dict[str, float]:
         """The constants by their names."""
         table = self._table("parameters")
-        for name in self.overrides:
+        for name in (*self.overrides, *self.free):
             if name not in table:
                 hint = _nearest(name, table)
                 raise _Refusal(f"parameters.{name}: there is none in the file{hint}")
@@ -255,8 +277,10 @@ class _Reading:
                 raise _Refusal(f"{label}: {refused} is not a finite number")
             value = repr(self.overrides[name]) if name in self.overrides else given
             part = self._constant(label, value)
-            self.symbols[name] = part
             values[name] = float(part.value or 0.0)
+            if name in self.free:
+                part = Part(self.program.place(Step(name)))
+            self.symbols[name] = part
         return values
 
     def _unknowns(self) -> dict[str, _Unknown]:
@@ -337,9 +361,10 @@ class _Reading:
         self, equations: Sequence[_Equation], unknowns: Sequence[str]
     ) -> None:
         """Refuse equations whose two sides are the same."""
-        writer = TapeWriter(len(unknowns))
+        names = [*unknowns, *self.free]
+        writer = TapeWriter(len(names))
         places = [equation.part.place for equation in equations]
-        slots = self.program.write_on(writer, places, unknowns)
+        slots = self.program.write_on(writer, places, names)
         for equation, slot in zip(equations, slots, strict=True):
             if writer.value(slot) is not None:
                 label = f"equations.{equation.label}"
@@ -397,7 +422,8 @@ class _Reading:
             part = self._part(f"events.{name}", text)
             if part.value is not None:
                 raise _Refusal(f"events.{name}: {text!r} holds no unknown")
-            events[name] = FirstOutput(tape_of(self.program, [part.place], unknowns))
+            names = [*unknowns, *self.free]
+            events[name] = FirstOutput(tape_of(self.program, [part.place], names))
         return events
 
     # --- entries ----------------------------------------------------------------------

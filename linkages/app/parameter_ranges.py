@@ -6,12 +6,21 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from linkages.app.choice import read_number, read_parameters
+from bifurc.systems.equation_file import holds_equations, read_equations
+from linkages.app.choice import read_constants, read_number, read_parameters
 from linkages.app.exit_codes import CommandError
 from linkages.catalogue import entry
-from linkages.entry import Entry, Parameter, ParameterKind, UnknownParameterError
-from linkages.linkage import is_linkage_file
+from linkages.entry import (
+    Entry,
+    Linkage,
+    Parameter,
+    ParameterKind,
+    UnknownParameterError,
+)
+from linkages.linkage import is_linkage_file, load
+from linkages.parameters.equation_members import EquationMembers
 from linkages.parameters.members import Members, range_of_members
+from linkages.parameters.table_family import family_of_table
 
 
 class ChosenMembers(NamedTuple):
@@ -26,23 +35,13 @@ def choose_members(source: str, texts: Sequence[str], most: int) -> ChosenMember
     or "key" a free one, of which there may be ``most``, from its value on the page of the
     family or from the middle. Angles are in degrees.
 
-    Raises `CommandError`, and as `read_parameters`.
+    In a file with a table its entries are the parameters. Raises `CommandError`, and as
+    `read_parameters`.
     """
-    if is_linkage_file(source):
-        raise CommandError(
-            f"{source}: it takes the name of a linkage in the catalogue, whose parameters "
-            "can move; a file holds one linkage"
-        )
-    family = entry(source)
+    family = _family(source)
     fixed = [text for text in texts if "=" in text and ":" not in text]
     free = [text for text in texts if text not in fixed]
-    if not 1 <= len(free) <= most:
-        how_many = "one parameter is" if most == 1 else f"1 to {most} parameters are"
-        names = ", ".join(one.name for one in family.parameters)
-        raise CommandError(
-            f"--param: {len(free)} parameters are free, and {how_many} to be, as "
-            f"--param {family.parameters[0].name} or with =low:high, out of {names}"
-        )
+    _require_count(free, most, [one.name for one in family.parameters])
     values = family.complete(read_parameters(family.parameters, fixed))
     ranges = _ranges(family, free)
     for name, (low, high) in ranges.items():
@@ -59,6 +58,60 @@ def choose_members(source: str, texts: Sequence[str], most: int) -> ChosenMember
         ranges[name] = (found.low, found.high)
         refusals[name] = found.refusal
     return ChosenMembers(Members(family, values, ranges), refusals)
+
+
+def choose_equations(path: str, texts: Sequence[str]) -> EquationMembers:
+    """The equations of a file: "key=value" is another value of a constant, "key=low:high"
+    one that is free, of which there are one or two. Raises `CommandError` and
+    `EquationFileError`."""
+    free = [text for text in texts if ":" in text or "=" not in text]
+    values = read_constants([text for text in texts if text not in free])
+    system = read_equations(path, values)
+    _require_count(free, 2, list(system.values))
+    bounds: dict[str, tuple[float, float]] = {}
+    for text in free:
+        name, _, span = text.partition("=")
+        if name not in system.values:
+            known = ", ".join(system.values)
+            raise CommandError(f"--param {name}: it must be one of {known}")
+        low, high = _span(name, span)
+        if name in bounds or name in values:
+            raise CommandError(f"--param {name}: it is given twice")
+        bounds[name] = (low, high)
+        if not low < system.values[name] < high:
+            values[name] = 0.5 * (low + high)
+    return EquationMembers(path, values, bounds)
+
+
+def _require_count(free: Sequence[str], most: int, names: Sequence[str]) -> None:
+    """Raise `CommandError` unless as many parameters are free as may be, out of those of
+    the ``names``."""
+    if 1 <= len(free) <= most:
+        return
+    how_many = "one parameter is" if most == 1 else f"1 to {most} parameters are"
+    example = f", as --param {names[0]}=low:high," if names else ""
+    raise CommandError(
+        f"--param: {len(free)} parameters are free, and {how_many} to be{example} out of "
+        f"{', '.join(names) or 'none'}"
+    )
+
+
+def _family(source: str) -> Entry:
+    """The family that has a name, or the table in a file; raises `CommandError`."""
+    if not is_linkage_file(source):
+        return entry(source)
+    if holds_equations(source):
+        raise CommandError(
+            f"{source}: these are equations, whose points `bifurc follow` follows; this "
+            "takes a linkage"
+        )
+    linkage = load(source)
+    if not isinstance(linkage, Linkage):
+        raise CommandError(
+            f"{source}: parameters can move of families, of single loops of revolute "
+            "joints in a file, and for `bifurc follow` of equations; this is a mechanism"
+        )
+    return family_of_table(linkage.loop)
 
 
 def _ranges(family: Entry, texts: Sequence[str]) -> dict[str, tuple[float, float]]:
@@ -82,9 +135,18 @@ def _range(family: Entry, text: str) -> tuple[Parameter, float, float]:
     if not span:
         low = min(parameter.low, parameter.default)
         return parameter, low, max(parameter.high, parameter.default)
-    ends = [read_number(name, part) for part in span.split(":")]
-    if len(ends) != 2 or not ends[0] < ends[1]:
-        raise CommandError(f"--param {name}: {span!r} is not allowed; write low:high")
+    ends = _span(name, span)
     if parameter.kind is ParameterKind.ANGLE:
-        ends = [math.radians(end) for end in ends]
-    return parameter, ends[0], ends[1]
+        ends = (math.radians(ends[0]), math.radians(ends[1]))
+    return parameter, *ends
+
+
+def _span(name: str, text: str) -> tuple[float, float]:
+    """The ends of a range "low:high"; raises `CommandError`."""
+    parts = text.split(":")
+    if len(parts) != 2:
+        raise CommandError(f"--param {name}: {text!r} is not allowed; write low:high")
+    ends = [read_number(name, part) for part in parts]
+    if not ends[0] < ends[1]:
+        raise CommandError(f"--param {name}: {text!r} is not allowed; write low:high")
+    return ends[0], ends[1]

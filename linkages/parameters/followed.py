@@ -8,12 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bifurc.atlas import MeetingPoint
+from bifurc.errors import BifurcError
 from bifurc.following.follow import FollowedPoint, FollowError, follow_singular_point
 from bifurc.limits import Deadline
-from linkages.closure.system import ClosureSystem
-from linkages.parameters.members import Members
-from linkages.values import GeometryError
+from linkages.parameters.members import FreeParameters, PointToFollow
 
 MEMBERS = 50  # that are built anew along a curve
 
@@ -35,38 +33,34 @@ class Followed:
     """What became of the ``point`` of a map: its ``curve`` and the ``comparison``, or the
     ``reason`` why it cannot be followed."""
 
-    point: MeetingPoint
+    point: PointToFollow
     curve: FollowedPoint | None = None
     comparison: MemberComparison | None = None
     reason: str = ""
 
 
 def follow_points(
-    members: Members, points: Sequence[MeetingPoint], deadline: Deadline | None = None
+    members: FreeParameters,
+    points: Sequence[PointToFollow],
+    deadline: Deadline | None = None,
 ) -> list[Followed]:
-    """What becomes of the ``points`` of the map of the member from which the free
-    parameters move.
+    """What becomes of ``points`` of the member from which the free parameters move.
 
     >>> import linkages
     >>> from linkages.catalogue import entry
     >>> family = entry("kite")
     >>> members = linkages.Members(family, family.defaults, {"a": (0.5, 1.8)})
     >>> atlas = linkages.map_linkage(members.load(members.start))
-    >>> for followed in linkages.follow_points(members, atlas.bifurcations):
+    >>> for followed in linkages.follow_points(members, members.points(atlas)):
     ...     print(followed.point.name, followed.comparison.members, followed.curve.places)
     B1 50 ()
     B2 50 ()
     """
     followed = []
     for point in points:
-        nullity = members.problem.n - point.point.rank
         try:
             curve = follow_singular_point(
-                members.problem,
-                point.point.u,
-                members.start,
-                nullity,
-                deadline=deadline,
+                members.problem, point.u, point.p, point.nullity, deadline=deadline
             )
         except FollowError as error:
             followed.append(Followed(point, reason=str(error)))
@@ -75,19 +69,18 @@ def follow_points(
     return followed
 
 
-def compare(members: Members, curve: FollowedPoint) -> MemberComparison:
+def compare(members: FreeParameters, curve: FollowedPoint) -> MemberComparison:
     """Members along a curve, each built anew and compared with it."""
     count, gap, largest, refusal = 0, 0.0, 0.0, ""
     for s in np.linspace(0.0, curve.branch.length, MEMBERS):
         try:
-            closure = ClosureSystem(members.build(curve.parameters(s)))
-        except GeometryError as error:
+            residual, jacobian = members.anew(curve.unknowns(s), curve.parameters(s))
+        except BifurcError as error:
             refusal = refusal or str(error)
             continue
-        u = curve.unknowns(s)[None]
-        rank = closure.n - curve.problem.nullity
-        sigma = np.linalg.svd(closure.jacobians(u)[0], compute_uv=False)
+        rank = jacobian.shape[1] - curve.problem.nullity
+        sigma = np.linalg.svd(jacobian, compute_uv=False)
         count += 1
-        gap = max(gap, float(np.abs(closure.residuals(u)).max()))
+        gap = max(gap, float(np.abs(residual).max()))
         largest = max(largest, float(sigma[rank:].max(initial=0.0)))
     return MemberComparison(count, gap, largest, refusal)

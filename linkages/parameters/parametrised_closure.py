@@ -3,17 +3,18 @@ unknowns."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
 from bifurc.domain import Domain
+from bifurc.equations.recorded import RecordedNumber, Recorder
+from bifurc.equations.tape import Tape
 from bifurc.equations.valued import ValuedRecorder
 from bifurc.parametrised import ParametrisedProblem
 from linkages.closure.loop_parts import parts_of_loop
 from linkages.closure.motors import IDENTITY, Number, product, turn
 from linkages.entry import Entry, ParameterKind
-from linkages.loop import Loop
 
 X, Z = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 AT_ORIGIN = np.zeros(3)
@@ -37,7 +38,9 @@ def parametrised_closure(
     numbers = [writer.number(writer.unknown(k)) for k in range(writer.n)]
     free = dict(zip(ranges, numbers[first.n :], strict=True))
     loop = family.build(**{**complete, **free})
-    tape = writer.tape(_residuals(writer, loop, numbers, first.characteristic_length))
+    rows = zip(loop.twists, loop.lengths, loop.offsets, strict=True)
+    slots = _residuals(numbers[: first.n], rows, first.characteristic_length)
+    tape = writer.tape(slots)
     return ParametrisedProblem(
         tape=tape,
         domain=parts_of_loop(first).domain,
@@ -57,13 +60,26 @@ def _domain(family: Entry, ranges: Mapping[str, tuple[float, float]]) -> Domain:
     )
 
 
+def closure_of_tables(n: int, unit: float) -> Tape:
+    """The same equations in the n joint angles (rad), twists (rad), lengths and offsets of
+    any loop, translations in a ``unit``."""
+    recorder = Recorder(4 * n)
+    numbers = [recorder.number(recorder.unknown(k)) for k in range(4 * n)]
+    rows = zip(
+        numbers[n : 2 * n], numbers[2 * n : 3 * n], numbers[3 * n :], strict=True
+    )
+    return recorder.tape(_residuals(numbers[:n], rows, unit))
+
+
 def _residuals(
-    writer: ValuedRecorder, loop: Loop, angles: Sequence[Number], unit: float
+    angles: Sequence[RecordedNumber],
+    rows: Iterable[tuple[Number, Number, Number]],
+    unit: float,
 ) -> list[int]:
-    """The slots of twice the vector part of the motor of a loop, as a mechanism's."""
+    """The slots of twice the vector part of the motor of a loop, as a mechanism's; its
+    ``rows`` are twist, length and offset."""
     motor = IDENTITY
-    rows = zip(angles, loop.twists, loop.lengths, loop.offsets, strict=False)
-    for angle, twist, length, offset in rows:
+    for angle, (twist, length, offset) in zip(angles, rows, strict=True):
         for axis, by, advance in ((Z, angle, offset), (X, twist, length)):
             half = 0.5 * by
             step = turn(axis, AT_ORIGIN, np.cos(half), np.sin(half), advance / unit)

@@ -3,8 +3,9 @@
 Members over the range are mapped. Where a map has a near miss, the equations of a
 bifurcation with the parameter among the unknowns are solved from there: that is a value at
 which a bifurcation appears. Bifurcations that are there all along are followed; where the
-parameter turns back two of them are born. Between members with different maps and no such
-value, further ones are mapped.
+parameter turns back two of them are born. Where the angle of a joint changes along a form
+the less the nearer a value is, the equations of a joint at rest are solved. Between members
+with different maps and no such value, further ones are mapped.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from bifurc import torus
 from bifurc.atlas import Atlas
 from bifurc.decisions import is_null, is_same_point, is_start_solved
 from bifurc.following.follow import FollowedPoint, FollowError, follow_singular_point
+from bifurc.following.rest_problem import RestProblem, rest_problems
 from bifurc.following.singular_problem import SingularPointProblem
 from bifurc.limits import Deadline
 from bifurc.numerics.null_spaces import null_spaces
@@ -38,6 +40,7 @@ LOOKED_AT = 3  # every one of so many of them is looked at more closely
 OFF_CENTRE, OFF_END = 0.618, 0.02
 HALVINGS = 12  # of an interval whose ends have different maps
 BESIDE = 1e-3  # of the range, or less: how far from a value maps are compared
+REST_REACH = 1.5  # of their spacing: so far from a member a rest is looked for
 NULLITY = 2  # at a crossing of two curves
 NEARBY = 1e-4  # rad: beside a special value points move with the root of a rounding
 PLACES = 60  # of a form, of which one is nearest to losing rank
@@ -52,6 +55,8 @@ class ChangeKind(Enum):
     SINGULAR = "singular point"
     # Two bifurcations that are there on one side are one there.
     BIRTH = "birth"
+    # Joints have one angle all along a form at this value alone.
+    REST = "rest"
     # Maps on both sides differ; no equation was found that says why.
     BETWEEN_MAPS = "between maps"
 
@@ -59,6 +64,7 @@ class ChangeKind(Enum):
 WORDS = {
     ChangeKind.SINGULAR: "at this value alone there is a singular point",
     ChangeKind.BIRTH: "two singular points become one",
+    ChangeKind.REST: "at this value alone a joint rests along a form",
     ChangeKind.BETWEEN_MAPS: "maps beside it differ, for a reason that was not found",
 }
 
@@ -79,8 +85,10 @@ class MapShape(NamedTuple):
 @dataclass(frozen=True, eq=False)
 class MapChange:
     """The map changes at this ``value`` of the parameter, known to ``error``: the
-    ``kind`` says why, in a configuration ``u`` (n,) where there is one; the
-    maps ``before``, ``at`` the value and ``after`` it, None where there is no member."""
+    ``kind`` says why, in a configuration ``u`` (n,) where there is one, and with the
+    ``joints`` (from 1) that rest along a form at this value alone; the maps ``before``,
+    ``at`` the value and ``after`` it, None where there is no member; the ``problem`` whose
+    ``solution`` it is, None where there is none."""
 
     value: float
     error: float
@@ -90,16 +98,28 @@ class MapChange:
     at: MapShape | None = None
     after: MapShape | None = None
     point: Kind | None = None
+    joints: tuple[int, ...] = ()
+    problem: SingularPointProblem | RestProblem | None = None
+    solution: np.ndarray | None = None
 
     @property
     def what(self) -> str:
         """What happens there, in words."""
         words = WORDS[self.kind]
+        if self.joints:
+            words += f" ({', '.join(f'joint {joint}' for joint in self.joints)})"
         if self.kind is ChangeKind.BETWEEN_MAPS or self.at is None:
             return words
-        if self.point is None:
+        if self.kind is ChangeKind.REST:
+            at_rest = {joint for form in self.at.at_rest for joint in form}
+            is_listed = at_rest.issuperset(self.joints)
+        else:
+            is_listed = self.point is not None
+        if not is_listed:
             return f"{words}, which the map there does not list"
-        return f"{words}, of the kind {self.point.value}"
+        return (
+            words if self.point is None else f"{words}, of the kind {self.point.value}"
+        )
 
 
 class _TimeIsOver(Exception):
@@ -152,6 +172,7 @@ class _SpecialSearch:
             return
         for event in atlas.near_misses:
             self._from(event.u, value)
+        self._from_forms(atlas, value)
         if not closely:
             return
         for u in _weakest_places(atlas):
@@ -165,7 +186,7 @@ class _SpecialSearch:
         if value in self.beside:
             return
         low, high = self.range
-        others = [one.value for one in self.changes if one is not change]
+        others = [one.value for one in self.changes if one.value != value]
         room = min(abs(value - other) for other in (*others, low, high))
         step = max(min(BESIDE * (high - low), room / 3.0), 2.0 * change.error)
         self.at[value] = self._map(value)
@@ -215,7 +236,9 @@ class _SpecialSearch:
         if not np.any(is_null(sigma[0])):
             size = float(problem.sizes[-1])
             error = ROUNDING * (size + abs(found)) / float(sigma[0, -1])
-            self._add(MapChange(found, error, ChangeKind.SINGULAR, place))
+            kind = ChangeKind.SINGULAR
+            change = MapChange(found, error, kind, place)
+            self._add(replace(change, problem=problem, solution=points[0]))
             return
         self._follow(place, parameters, nullity)
 
@@ -235,13 +258,42 @@ class _SpecialSearch:
             value, kind = float(place.p[0]), ChangeKind.BIRTH
             self._add(MapChange(value, place.error, kind, place.u))
 
+    def _from_forms(self, atlas: Atlas, value: float) -> None:
+        """Solve the equations of a joint at rest from the forms of a member."""
+        low, high = self.range
+        reach = REST_REACH * (high - low) / MEMBERS
+        for form in atlas.forms:
+            p = np.array([value])
+            for problem in rest_problems(self.members.problem, form.branch, p, reach):
+                self._from_rest(problem)
+
+    def _from_rest(self, problem: RestProblem) -> None:
+        """Solve the equations of a joint at rest."""
+        points, gaps = problem.project(problem.start[None])
+        found = float(points[0, -1])
+        low, high = self.range
+        if not (is_start_solved(float(gaps[0])) and low < found < high):
+            return
+        _, sigma, right = np.linalg.svd(
+            problem.jacobians(points)[0], full_matrices=False
+        )
+        if is_null(float(sigma[-1]), problem.magnitude):
+            return  # it rests along the forms of other members as well
+        lever = float(np.linalg.norm(right[:, -1] / sigma))
+        error = ROUNDING * (abs(found) + lever * problem.magnitude)
+        joints = (problem.resting + 1,)
+        change = MapChange(found, error, ChangeKind.REST, None, joints=joints)
+        self._add(replace(change, problem=problem, solution=points[0]))
+
     def _add(self, change: MapChange) -> None:
         low, high = self.range
-        if not any(
-            is_same_point(abs(one.value - change.value), high - low)
-            for one in self.changes
-        ):
-            self.changes.append(change)
+        for k, one in enumerate(self.changes):
+            if is_same_point(abs(one.value - change.value), high - low):
+                first = change if one.kind is ChangeKind.REST else one
+                joints = tuple(sorted({*one.joints, *change.joints}))
+                self.changes[k] = replace(first, value=one.value, joints=joints)
+                return
+        self.changes.append(change)
 
 
 @dataclass(frozen=True, eq=False)

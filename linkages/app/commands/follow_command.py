@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 import click
 
 from linkages.app import options
-from linkages.app.exit_codes import CommandError, exit_code_table
+from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 
 if TYPE_CHECKING:
-    from linkages.parameters.members import Members
+    from bifurc.atlas import Atlas
+    from linkages.parameters.members import FreeParameters
 
 
 @click.command("follow", epilog=exit_code_table())
-@click.argument("linkage", metavar="NAME")
+@click.argument("linkage", metavar="NAME|FILE.toml")
 @click.option(
     "--point",
     "names",
@@ -33,38 +34,38 @@ def follow_command(
     as_json: bool,
     out: Path | None,
 ) -> None:
-    """Follow the singular points of a linkage while one or two of its parameters move,
-    with every condition of its family kept.
+    """Follow the singular points of a linkage or of equations while one or two parameters
+    move, of a family with every condition kept.
 
     A parameter is free as --param gamma or --param gamma=10:20, and has a value as --param
     gamma=14; angles are in degrees. What is there for all values of one parameter is
-    followed over that; what is there for one value alone is followed over two.
+    followed over that; what is there for one value alone is followed over two. In a file
+    with a table its entries are the parameters: a12, alpha12 and R1, and so on. In one of
+    equations they are its constants, as --param c=0.5:2, besides the parameter of its
+    diagram, whose folds are followed too.
 
     \b
     Examples:
       bifurc follow special-double-subtractive-goldberg --point B1 --param alpha
       bifurc follow spherical-four-bar --param alpha12=40:120 --param alpha23=40:120
+      bifurc follow reaction.toml --point F1 --param B=8:20
     """
-    from linkages.app.atlas_source import explore_linkage, require_uninterrupted
     from linkages.app.output import require_folder, say, say_json
-    from linkages.app.parameter_ranges import choose_members
     from linkages.app.texts.parameters_text import describe_followed, followed_document
     from linkages.parameters.followed import follow_points
 
     require_folder(out)
-    members, refusals = choose_members(linkage, parameters, most=2)
-    search = options.SearchOptions(certify=False)
-    atlas = explore_linkage(members.load(members.start), search)
-    require_uninterrupted(atlas)
-    known = [point.name for point in atlas.points]
+    members, refusals, atlas = _atlas_of(linkage, parameters)
+    points = members.points(atlas)
+    known = [point.name for point in points]
     for name in names:
         if name not in known:
             there = ", ".join(known) or "none"
             raise CommandError(f"--point {name}: the points are {there}")
-    points = [one for one in atlas.points if not names or one.name in names]
     if not points:
         raise CommandError(f"{linkage}: it has no singular point there to follow")
-    followed = follow_points(members, points)
+    chosen = [one for one in points if not names or one.name in names]
+    followed = follow_points(members, chosen)
     text = describe_followed(members, refusals, followed)
     document = followed_document(members, followed)
     if out is not None:
@@ -79,7 +80,7 @@ def follow_command(
 
 
 def say_steps(
-    members: Members, linkage: str, parameters: tuple[str, ...], has_files: bool
+    members: FreeParameters, linkage: str, parameters: tuple[str, ...], has_files: bool
 ) -> None:
     """Say what can be done next with the family."""
     from linkages.app.output import say_next
@@ -89,3 +90,31 @@ def say_steps(
         say_next(steps_with_members("special", linkage, parameters))
     elif not has_files:
         say_next(steps_with_members("follow", linkage, parameters) + " --out DIR")
+
+
+def _atlas_of(
+    source: str, parameters: tuple[str, ...]
+) -> tuple[FreeParameters, dict[str, str], Atlas]:
+    """What has free parameters, why there are no members beyond the range of one, and the
+    atlas of the member from which they move."""
+    from bifurc.systems.equation_file import holds_equations
+    from bifurc.systems.verdict import verdict_of
+    from linkages.app.atlas_source import (
+        explore_linkage,
+        explore_system,
+        require_uninterrupted,
+    )
+    from linkages.app.parameter_ranges import choose_equations, choose_members
+    from linkages.linkage import is_linkage_file
+
+    search = options.SearchOptions(certify=False)
+    if is_linkage_file(source) and holds_equations(source):
+        equations = choose_equations(source, parameters)
+        atlas = explore_system(equations.system, search)
+        if atlas.provenance.interrupted:
+            raise CommandError(verdict_of(atlas), ExitCode.INTERRUPTED)
+        return equations, {}, atlas
+    members, refusals = choose_members(source, parameters, most=2)
+    atlas = explore_linkage(members.load(members.start), search)
+    require_uninterrupted(atlas)
+    return members, refusals, atlas

@@ -80,8 +80,10 @@ def solve_command(
     from bifurc.systems.summary import make_summary
     from bifurc.systems.verdict import verdict_of
     from linkages.app import output
+    from linkages.app.atlas_source import explore_system
+    from linkages.app.choice import read_constants
 
-    system = _system_of(equations, _values(parameters))
+    system = _system_of(equations, read_constants(parameters))
     _check_axes(axes, system)
     output.require_out(out)
     output.require_folder(out)
@@ -162,15 +164,6 @@ def _is_linkage(source: str) -> bool:
     return True
 
 
-def explore_system(system: EquationSystem, search: options.SearchOptions) -> Atlas:
-    """The atlas of a system; progress is shown on standard error."""
-    from linkages.app.output import StatusLine
-
-    settings = search.settings()
-    with StatusLine() as status:
-        return system.explore(settings=settings, seed=search.seed, progress=status)
-
-
 def exit_code_of(atlas: Atlas) -> ExitCode:
     """Whether there are curves, there are none, or nothing is known."""
     from bifurc.completeness import Level
@@ -193,20 +186,3 @@ def _check_axes(axes: tuple[str, ...], system: EquationSystem) -> None:
 
         for axis in axes:
             check_axis(axis, system.problem.domain.names)
-
-
-def _values(texts: tuple[str, ...]) -> dict[str, float]:
-    """The parameters in "key=value"; raises `CommandError`."""
-    values = {}
-    for text in texts:
-        key, equals, number = text.partition("=")
-        try:
-            value = float(number)
-        except ValueError:
-            equals = ""
-        if not equals or not key.strip():
-            raise CommandError(f"--param {text}: it must be KEY=NUMBER")
-        if key.strip() in values:
-            raise CommandError(f"--param {text}: {key.strip()} is given twice")
-        values[key.strip()] = value
-    return values

@@ -12,21 +12,24 @@ from matplotlib.figure import Figure
 
 from bifurc.files.atomic import replace_files
 from bifurc.following.follow import FollowedPoint
+from bifurc.following.places import FollowedPlace, PlaceKind
 from linkages.app.output import say_written, writing_to
 from linkages.app.reports.tolerance_figure import COLOURS
 from linkages.entry import Parameter, ParameterKind
 from linkages.parameters.followed import Followed
-from linkages.parameters.members import Members
+from linkages.parameters.members import FreeParameters
 
 SAMPLES = 600  # of a curve
 COLUMNS = 3
 LEAST = 20.0  # deg, the range of an axis
-ROUNDING = 1e-6  # deg, by which an angle of half a turn may be more or less
+LEAST_SHARE = 0.1  # of the scale of unknowns that are no angles, the same
+LABEL_OFFSET = (7.0, -10.0)  # points, from a mark to its label
+ROUNDING = 1e-8  # rad, by which an angle of half a turn may be more or less
 STYLES = ("-", "--", "-.", ":")
 
 
 def write_followed(
-    members: Members,
+    members: FreeParameters,
     points: Sequence[Followed],
     text: str,
     document: Mapping[str, object],
@@ -46,60 +49,79 @@ def write_followed(
     say_written([out / name for name in names], out)
 
 
-def draw_followed(members: Members, points: Sequence[Followed]) -> Figure:
-    """The angles of the joints over the free parameter, one picture for each joint; or
-    the plane of two parameters."""
+def draw_followed(members: FreeParameters, points: Sequence[Followed]) -> Figure:
+    """The unknowns over the free parameter, one picture for each; or the plane of two
+    parameters."""
     curves = [(one.point.name, one.curve) for one in points if one.curve is not None]
     if len(members.free) == 2:
         figure = Figure(figsize=(5.6, 4.6), layout="constrained")
         _draw_plane(figure.subplots(), members.free, curves)
         return figure
     n = members.problem.n
-    rows = -(-n // COLUMNS)
-    figure = Figure(figsize=(10.0, 2.7 * rows), layout="constrained")
-    panels = np.atleast_1d(figure.subplots(rows, COLUMNS, sharex=True)).ravel()
-    for joint, axes in enumerate(panels):
-        if joint >= n:
+    columns = min(n, COLUMNS)
+    rows = -(-n // columns)
+    figure = Figure(figsize=(1.0 + 3.0 * columns, 2.7 * rows), layout="constrained")
+    panels = np.atleast_1d(figure.subplots(rows, columns, sharex=True)).ravel()
+    for number, axes in enumerate(panels):
+        if number >= n:
             axes.set_axis_off()
             continue
-        _draw_joint(axes, members, joint, curves)
+        _draw_unknown(axes, members, number, curves)
     if curves:
         handles, labels = panels[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside right upper", frameon=False)
     return figure
 
 
-def _draw_joint(
+def _draw_unknown(
     axes: Axes,
-    members: Members,
-    joint: int,
+    members: FreeParameters,
+    number: int,
     curves: Sequence[tuple[str, FollowedPoint]],
 ) -> None:
-    """The angle of a joint (from 0) at each point, over the free parameter."""
+    """An unknown (from 0) at each point, over the free parameter."""
     (parameter,) = members.free
-    for number, (name, curve) in enumerate(curves):
-        s = np.linspace(0.0, curve.branch.length, SAMPLES)
-        angles = np.degrees(curve.unknowns(s)[:, joint])
-        turns = 360.0 * np.round((angles.mean() - ROUNDING) / 360.0)
-        values = _in_unit(parameter, curve.parameters(s)[:, 0])
-        colour = COLOURS[number % len(COLOURS)]
-        style = STYLES[number % len(STYLES)]  # curves may lie on each other
-        axes.plot(values, angles - turns, style, color=colour, lw=1.6, label=name)
-        births = _in_unit(parameter, np.array([one.p[0] for one in curve.places]))
-        at = np.degrees([one.u[joint] for one in curve.places])
-        axes.plot(births, at - turns, "o", color=colour, ms=5)
-    _label_joint(axes, joint)
-    if joint >= members.problem.n - COLUMNS:
+    period = float(members.problem.domain.periods[number])
+    for k, (name, curve) in enumerate(curves):
+        s = curve.branch.arclengths(SAMPLES)
+        births = np.array([place.s for place in curve.places])
+        turns = _whole_turns(curve.unknowns(s)[:, number], period)
+        colour = COLOURS[k % len(COLOURS)]
+        style = STYLES[k % len(STYLES)]  # curves may lie on each other
+        for along, look in ((s, style), (births, "o")):
+            values = _in_unit(parameter, curve.parameters(along)[:, 0])
+            shown = _as_shown(curve.unknowns(along)[:, number] - turns, period)
+            axes.plot(values, shown, look, color=colour, lw=1.6, ms=5)
+        axes.plot([], [], style, color=colour, label=name)
+    _label_unknown(axes, members, number)
+    if number >= members.problem.n - COLUMNS:
         axes.set_xlabel(_label(parameter))
         axes.tick_params(labelbottom=True)
     axes.grid(alpha=0.3)
 
 
-def _label_joint(axes: Axes, joint: int) -> None:
-    """The name of a joint (from 0), and a range that does not show rounding."""
+def _whole_turns(values: np.ndarray, period: float) -> float:
+    """What to take from an unknown that its mean lies within half a period of 0."""
+    if not np.isfinite(period):
+        return 0.0
+    return period * float(np.round((values.mean() - ROUNDING) / period))
+
+
+def _as_shown(values: np.ndarray, period: float) -> np.ndarray:
+    """Values of an unknown, angles in degrees."""
+    return np.degrees(values) if np.isfinite(period) else values
+
+
+def _label_unknown(axes: Axes, members: FreeParameters, number: int) -> None:
+    """The name of an unknown (from 0), and a range that does not show rounding."""
+    domain = members.problem.domain
+    is_angle = np.isfinite(domain.periods[number])
+    unit = " (deg)" if is_angle else ""
+    axes.set_ylabel(f"{domain.names[number]}{unit}")
     low, high = axes.get_ylim()
-    axes.set_ylim(min(low, high - LEAST), max(high, low + LEAST))
-    axes.set_ylabel(f"joint {joint + 1} (deg)")
+    least = LEAST if is_angle else LEAST_SHARE * domain.scale
+    room = max(0.0, 0.5 * (least - (high - low)))
+    axes.set_ylim(low - room, high + room)
 
 
 def _draw_plane(
@@ -113,12 +135,27 @@ def _draw_plane(
         x, y = (_in_unit(one, curve.parameters(s)[:, k]) for k, one in enumerate(free))
         axes.plot(x, y, color=COLOURS[number % len(COLOURS)], lw=1.6, label=name)
         for place in curve.places:
-            at = [_in_unit(one, place.p[k]) for k, one in enumerate(free)]
-            axes.plot(*at, "o", color=COLOURS[number % len(COLOURS)], ms=5)
+            first, second = (
+                float(_in_unit(one, place.p[k])) for k, one in enumerate(free)
+            )
+            axes.plot(first, second, "o", color=COLOURS[number % len(COLOURS)], ms=5)
+            _label_place(axes, place, (first, second))
     axes.set(xlabel=_label(free[0]), ylabel=_label(free[1]))
     axes.grid(alpha=0.3)
     if curves:
         axes.legend(frameon=False)
+
+
+def _label_place(axes: Axes, place: FollowedPlace, at: tuple[float, float]) -> None:
+    """What a place of a curve is, but where one parameter turns back."""
+    if place.kind is not PlaceKind.TURN:
+        axes.annotate(
+            place.kind.value,
+            at,
+            xytext=LABEL_OFFSET,
+            textcoords="offset points",
+            fontsize="small",
+        )
 
 
 def _in_unit(parameter: Parameter, values: np.ndarray) -> np.ndarray:

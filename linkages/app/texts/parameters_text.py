@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -16,18 +17,20 @@ from bifurc.torus import wrap
 from linkages.app.texts.numbers import in_degrees
 from linkages.entry import Parameter, ParameterKind
 from linkages.parameters.followed import Followed, MemberComparison
-from linkages.parameters.members import Members
+from linkages.parameters.members import FreeParameters, Members
+from linkages.parameters.relations import PreciseChange
 from linkages.parameters.special import MapChange, MapShape, SpecialValues
 
 SAMPLES = 200  # of a curve in JSON
 MOST_DIGITS = 15
+LEAST = 1e-12  # of the scale: what is less of an unknown is shown as 0
 
 
 # --- follow ---------------------------------------------------------------------------
 
 
 def describe_followed(
-    members: Members, refusals: Mapping[str, str], points: Sequence[Followed]
+    members: FreeParameters, refusals: Mapping[str, str], points: Sequence[Followed]
 ) -> str:
     """What became of each point; ``refusals``: why there are no members beyond the range
     of a parameter."""
@@ -43,16 +46,16 @@ def describe_followed(
     return "\n".join(lines)
 
 
-def _headline(members: Members) -> str:
+def _headline(members: FreeParameters) -> str:
     spans = [
         f"{one.name} from {_shown(one, members.ranges[one.name][0])} to "
         f"{_shown(one, members.ranges[one.name][1])}"
         for one in members.free
     ]
-    return f"{members.family.title}: {' and '.join(spans)}"
+    return f"{members.title}: {' and '.join(spans)}"
 
 
-def _lines(members: Members, point: Followed) -> list[str]:
+def _lines(members: FreeParameters, point: Followed) -> list[str]:
     curve, comparison = point.curve, point.comparison
     if curve is None or comparison is None:
         return [f"not followed: {point.reason}"]
@@ -74,7 +77,7 @@ def _comparison_lines(comparison: MemberComparison, nullity: int) -> list[str]:
     return lines
 
 
-def _course(members: Members, curve: FollowedPoint) -> str:
+def _course(members: FreeParameters, curve: FollowedPoint) -> str:
     """From where to where a curve goes."""
     if curve.branch.closed:
         return "a closed curve"
@@ -91,7 +94,7 @@ def _course(members: Members, curve: FollowedPoint) -> str:
     return f"{course}; it ended, {curve.branch.outcome.value}"
 
 
-def _place_line(members: Members, place: FollowedPlace) -> str:
+def _place_line(members: FreeParameters, place: FollowedPlace) -> str:
     values = ", ".join(
         f"{one.name} = {_known(one, value, place.error)}"
         for one, value in zip(members.free, place.p, strict=True)
@@ -103,7 +106,19 @@ def _place_line(members: Members, place: FollowedPlace) -> str:
     elif place.parameter is not None:
         extreme = "least" if place.is_minimum else "largest"
         what = f"{members.free[place.parameter].name} is {extreme}"
-    return f"{values}: {what}, at {_angles(place.u)}"
+    return f"{values}: {what}, at {_place(members, place.u)}"
+
+
+def _place(members: FreeParameters, u: np.ndarray) -> str:
+    """The unknowns (n,), of joints without their names."""
+    domain = members.problem.domain
+    if all(period < np.inf for period in domain.periods):
+        return _angles(u)
+    least = LEAST * domain.scale
+    return ", ".join(
+        f"{name} = {0.0 if abs(x) < least else x:.10g}"
+        for name, x in zip(domain.names, u.tolist(), strict=True)
+    )
 
 
 def _angles(u: np.ndarray) -> str:
@@ -124,13 +139,17 @@ def _shown(parameter: Parameter, value: float, digits: int = 6) -> str:
 
 
 def _known(parameter: Parameter, value: float, error: float) -> str:
-    """A value with the digits that are known."""
-    size = abs(value) or 1.0
+    """A value with the digits that are known, 0 where that is all there is to it."""
+    if abs(value) <= error:
+        return _shown(parameter, 0.0)
+    size = abs(value)
     digits = int(-math.log10(max(error / size, 10.0**-MOST_DIGITS)))
     return _shown(parameter, value, max(digits, 1))
 
 
-def followed_document(members: Members, points: Sequence[Followed]) -> dict[str, Any]:
+def followed_document(
+    members: FreeParameters, points: Sequence[Followed]
+) -> dict[str, Any]:
     """The same as plain values, angles in rad: ``curves`` by samples, and the ``points``
     at which something happens on them."""
     names = members.problem.domain.names
@@ -182,8 +201,14 @@ def _row(
 # --- special --------------------------------------------------------------------------
 
 
-def describe_changes(members: Members, refusal: str, special: SpecialValues) -> str:
-    """The values at which the map changes."""
+def describe_changes(
+    members: Members,
+    refusal: str,
+    special: SpecialValues,
+    precise: Sequence[PreciseChange | None] | None = None,
+) -> str:
+    """The values at which the map changes, and where they were looked for what is known
+    of these more exactly."""
     (parameter,) = members.free
     lines = [_headline(members)]
     if refusal:
@@ -192,11 +217,13 @@ def describe_changes(members: Members, refusal: str, special: SpecialValues) -> 
         lines.append("The search was ended early: there may be more than is listed.")
     if not special.changes:
         lines.append("No value was found at which the map changes.")
-    for change in special.changes:
+    for k, change in enumerate(special.changes):
         value = _known(parameter, change.value, change.error)
         lines += ["", f"{parameter.name} = {value}: {change.what}"]
+        if precise is not None:
+            lines.append(f"  {_relation_text(precise[k : k + 1])}")
         if change.u is not None:
-            lines.append(f"  at {_angles(change.u)}")
+            lines.append(f"  at {_place(members, change.u)}")
         for where, shape in (
             ("below", change.before),
             ("there", change.at),
@@ -210,6 +237,22 @@ def describe_changes(members: Members, refusal: str, special: SpecialValues) -> 
         "missing.",
     ]
     return "\n".join(lines)
+
+
+def _relation_text(precise: Sequence[PreciseChange | None]) -> str:
+    """Of one change, or of none where the time was over before it."""
+    if not precise:
+        return "no relation was looked for: the time was over"
+    (change,) = precise
+    if change is None:
+        return "no relation was looked for: it was not found to more digits"
+    relation = change.relation
+    if relation is None:
+        return "no simple relation of the parameters was found that it follows"
+    return (
+        f"{relation.text}; holds for {relation.held} of "
+        f"{count_of(relation.members, 'random member')} to {relation.digits} digits"
+    )
 
 
 def _shape_text(shape: MapShape | None) -> str:
@@ -229,8 +272,12 @@ def _shape_text(shape: MapShape | None) -> str:
     return text
 
 
-def changes_document(members: Members, special: SpecialValues) -> dict[str, Any]:
-    """The same as plain values, angles in rad."""
+def changes_document(
+    members: Members,
+    special: SpecialValues,
+    precise: Sequence[PreciseChange | None] | None = None,
+) -> dict[str, Any]:
+    """The same as plain values, angles in rad; ``precise`` ones in decimals, as text."""
     (parameter,) = members.free
     names = members.problem.domain.names
     return {
@@ -248,10 +295,19 @@ def changes_document(members: Members, special: SpecialValues) -> dict[str, Any]
                 "before": _shape_row(change.before),
                 "at": _shape_row(change.at),
                 "after": _shape_row(change.after),
+                **({} if precise is None else _precise_row(precise[k : k + 1])),
             }
-            for change in special.changes
+            for k, change in enumerate(special.changes)
         ],
     }
+
+
+def _precise_row(precise: Sequence[PreciseChange | None]) -> dict[str, Any]:
+    if not precise or precise[0] is None:
+        return {"precise": None, "relation": None}
+    relation = precise[0].relation
+    row = None if relation is None else asdict(relation)
+    return {"precise": precise[0].value, "relation": row}
 
 
 def _digits(change: MapChange) -> int:

@@ -9,6 +9,8 @@ from scipy.optimize import brentq, fsolve
 from bifurc.errors import ProblemError
 from bifurc.following.follow import FollowError, follow_singular_point
 from bifurc.following.places import PlaceKind
+from bifurc.following.singular_problem import SingularPointProblem
+from bifurc.function_problem import FunctionProblem
 from bifurc.parametrised import ParametrisedProblem
 
 
@@ -162,6 +164,22 @@ def test_zero_hopf_and_bogdanov_takens_points_of_the_extended_lorenz_model():
     )
 
 
+def test_any_unknowns_of_a_problem_can_be_its_parameters():
+    problem = FunctionProblem(
+        lambda u: [u[0] * u[1] - u[2], u[1] - u[3] ** 2],
+        [(0, 1), (0, 2), (0, 3), (0, 4)],
+        names=["a", "b", "c", "d"],
+    )
+    split = ParametrisedProblem.of(problem, ["c", "a"])
+    assert split.domain.names == ("b", "d")
+    assert split.parameters.names == ("c", "a")
+    assert split.parameters.bounds.tolist() == [[0, 3], [0, 1]]
+    a, b, c, d = 0.3, 0.7, 1.1, 1.7
+    (own,) = problem.residuals(np.array([[a, b, c, d]]))
+    (other,) = split.tape.compiled.residuals(np.array([[b, d, c, a]]))
+    assert other.tolist() == own.tolist()
+
+
 # --- crossings over one parameter -----------------------------------------------------
 
 
@@ -187,6 +205,18 @@ def test_two_crossings_of_a_line_and_a_curve_are_born_where_it_touches():
     x, y = followed.unknowns(s).T
     assert np.abs(y).max() < 1e-10
     assert np.abs(followed.parameters(s)[:, 0] - height(x)).max() < 1e-10
+
+
+@pytest.mark.parametrize("nullity", [1, 2, 3])
+def test_equations_are_the_same_on_a_tape_of_their_own(nullity):
+    problem = SingularPointProblem(
+        recorded(lorenz, 4, 2), np.array([0.3, 0.4, 0.5, 0.6]), np.ones(2), nullity
+    )
+    shift = 0.1 * np.random.default_rng(0).normal(size=problem.n)
+    points = np.array([problem.start, problem.start + shift])
+    own = problem.compiled
+    assert np.abs(problem.residuals(points) - own.residuals(points)).max() < 1e-14
+    assert np.abs(problem.jacobians(points) - own.jacobians(points)).max() < 1e-14
 
 
 def test_a_point_that_is_there_for_one_value_alone_needs_another_parameter():

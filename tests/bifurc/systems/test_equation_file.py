@@ -11,7 +11,11 @@ import pytest
 
 import bifurc
 from bifurc.diagrams.diagram import Stability
-from bifurc.systems.equation_file import read_equations
+from bifurc.systems.equation_file import (
+    EquationFileError,
+    holds_equations,
+    read_equations,
+)
 from bifurc.systems.summary import make_summary
 
 REACTION = """
@@ -308,3 +312,19 @@ def test_columns_of_unknowns_are_told_apart_from_the_programs_own(tmp_path) -> N
     ]
     assert ["name", "event", "kind", "error", "form"] in columns
     assert all(len(set(row)) == len(row) for row in columns)
+
+
+def test_constants_can_be_free(tmp_path):
+    path = tmp_path / "circle.toml"
+    text = "[unknowns]\nx = [-2, 2]\ny = [-2, 2]\n"
+    text += '[parameters]\nr = 1\n[equations]\na = "x^2 + y^2 = r^2"\n'
+    path.write_text(text)
+    problem = read_equations(path, free={"r": (0.5, 3.0)}).problem
+    assert problem.domain.names == ("x", "y", "r")
+    assert problem.domain.bounds[2].tolist() == [0.5, 3.0]
+    assert problem.residuals(np.array([[3.0, 4.0, 5.0]])).tolist() == [[0.0]]
+    assert holds_equations(path)
+    path.write_text("lengths = [1, 2]")
+    assert not holds_equations(path)
+    with pytest.raises(EquationFileError):
+        read_equations(path, free={"q": (0.0, 1.0)})

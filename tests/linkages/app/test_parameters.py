@@ -3,6 +3,7 @@
 import json
 import math
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
@@ -57,6 +58,97 @@ def test_follow_says_why_a_point_is_not_followed():
     assert "not followed: the point is there for these values" in result.stdout
 
 
+OXIDATION = """\
+name = "CO oxidation"  # Bykov, Yablonskii and Kim 1978
+parameter = "k"
+[unknowns]
+x = [0, 1]
+y = [0, 1]
+s = [0, 1]
+k = [0.1, 2]
+[parameters]
+q2 = 1.34
+q4 = 0.07
+[definitions]
+z = "1 - x - y - s"
+[equations]
+x = "x' = 5*z^2 - 2*x^2 - 10*x*y"
+y = "y' = q2*z - 0.1*y - 10*x*y"
+s = "s' = q4*(z - k*s)"
+"""
+TABLE = """\
+name = "my four-bar"
+angles = "deg"
+lengths = [1, 2.4, 2, 3.4]
+twists = [0, 0, 0, 0]
+offsets = [0, 0, 0, 0]
+"""
+
+
+def written(tmp_path, text):
+    path = tmp_path / "mine.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_folds_of_equations_in_a_file_are_followed_over_a_constant(tmp_path):
+    path = written(tmp_path, OXIDATION)
+    parameters = ("--param", "q2=0.5:2", "--param", "q4=0.0675")
+    result = run("follow", path, "--point", "F1", *parameters, "--json")
+    assert result.exit_code == 0, result.output
+    document = json.loads(result.stdout)
+    (curve,) = document["curves"]
+    assert (curve["point"], curve["kind"]) == ("F1", "fold")
+    assert curve["closure_gap"] < 1e-14
+    places = {}
+    for place in document["points"]:
+        row = (place["parameters"]["k"], place["parameters"]["q2"])
+        places.setdefault(place["kind"], []).append(row)
+    assert places["cusp"] == [pytest.approx((0.3559912732, 1.00640833), rel=1e-8)]
+    first, second = sorted(places["bogdanov-takens"])
+    assert first == pytest.approx((0.722339072522, 1.16119870882), abs=1e-11)
+    assert second == pytest.approx((0.971397573485, 1.4176276376), abs=1e-10)
+
+
+def test_unknowns_of_equations_stand_by_their_names(tmp_path):
+    path = written(tmp_path, OXIDATION)
+    result = run("follow", path, "--param", "q2=0.5:2", "--out", tmp_path / "out")
+    assert "CO oxidation: k from 0.1 to 2 and q2 from 0.5 to 2" in result.stdout
+    assert "cusp, at x = 0.0359" in result.stdout
+    assert (tmp_path / "out" / "follow.png").stat().st_size > 1000
+
+
+def test_entries_of_a_table_are_parameters(tmp_path):
+    path = written(tmp_path, TABLE)
+    free = ("--param", "a12=0.5:1.5", "--param", "a41=3:4")
+    result = run("follow", path, *free, "--json")
+    assert result.exit_code == 0, result.output
+    (curve,) = json.loads(result.stdout)["curves"]
+    first, last = (np.array(curve["parameters"][name]) for name in ("a12", "a41"))
+    # the shortest and the longest link are together as long as the others
+    assert first + last == pytest.approx(4.4, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("command", "text", "parameter", "message"),
+    [
+        ("follow", OXIDATION, "q3=1:2", "one of q2, q4"),
+        ("follow", OXIDATION, "q2", "write low:high"),
+        ("follow", OXIDATION, "q2=1.5", "0 parameters are free"),
+        ("special", OXIDATION, "q2=1:2", "this takes a linkage"),
+        ("follow", TABLE, "a13=1:2", "one of a12, alpha12, R1, a23"),
+        ("follow", "joints = []", "a12=1:2", "joints"),
+    ],
+)
+def test_parameters_that_a_file_does_not_have_are_refused(
+    tmp_path, command, text, parameter, message
+):
+    result = run(command, written(tmp_path, text), "--param", parameter)
+    assert result.exit_code == ExitCode.BAD_INPUT
+    assert message in result.stderr
+    assert len(result.stderr.strip().splitlines()) == 1
+
+
 def test_special_lists_values_with_the_maps_beside_them():
     result = run("special", "four-bar", "--param", "d=3:4")
     assert result.exit_code == 0, result.output
@@ -97,7 +189,7 @@ def test_where_nothing_is_special_it_says_so():
         (("follow", "four-bar", "--param", "d=1:2", "--param", "d"), "given twice"),
         (("follow", "bennett", "--param", "alpha"), "no singular point"),
         (("follow", *BRICARD, "--point", "B9"), "the points are B1, B2"),
-        (("follow", "mine.toml", "--param", "d"), "a file holds one linkage"),
+        (("follow", "mine.toml", "--param", "d"), "there is no such file"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(arguments, message):

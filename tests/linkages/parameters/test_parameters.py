@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bifurc.following.rest_problem import rest_problems
 from bifurc.limits import Deadline
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
@@ -19,6 +20,11 @@ from tests.samples import one_in
 
 QUICK = SearchSettings(certify=False)
 WITH_PARAMETERS = sorted(name for name, one in catalogue().items() if one.parameters)
+
+
+@pytest.fixture(autouse=True)
+def _few_maps(monkeypatch):
+    monkeypatch.setattr("linkages.parameters.special.MEMBERS", 8)
 
 
 def members(name, **ranges):
@@ -86,7 +92,7 @@ def test_there_are_members_up_to_the_end_that_geometry_sets():
 def test_followed_bifurcations_are_those_of_maps_of_their_own():
     chosen = members("reconfigurable-bricard-1", alpha=(0.3, 1.9))
     atlas = map_linkage(chosen.load(chosen.start), settings=QUICK)
-    followed = follow_points(chosen, atlas.points)
+    followed = follow_points(chosen, chosen.points(atlas))
     assert len(followed) == 2
     for one in followed:
         assert one.comparison.members == 50
@@ -106,7 +112,7 @@ def test_followed_bifurcations_are_those_of_maps_of_their_own():
 def test_over_two_parameters_a_spherical_four_bar_keeps_grashofs_equality():
     chosen = members("spherical-four-bar", alpha12=(0.7, 2.1), alpha23=(0.7, 2.1))
     atlas = map_linkage(chosen.load(chosen.start), settings=QUICK)
-    (followed,) = follow_points(chosen, atlas.bifurcations)
+    (followed,) = follow_points(chosen, chosen.points(atlas))
     s = np.linspace(0.0, followed.curve.branch.length, 40)
     first, second = followed.curve.parameters(s).T
     rest = abs(chosen.values["alpha34"] - chosen.values["alpha41"])
@@ -118,7 +124,7 @@ def test_over_two_parameters_a_spherical_four_bar_keeps_grashofs_equality():
 def test_what_is_there_for_one_value_alone_is_said_to_be():
     chosen = members("spherical-four-bar", alpha12=(0.7, 2.1))
     atlas = map_linkage(chosen.load(chosen.start), settings=QUICK)
-    (followed,) = follow_points(chosen, atlas.bifurcations)
+    (followed,) = follow_points(chosen, chosen.points(atlas))
     assert followed.curve is None
     assert "free one more parameter" in followed.reason
 
@@ -151,13 +157,10 @@ def test_rank_drops_are_special_too_and_agree_with_the_map_there():
     changes = special_values(chosen).changes
     assert [change.point for change in changes] == [Kind.RANK_DROP] * 2
     for change in changes:
-        atlas = map_linkage(chosen.load(np.array([change.value])), settings=QUICK)
-        drops = [point for point in atlas.points if point.kind is Kind.RANK_DROP]
-        assert len(drops) == 1
-        for away in (-1e-4, 1e-4):
-            beside = np.array([change.value + away])
-            other = map_linkage(chosen.load(beside), settings=QUICK)
-            assert Kind.RANK_DROP not in [point.kind for point in other.points]
+        counts = [
+            shape.other_points for shape in (change.before, change.at, change.after)
+        ]
+        assert counts == [0, 1, 0]
 
 
 def test_a_bennett_linkage_bifurcates_where_its_links_are_alike():
@@ -168,34 +171,54 @@ def test_a_bennett_linkage_bifurcates_where_its_links_are_alike():
 
 
 def test_a_change_that_is_soon_undone_is_found():
-    """Two forms are one over a twentieth of the range."""
-    chosen = members("bricard-line-symmetric", alpha12=(0.7, 1.6))
+    """Two forms are one over a little more than the spacing of members."""
+    chosen = members("bricard-line-symmetric", alpha12=(0.8, 1.1))
     lengths = {"a12": 2.1, "a23": 2.8, "a34": 1.253888687478674}
     twists = {"alpha23": np.pi / 4, "alpha34": 2.8797932657906435}
     offsets = {"R1": 0.2, "R2": -0.682505124799208, "R3": -0.5}
     chosen = replace(chosen, values={**chosen.values, **lengths, **twists, **offsets})
     special = special_values(chosen)
     values = [change.value for change in special.changes]
-    assert np.allclose(values, [0.90057696114, 0.94472832424, 1.20470227958])
+    assert np.allclose(values, [0.90057696114, 0.94472832424], rtol=0, atol=1e-10)
     for change in special.changes:
         counts = {change.before.components, change.after.components}
         assert (counts, change.at.bifurcations) == ({1, 2}, 1)
-    assert special.apart < 0.9 / 20
+    assert special.apart < 0.045
 
 
-def test_the_ends_of_a_range_are_looked_at():
+def test_the_ends_of_a_range_are_looked_at_and_joints_rest_where_links_are_alike():
     """Within a twentieth of the range from its end two components become one."""
-    chosen = members("double-subtractive-goldberg-type-i", beta=(0.27, 1.9))
-    chosen.values.update(
-        a=0.3451516184155181,
-        alpha=1.0801720252447473,
-        beta=1.8727705633702771,
-        gamma=0.7351186613145371,
-        delta=1.5023917441008614,
-    )
-    first, *_ = special_values(chosen).changes
+    chosen = members("double-subtractive-goldberg-type-i", beta=(0.27, 0.75))
+    gamma, twists = 0.7351186613145371, {"alpha": 1.0801720252447473}
+    twists.update(gamma=gamma, delta=1.5023917441008614)
+    chosen.values.update(a=0.3451516184155181, beta=0.5, **twists)
+    changes = special_values(chosen).changes
+    first, last = changes[0], changes[-1]
     assert 0.277 < first.value < 0.31
     assert (first.before.components, first.after.components) == (2, 1)
+    assert last.kind is ChangeKind.REST
+    assert last.value == pytest.approx(gamma, abs=1e-12)
+    assert last.joints == (1, 2)
+    # along one form the one, along another one the other
+    assert {(1,), (2,)} <= set(last.at.at_rest)
+    assert {*last.before.at_rest, *last.after.at_rest} == {()}
+
+
+def test_a_form_in_which_two_joints_come_to_rest_is_the_known_one():
+    """Song 2013, eq. (5.2.25): Form II becomes a Bennett linkage."""
+    alpha, beta, delta = np.radians([125, 60, 45])
+    chosen = members("double-subtractive-goldberg", gamma=np.radians([14.0, 14.4]))
+    chosen.values.update(alpha=alpha, beta=beta, delta=delta)
+    atlas = map_linkage(chosen.load(chosen.start), settings=QUICK)
+    found = {}
+    for form in atlas.forms:
+        for problem in rest_problems(chosen.problem, form.branch, chosen.start, 0.01):
+            points, gaps = problem.project(problem.start[None])
+            assert gaps[0] < 1e-14
+            found[form.name, problem.resting + 1] = points[0, -1]
+    gamma = 2 * np.arctan(np.tan(beta / 2) * np.tan(delta / 2) / np.tan(alpha / 2))
+    name = "Form II (constructive 6R)"
+    assert found == pytest.approx({(name, 3): gamma, (name, 6): gamma}, abs=1e-14)
 
 
 def test_nothing_is_special_where_nothing_changes():
@@ -216,12 +239,12 @@ def test_ctrl_c_keeps_what_was_found(monkeypatch):
     def interrupted(*arguments, **options):
         atlas = map_linkage(*arguments, **options)
         made.append(atlas)
-        if len(made) < 20:
+        if len(made) < 12:
             return atlas
         return replace(atlas, provenance=replace(atlas.provenance, interrupted=True))
 
     monkeypatch.setattr("linkages.parameters.special.map_linkage", interrupted)
     special = special_values(members("bennett", alpha=(0.3, 1.2)))
-    assert len(made) == 20
+    assert len(made) == 12
     assert not special.is_whole
     assert len(special.changes) == 1
