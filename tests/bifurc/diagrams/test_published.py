@@ -10,6 +10,8 @@ import math
 
 import numpy as np
 import pytest
+import scipy
+import sympy
 
 import bifurc
 from bifurc.singular.point import Kind
@@ -181,3 +183,37 @@ def test_cells_in_a_row_turn_where_rheinboldt_says() -> None:
     assert len(uniform) == 2
     assert has_point(uniform, (*[1.048362] * 5, 34.35693), 4)
     assert has_point(uniform, (*[8.822219] * 5, 18.88707), 4)
+
+
+@pytest.mark.exhaustive
+def test_the_locus_of_folds_of_pp2_is_four_lines_without_a_fold() -> None:
+    """AUTO-07p's predator and prey with det F_u = 0 appended: on the axis u2 = 0 the
+    equations are linear in p1 and p2, so that nothing turns back along p2; its four lines
+    leave u1 between 0 and 1.5 where p1 = p2 = 0."""
+    u1, u2, p1, p2 = unknowns = sympy.symbols("u1 u2 p1 p2")
+    prey = p2 * u1 * (1 - u1) - u1 * u2 - p1 * (1 - sympy.exp(-5 * u1))
+    hunters = -u2 + 3 * u1 * u2
+    det = sympy.Matrix([prey, hunters]).jacobian([u1, u2]).det()
+    bounds = [(0, 1.5), (-0.5, 3), (-1, 2), (0, 6)]
+    problem = bifurc.SymbolicProblem([prey, hunters, det], unknowns, bounds)
+    settings = bifurc.SearchSettings(starts=10, certify=False, boxes=0)
+    atlas = bifurc.explore(problem, parameter=p2, settings=settings)
+    assert atlas.diagram.folds == ()
+    lines = []
+    for form in atlas.forms:
+        points = form.branch.sample(50)
+        along = points[-1] - points[0]
+        assert np.linalg.matrix_rank(points - points[0], tol=1e-9) == 1
+        assert np.abs(points[:, 1]).max() < 1e-7
+        if abs(along[3]) > 1e-9:
+            lines.append((points[:, 0].mean(), along[2] / along[3]))
+    at = scipy.optimize.brentq(
+        lambda u: (1 - 2 * u) * (np.exp(5 * u) - 1) - 5 * u * (1 - u), 0.3, 0.45
+    )
+    slopes = [
+        (0.0, 1 / 5),
+        (1 / 3, 2 / 9 / (1 - np.exp(-5 / 3))),
+        (at, at * (1 - at) / (1 - np.exp(-5 * at))),
+    ]
+    np.testing.assert_allclose(sorted(lines), slopes, atol=1e-6)
+    assert len(atlas.forms) == 4
