@@ -177,12 +177,13 @@ def draw(costs: Sequence[FoldCost]) -> Figure:
     square = [cost for cost in costs if cost.dimensions == 2]
     for solver, marker in (("fast Poisson", "o-"), ("sparse LU", "s--")):
         own = [cost for cost in square if cost.solver == solver]
-        label = f"2-D, {solver}: n^{exponent(own, 'seconds'):.2f}"
+        label = _with_exponent(f"2-D, {solver}", own)
         _line_and_apart(times, own, "seconds", marker, label)
     on_line = [cost for cost in costs if cost.dimensions == 1]
-    label = f"1-D, sparse LU: n^{exponent(on_line, 'seconds'):.2f}"
+    label = _with_exponent("1-D, sparse LU", on_line)
     _line_and_apart(times, on_line, "seconds", "^-", label)
     times.set(xlabel="unknowns", ylabel="processor time (s)")
+    times.set_ylim(bottom=0.01)  # room for the legend
     times.legend(loc="lower right")
     by_poisson = [cost for cost in square if cost.solver == "fast Poisson"]
     _line_and_apart(memory, by_poisson, "memory", "o-", "fast Poisson")
@@ -200,6 +201,12 @@ def draw(costs: Sequence[FoldCost]) -> Figure:
         axes.xaxis.set_minor_formatter(NullFormatter())
         axes.yaxis.set_minor_formatter(NullFormatter())
     return figure
+
+
+def _with_exponent(name: str, costs: Sequence[FoldCost]) -> str:
+    """A name with the exponent of time, where enough runs say it."""
+    power = exponent(costs, "seconds")
+    return f"{name}: n^{power:.2f}" if np.isfinite(power) else name
 
 
 def _line_and_apart(
