@@ -8,7 +8,7 @@ made: rods of 6 mm at a mean length of a link of 100 mm. At configurations evenl
 the form every two solids, pins and caps among them, are intersected by the kernel that
 made them. The study prints the layers, the volume that any two share, and whether the STL
 file, opened by another program, has closed parts of positive volume only. With --out the
-STEP and STL files are written there. Needs build123d and trimesh; about five minutes.
+STEP and STL files are written there. Needs build123d and trimesh; about ten minutes.
 """
 
 from __future__ import annotations

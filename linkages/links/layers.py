@@ -254,10 +254,12 @@ class Plan:
         return nearest if nearest.left - nearest.error <= gap else None
 
     def pairs(self) -> list[tuple[int, int]]:
-        """Every two outlines that may meet: not a pin and a body that it joins."""
+        """Every two outlines that may meet: not a pin and a body that it joins, nor a
+        body without lines."""
         joined = [one.bodies for one in self.outlines if one.is_pin]
         pairs = []
-        for i, j in combinations(range(len(self.outlines)), 2):
+        seen = [k for k, one in enumerate(self.outlines) if len(one.lines)]
+        for i, j in combinations(seen, 2):
             first, second = self.outlines[i], self.outlines[j]
             both = first.bodies | second.bodies
             if first.is_pin != second.is_pin and first.bodies & second.bodies:

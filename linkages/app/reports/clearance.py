@@ -21,6 +21,7 @@ from linkages.app.texts.configurations import (
 )
 from linkages.links.clearance import Approach, approaches_along
 from linkages.links.layers import Layers, Widths
+from linkages.links.parts import Parts
 from linkages.subject import subject_at
 
 
@@ -113,7 +114,7 @@ def describe_clearance(atlas: Atlas, clearance: Clearance) -> str:
     layers = clearance.layers
     parts = [] if layers is None else [describe_layers(atlas, layers)]
     parts += [_of_form(atlas, one) for one in clearance.forms]
-    links = subject_at(atlas).parts.word
+    links = _parts_of(atlas).word
     explanation = (
         f"Lengths are in the unit of the linkage; {links} that share a joint are left "
         "out"
@@ -126,12 +127,18 @@ def describe_clearance(atlas: Atlas, clearance: Clearance) -> str:
     return "\n\n".join([*parts, explanation])
 
 
+def _parts_of(atlas: Atlas) -> Parts:
+    """Those of which the clearance is shown."""
+    subject = subject_at(atlas)
+    return subject.parts if subject.parts.normal is None else subject.flat_parts
+
+
 def _of_form(atlas: Atlas, clearance: FormClearance) -> str:
     subject = subject_at(atlas)
     if not clearance.approaches:
         left = "lie in different layers or " if subject.parts.normal is not None else ""
         return f"{clearance.form.name}: every two bodies {left}share a joint"
-    word = subject.parts.word
+    word = _parts_of(atlas).word
     unit = arclength_unit(atlas)
     rows = []
     for approach in clearance.approaches:

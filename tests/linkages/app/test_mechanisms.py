@@ -2,6 +2,7 @@
 
 import json
 import re
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -244,6 +245,14 @@ def test_the_clearance_of_a_planar_mechanism_is_that_in_its_layers(folder):
     names = {name for one in forms[0]["approaches"] for name in one["links"]}
     assert names and names <= bodies
     assert all(one["clearance"] > 0 for one in forms[0]["approaches"])
+    # what has no line of its own is in the way of nothing
+    plate = '[[joints]]\nname = "W"\nkind = "rigid"\nbodies = ["rod", "plate"]\n'
+    with_plate = slider_crank_text((30, 40), 130) + plate
+    Path("crank.toml").write_text(with_plate, encoding="utf-8")
+    assert "plate" in run("clearance", "crank.toml", "--form", "1").stdout
+    if find_spec("build123d"):
+        told = run("export", "crank.toml", "--to", "x.stl", code=2).stderr
+        assert "kind of joint W: rigid is not allowed" in told
 
 
 def test_layers_may_be_given_and_stay_in_the_atlas(folder):
