@@ -3,11 +3,11 @@
 A printed table is rounded, and some number of it is wrong: it has another sign, is the
 supplement of the right one, or another number altogether; two rows are exchanged; a
 column is shifted by a row, as between the two conventions of Denavit and Hartenberg;
-twists are in the other unit; in tables of up to five joints two numbers are wrong that have
-nothing to do with each other. A family makes a table of fewer parameters than it has
-numbers, so that the numbers that are right tell the wrong one: it is left out, and the
-member is fitted to the others. Where parameters are read off at the number that is left
-out, they are tried at values all over their range.
+twists are in the other unit; in tables of up to five joints two numbers are wrong that
+have nothing to do with each other, and are not both twists. A family makes a table of
+fewer parameters than it has numbers, so that the numbers that are right tell the wrong
+one: it is left out, and the member is fitted to the others. Where parameters are read
+off at the number that is left out, they are tried at values all over their range.
 """
 
 from __future__ import annotations
@@ -324,9 +324,12 @@ def _single_numbers(printed: np.ndarray) -> Iterator[np.ndarray]:
 
 
 def _pairs_of_numbers(printed: np.ndarray) -> Iterator[np.ndarray]:
-    """Masks (3, n) of each two numbers of a table."""
+    """Masks (3, n) of each two numbers of a table that are not both twists: what is left
+    of those may only be a sine, which does not tell a twist from its supplement."""
     for pair in itertools.combinations(_single_numbers(printed), 2):
-        yield pair[0] | pair[1]
+        mask = pair[0] | pair[1]
+        if np.count_nonzero(mask[Row.TWISTS.value]) < 2:
+            yield mask
 
 
 def _like_numbers(printed: np.ndarray) -> Iterator[np.ndarray]:
