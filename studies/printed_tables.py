@@ -2,7 +2,8 @@
 
 20 linkages of the catalogue with random parameters are rounded to three and to four
 digits, and 20 are printed to four digits with one gross misprint: another sign, 30
-degrees more, two rows exchanged. For each, is the map drawn, is the exact member
+degrees more, two rows exchanged; those of up to five joints also with two numbers wrong
+that have nothing to do with each other. For each, is the map drawn, is the exact member
 returned, and is the wrong number named? The misprinted tables of the sources follow.
 
 A misprint that makes a linkage of the catalogue, such as a parallelogram that another
@@ -36,6 +37,7 @@ from linkages.entry import Entry
 from linkages.errata.misprints import printed_tables
 from linkages.identification.corrections import (
     EXCESS,
+    MOST_JOINTS,
     Change,
     Correction,
     corrections_of,
@@ -157,11 +159,27 @@ def exchanged_rows(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     return values
 
 
+def two_numbers(values: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """A table (3, n) of which two numbers are others: twists by 20 to 30 degrees, lengths
+    and offsets by a tenth to three."""
+    spots = [spot for spot in np.argwhere(values != 0).tolist() if spot[0] != 1]
+    spots += [[1, column] for column in range(values.shape[1])]
+    values = values.copy()
+    for number in rng.choice(len(spots), 2, replace=False):
+        row, column = spots[number]
+        if row == 1:
+            values[row, column] += np.radians(rng.choice([-25.0, 20.0, 30.0]))
+        else:
+            values[row, column] *= rng.choice([0.8, 1.1, 1.3])
+    return values
+
+
 MISPRINTS: dict[str, Callable[[np.ndarray, np.random.Generator], np.ndarray]] = {
     "another sign": another_sign,
     "30 deg more": thirty_more,
     "rows exchanged": exchanged_rows,
 }
+TWO = "two numbers"
 
 
 def misprinted(
@@ -171,7 +189,9 @@ def misprinted(
     are tried make linkages of the catalogue."""
     values, _ = rounded(true, digits)
     for _ in range(TRIES):
-        wrong = MISPRINTS[kind](values, rng)
+        wrong = (
+            two_numbers(values, rng) if kind == TWO else MISPRINTS[kind](values, rng)
+        )
         if np.array_equal(wrong, values):
             continue
         found = identify(as_loop(wrong), locking=False)
@@ -188,6 +208,10 @@ def tables(seed: int) -> Iterator[Printed]:
         for digits in (3, 4):
             values, half_units = rounded(true, digits)
             yield Printed(name, f"{digits} digits", values, true, half_units)
+        if true.shape[1] <= MOST_JOINTS:
+            wrong = misprinted(true, TWO, 4, np.random.default_rng([seed, number, 1]))
+            if wrong is not None:
+                yield Printed(name, TWO, wrong, true, rounded(true, 4)[1])
         kinds = list(MISPRINTS)
         for kind in kinds[number % 3 :] + kinds[: number % 3]:
             wrong = misprinted(true, kind, 4, rng)
@@ -268,12 +292,13 @@ def of_sources() -> Iterator[tuple[str, ...]]:
 @click.option("--out", type=FOLDER, help="Folder for the tables and the maps.")
 @click.option("--seed", default=0, help="Seed of the parameters and the misprints.")
 @click.option("--only", default="", help="Only linkages whose names contain this.")
+@click.option("--kind", default="", help="Only misprints of which this is a part.")
 @click.option("--sources", is_flag=True, help="Only the tables of the sources.")
-def main(out: Path | None, seed: int, only: str, sources: bool) -> None:
+def main(out: Path | None, seed: int, only: str, kind: str, sources: bool) -> None:
     """What becomes of tables that are rounded or have a misprint."""
     rows = []
     for printed in tables(seed) if not sources else ():
-        if only not in printed.name:
+        if only not in printed.name or kind not in printed.kind:
             continue
         verdict, right = judge(printed)
         click.echo("  ".join(verdict.row()))

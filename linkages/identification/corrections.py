@@ -3,10 +3,11 @@
 A printed table is rounded, and some number of it is wrong: it has another sign, is the
 supplement of the right one, or another number altogether; two rows are exchanged; a
 column is shifted by a row, as between the two conventions of Denavit and Hartenberg;
-twists are in the other unit. A family makes a table of fewer parameters than it has
-numbers, so that the numbers that are right tell the wrong one: it is left out, and the
-member is fitted to the others. Where parameters are read off at the number that is left
-out, they are tried at values all over their range.
+twists are in the other unit; in tables of up to five joints two numbers are wrong that
+have nothing to do with each other, and are not both twists. A family makes a table of
+fewer parameters than it has numbers, so that the numbers that are right tell the wrong
+one: it is left out, and the member is fitted to the others. Where parameters are read
+off at the number that is left out, they are tried at values all over their range.
 """
 
 from __future__ import annotations
@@ -58,6 +59,7 @@ MOST_DECIMALS = 12  # of a printed number
 EXCESS = 3.0
 REACH = 1.0  # from a trial to the member, all numbers together
 SPARSE = 3  # so much fewer values are tried where other angles are scanned for each
+MOST_JOINTS = 5  # of a table in which two numbers are looked for: six take minutes
 NUDGE = 0.003  # of a number, by which it is seen whether guesses read it
 
 
@@ -139,8 +141,9 @@ def find_corrections(
     progress: Progress | None = None,
 ) -> tuple[Correction, ...]:
     """What the table of ``loop`` may be meant to be: with one number wrong, or else by
-    another mistake, those first that leave the least to rounding. ``progress`` is called
-    with what was looked at and how many."""
+    another mistake, or else, of at most `MOST_JOINTS` joints, with two numbers wrong;
+    those first that leave the least to rounding. ``progress`` is called with what was
+    looked at and how many."""
     printed = table(loop)
     unit = loop.characteristic_length
     known = distinct_entries() if entries is None else entries
@@ -161,6 +164,11 @@ def find_corrections(
         if not corrections:
             columns = _columns_in_place(printed)
             corrections += _rearranged(families, printed, columns, unit)
+        if not corrections and loop.n <= MOST_JOINTS:
+            for entry in families:
+                if not entry.scan:
+                    pairs = _pairs_of_numbers(printed)
+                    corrections += _without(entry, printed, pairs, unit)
     return tuple(sorted(corrections, key=_order))
 
 
@@ -315,6 +323,15 @@ def _single_numbers(printed: np.ndarray) -> Iterator[np.ndarray]:
         yield mask
 
 
+def _pairs_of_numbers(printed: np.ndarray) -> Iterator[np.ndarray]:
+    """Masks (3, n) of each two numbers of a table that are not both twists: what is left
+    of those may only be a sine, which does not tell a twist from its supplement."""
+    for pair in itertools.combinations(_single_numbers(printed), 2):
+        mask = pair[0] | pair[1]
+        if np.count_nonzero(mask[Row.TWISTS.value]) < 2:
+            yield mask
+
+
 def _like_numbers(printed: np.ndarray) -> Iterator[np.ndarray]:
     """Masks (3, n) of the numbers of a row that are alike, signs apart: a length that
     occurs twice is one misprint."""
@@ -360,6 +377,9 @@ def _views_without(
     yield replace(view, values=values)
     if not np.any(place & _read_places(entry)):
         return
+    if len(set(view.form[place].round(DECIMALS))) > 1 and not _are_alike(view, place):
+        yield from _views_with_guesses(entry, view, values, place, unit)
+        return
     is_twist = bool(place[Row.TWISTS.value].any())
     trials = TWISTS if is_twist else unit * LENGTHS
     # twists in normal form are alike, or supplements
@@ -367,6 +387,35 @@ def _views_without(
     for guess in trials[::SPARSE] if entry.scan else trials:
         form = np.where(place, guess, view.form)
         yield View(view.reading, values, np.where(is_opposite, np.pi - form, form))
+
+
+def _are_alike(view: View, place: np.ndarray) -> bool:
+    """Whether the numbers at a place (3, n) stand in one row, and are alike there, signs
+    and supplements apart."""
+    rows = np.flatnonzero(place.any(axis=1))
+    numbers = view.form[place]
+    gaps = np.minimum(
+        np.abs(numbers - numbers[0]), np.abs(numbers + numbers[0] - np.pi)
+    )
+    return len(rows) == 1 and bool(gaps.max() <= ROUNDED)
+
+
+def _views_with_guesses(
+    entry: Entry, view: View, values: np.ndarray, place: np.ndarray, unit: float
+) -> Iterator[View]:
+    """A view without the numbers at a place (3, n), with guesses for each of those that
+    are read, independent of each other."""
+    spots = np.argwhere(place & _read_places(entry)).tolist()
+    step = SPARSE ** len(spots)
+    trials = []
+    for row, _ in spots:
+        is_twist = row == Row.TWISTS.value
+        trials.append(TWISTS[::step] if is_twist else unit * LENGTHS[::SPARSE])
+    for guesses in itertools.product(*trials):
+        form = view.form.copy()
+        for spot, guess in zip(spots, guesses, strict=True):
+            form[tuple(spot)] = guess
+        yield View(view.reading, values, form)
 
 
 def _read_places(entry: Entry) -> np.ndarray:

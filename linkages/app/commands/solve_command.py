@@ -81,19 +81,15 @@ def solve_command(
     from bifurc.systems.verdict import verdict_of
     from linkages.app import output
     from linkages.app.atlas_source import explore_system
-    from linkages.app.choice import read_constants
 
-    system = _system_of(equations, read_constants(parameters))
-    _check_axes(axes, system)
+    system = _system_of(equations, parameters, axes)
     output.require_out(out)
     output.require_folder(out)
+    choice = replace(search, certify=not no_certify, boxes=boxes, charts=charts)
     paths: list[Path] = []
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
-        atlas = explore_system(
-            system,
-            replace(search, certify=not no_certify, boxes=boxes, charts=charts),
-        )
+        atlas = explore_system(system, choice)
         summary = make_summary(atlas)
         try:
             if as_json:
@@ -138,13 +134,19 @@ def say_steps(
     say_next(*steps_after_solving(atlas, file, parameters, out is not None))
 
 
-def _system_of(file: str, values: dict[str, float]) -> EquationSystem:
-    """The system of a file; raises `EquationFileError`, and `CommandError` for what is a
-    linkage."""
+def _system_of(
+    file: str, parameters: tuple[str, ...], axes: tuple[str, ...]
+) -> EquationSystem:
+    """The system of a file, of which the ``axes`` of a diagram show something; raises
+    `EquationFileError`, and `CommandError` for what is a linkage."""
     from bifurc.systems.equation_file import EquationFileError, read_equations
+    from linkages.app.choice import read_constants
 
+    values = read_constants(parameters)
     try:
-        return read_equations(file, values)
+        system = read_equations(file, values)
+        _check_axes(axes, system)
+        return system
     except EquationFileError:
         if _is_linkage(file):
             message = f"{file}: it is a linkage; `bifurc map {file}` maps it"

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from linkages.app.reports.corrections import best_corrections
 from linkages.catalogue import entry
 from linkages.errata.misprints import printed_tables
 from linkages.identification.corrections import (
@@ -63,6 +64,20 @@ def test_a_number_that_is_wrong_is_named_with_what_is_right(row, column, change)
     assert first.match.member == pytest.approx(values)
     moved = first.match.entry.build(**first.match.parameters)
     assert moved.n == 4
+
+
+@pytest.mark.parametrize("spots", [((0, 3), (1, 0)), ((0, 0), (2, 1))])
+def test_two_numbers_that_are_wrong_are_named(spots):
+    printed = rounded(table(entry("bennett").build()), 5)
+    true = printed.copy()
+    for (row, column), more in zip(spots, (0.3, -0.4), strict=True):
+        printed[row, column] += more
+    best = best_corrections(find_corrections(as_loop(printed)))
+    (right,) = [one for one in best if places(one) == set(spots)]
+    assert right.match.entry.name.startswith("bennett")
+    for change in right.changes:
+        meant = true[change.row.value, change.column]
+        assert change.meant == pytest.approx(meant, abs=2e-3)
 
 
 def test_rows_that_are_exchanged_are_named():
