@@ -11,10 +11,11 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 BITS_OF_DOUBLES = 54  # ratios of more are no simpler than a double
 # units in the last place by which a number is off that is rounded, and that is computed
 ROUNDED, COMPUTED = 0.5, 4.0
+Reading: TypeAlias = Callable[[float], Fraction]  # what a double stands for
 MOST_TERMS = 400  # of a polynomial whose factors are looked for
 
 
@@ -91,26 +93,27 @@ def polynomial_factors(tape: Tape, rows: Sequence[int], region: np.ndarray) -> F
 
     They are expanded about the middle of a ``region`` (n, 2) that is far from zero: there
     the terms of (u - c)^2 are as large as c^2, and what they add up to is lost. The
-    constants of the tape are the decimals that are rounded to them, or where this leaves
-    no repeated factors next to them: 0.1**2 is not the double next to 0.01.
+    constants of the tape are ratios or decimals that are rounded to them, or where this
+    leaves no repeated factors next to them: 0.1**2 is not the double next to 0.01.
     """
-    exact = _factors_with(tape, rows, region, ROUNDED)
-    if exact.are_simpler:
-        return exact
-    loose = _factors_with(tape, rows, region, COMPUTED)
-    return loose if loose.are_simpler else exact
+    computed: Reading = partial(simplest_ratio, units=COMPUTED)
+    for reading in (*READINGS, computed):
+        factors = _factors_with(tape, rows, region, reading)
+        if factors.are_simpler:
+            return factors
+    return factors
 
 
 def _factors_with(
-    tape: Tape, rows: Sequence[int], region: np.ndarray, units: float
+    tape: Tape, rows: Sequence[int], region: np.ndarray, reading: Reading
 ) -> Factors:
-    """The same with constants that are known to so many ``units`` in the last place."""
+    """The same with constants that are what a ``reading`` makes of doubles."""
     written = written_factors(tape)
     writer = TapeWriter(tape.n)
     slots = tape.write_on(writer)
     of_factors = written.tape.write_on(writer)
     entries: list[tuple[int, int, int]] = []
-    polynomials = _Polynomials(writer, _origins(region), units)
+    polynomials = _Polynomials(writer, _origins(region), reading)
     for row, slot in enumerate(tape.outputs.tolist()):
         found = None
         if row in rows and written.are_plain:
@@ -217,12 +220,12 @@ def _origins(region: np.ndarray) -> list[float]:
 @dataclass(frozen=True)
 class _Polynomials:
     """Polynomials that stand on a tape while it is written, expanded in the unknowns less
-    their ``origins`` (n,), with constants known to so many ``units`` in the last
-    place."""
+    their ``origins`` (n,), with constants that are what a ``reading`` makes of
+    doubles."""
 
     writer: TapeWriter
     origins: Sequence[float]
-    units: float
+    reading: Reading
 
     def powers_of(self, output: int) -> dict[int, int] | None:
         """The slots of the square-free factors of the polynomial in slot ``output``, newly
@@ -238,7 +241,7 @@ class _Polynomials:
         if not generators or any(nodes[k].operation in _REFUSED for k in generators):
             return None
         shifts = {slot: _shift_of(nodes[slot], self.origins) for slot in generators}
-        polynomial = _expanded(nodes, output, shifts, self.units)
+        polynomial = _expanded(nodes, output, shifts, self.reading)
         if polynomial is None or not polynomial:
             return None
         degrees = zip(generators, polynomial.degrees(), strict=True)
@@ -300,15 +303,23 @@ def simplest_ratio(number: float, units: float = ROUNDED) -> Fraction:
     return exact
 
 
+def shortest_decimal(number: float) -> Fraction:
+    """The decimal of fewest digits that is rounded to a double."""
+    return Fraction(repr(number))
+
+
+READINGS: tuple[Reading, ...] = (simplest_ratio, shortest_decimal)
+
+
 def _expanded(
     nodes: dict[int, Node],
     output: int,
     shifts: dict[int, float],
-    units: float,
+    reading: Reading,
 ) -> fmpq_mpoly | None:
     """The polynomial in slot ``output`` over the rational numbers, in the generators,
-    given by their slots, less the ``shifts`` of them; None where it has more than
-    `MOST_TERMS`."""
+    given by their slots, less the ``shifts`` of them, with constants by a ``reading``;
+    None where it has more than `MOST_TERMS`."""
     from flint import fmpq, fmpq_mpoly_ctx
 
     domain = fmpq_mpoly_ctx.get([f"g{slot}" for slot in shifts])
@@ -319,7 +330,7 @@ def _expanded(
     for slot, node in nodes.items():
         if slot in values:
             continue
-        number = fmpq(*simplest_ratio(node.constant, units).as_integer_ratio())
+        number = fmpq(*reading(node.constant).as_integer_ratio())
         values[slot] = _value(node, domain.constant(number), values)
         if len(values[slot]) > MOST_TERMS:
             return None

@@ -33,9 +33,10 @@ from bifurc.domain import Domain
 from bifurc.equations.differentiation import with_gradients
 from bifurc.equations.evaluation import Equations
 from bifurc.equations.factors import (
+    READINGS,
     Factors,
+    Reading,
     polynomial_factors,
-    simplest_ratio,
     written_factors,
 )
 from bifurc.equations.recording import Recording
@@ -298,23 +299,22 @@ class UnitProblem(EquationProblem):
             floor = np.finfo(float).eps * self.problem.magnitude
             missed: np.ndarray = np.maximum(np.abs(equations.residuals(points)), floor)
             return missed
+        precise = self.problem.precise_residual()
+        is_given = tape is self.problem.equations.tape
+        if is_given and self.problem.has_exact_constants and precise is not None:
+            return _in_many_digits(precise, points, tape.m)
         import mpmath  # it takes longer to import than a small problem to solve
 
-        def decimal(number: float) -> mpmath.mpf:
-            ratio = simplest_ratio(number)
-            return mpmath.mpf(ratio.numerator) / ratio.denominator
+        def over(reading: Reading) -> PreciseResidual:
+            def number_of(constant: float) -> mpmath.mpf:
+                ratio = reading(constant)
+                return mpmath.mpf(ratio.numerator) / ratio.denominator
 
-        is_given = tape is self.problem.equations.tape
-        precise = self.problem.precise_residual()
-        if not is_given or not self.problem.has_exact_constants or precise is None:
-            precise = partial(tape.over, library=mpmath, number_of=decimal)
-        missed = np.zeros((len(points), tape.m))
-        with mpmath.workdps(DIGITS):
-            for row, point in zip(missed, points, strict=True):
-                unknowns = [mpmath.mpf(float(x)) for x in point]
-                with suppress(ValueError):  # a point beyond a rim, by rounding
-                    row[:] = [float(value) for value in real_values(precise(unknowns))]
-        return missed
+            return partial(tape.over, library=mpmath, number_of=number_of)
+
+        read = [_in_many_digits(over(one), points, tape.m) for one in READINGS]
+        nearest = np.argmin([np.abs(values).max(axis=0) for values in read], axis=0)
+        return np.array(np.choose(nearest, read))
 
     def _matrices(self) -> tuple[np.ndarray, np.ndarray]:
         """Random points (k, n) of the region where F' is finite, and F' (k, m, n)."""
@@ -486,6 +486,20 @@ def sheets_beside(problem: Problem, branch: Branch, rank: int) -> float:
     if not _is_of_equations(problem):
         return 0.0
     return _in_one_unit(problem, 1.0).sheets_beside(branch, rank)
+
+
+def _in_many_digits(precise: PreciseResidual, points: np.ndarray, m: int) -> np.ndarray:
+    """F (k, m) at points (k, n) by a ``precise`` residual; 0 where it is not real, at
+    points that rounding takes beyond a rim."""
+    import mpmath  # it takes longer to import than a small problem to solve
+
+    values = np.zeros((len(points), m))
+    with mpmath.workdps(DIGITS):
+        for row, point in zip(values, points, strict=True):
+            unknowns = [mpmath.mpf(float(x)) for x in point]
+            with suppress(ValueError):
+                row[:] = [float(value) for value in real_values(precise(unknowns))]
+    return values
 
 
 def _unseen(missed: np.ndarray, matrices: np.ndarray, orders: np.ndarray) -> float:

@@ -93,6 +93,13 @@ def test_decimals_next_to_doubles_make_a_square_that_these_do_not(last):
     assert polynomial_factors(tape, [0], REGION).powers == (2,)
 
 
+def test_decimals_of_many_digits_make_a_square():
+    def expanded(u):  # (x - 0.1234567)^2
+        return [u[0] ** 2 - 0.2469134 * u[0] + 0.01524155677489]
+
+    assert polynomial_factors(tape_of(expanded), [0], REGION).powers == (2,)
+
+
 def test_what_is_a_square_but_for_more_than_rounding_is_none():
     tape = tape_of(lambda u: [u[0] ** 2 - 0.2 * u[0] + 0.01 + 1e-16])
     assert not polynomial_factors(tape, [0], REGION).are_simpler

@@ -50,6 +50,13 @@ def test_a_sharp_cusp_is_one_in_every_direction_and_with_other_rounding(seed):
     assert len(point.passes) == 2
 
 
+@pytest.mark.parametrize("bounds", [[(-1, 1), (-1, 1)], [(-2, 2.1), (-1.7, 2.3)]])
+def test_forms_from_a_cusp_end_there_and_at_the_bounds(bounds):
+    atlas = explore(FunctionProblem(lambda u: [u[1] ** 2 - u[0] ** 3], bounds))
+    outcomes = [form.branch.outcome for form in atlas.forms]
+    assert outcomes == [Outcome.ENDS_AT_A_POINT] * 2
+
+
 def stalled(start, end):
     """The straight branch between two points of the plane that stalled at both ends."""
     pieces = np.array([[(start + end) / 2, (end - start) / 2]])
