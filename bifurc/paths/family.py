@@ -76,6 +76,11 @@ class Family:
         jacobians: np.ndarray = self.tape.compiled.complex_jacobians(at)
         return jacobians[:, :, : self.n]
 
+    def is_regular(self, point: np.ndarray, parameters: np.ndarray) -> bool:
+        """Whether the equations are independent at a point (n,)."""
+        (jacobian,) = self.jacobians(point[None], parameters)
+        return int(np.linalg.matrix_rank(jacobian)) == self.n
+
     def _with_parameters(
         self, points: np.ndarray, parameters: np.ndarray
     ) -> np.ndarray:

@@ -101,7 +101,8 @@ def solve_generic(
 
 def _require_start(family: Family, fibre: Fibre) -> None:
     paths = follow_paths(family, fibre.solutions, fibre.parameters, fibre.parameters)
-    if not np.all(paths.is_regular):
+    is_regular = family.is_regular(fibre.solutions[0], fibre.parameters)
+    if not is_regular or not np.all(paths.is_regular):
         raise ValueError("start: it is not allowed; it must be a regular solution")
 
 
