@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -143,24 +143,22 @@ def _slice_by_dyads(
         built = _built_at_once(Builder(structure, geometry, still))
         if built is not None or not still.has_groups:
             return built
-    slices: dict[int, _Slice] = {}
-    always_moves = False
-    for number, one in _slices(structure, geometry, rng):
-        slices[number] = one
-        always_moves = any(known.always_moves for known in slices.values())
-        if always_moves and len(slices) >= MOST_DRIVERS:
-            break
+    slices = _slices_of_dyads(structure, geometry, rng)
     if not slices and isinstance(geometry, PlaneGeometry):
         slices = _slices_of_groups(structure, geometry, rng)
-        always_moves = True
-    if not slices:
-        return None
-    counts = [one.followed for one in slices.values() if one.followed]
+    return _joined(structure, slices) if slices else None
+
+
+def _joined(structure: Structure, slices: Mapping[int, _Slice]) -> DyadSlices:
+    """All slices, by the number of the unknown that drives."""
+    parts = slices.values()
+    counts = [one.followed for one in parts if one.followed is not None]
+    always_moves = any(one.always_moves for one in parts) or bool(counts)
     return DyadSlices(
         structure,
-        np.concatenate([one.points for one in slices.values()]),
+        np.concatenate([one.points for one in parts]),
         tuple(slices),
-        tuple(one.step for one in slices.values()),
+        tuple(one.step for one in parts),
         misses_none=always_moves or len(slices) == len(structure.unknowns),
         counts=tuple(one.ways for one in counts),
         trace=max((one.trace for one in counts), default=0.0),
@@ -215,17 +213,25 @@ def _follows_many_turns(structure: Structure) -> bool:
     )
 
 
-def _slices(
+def _slices_of_dyads(
     structure: Structure, geometry: Geometry, rng: np.random.Generator
-) -> Iterator[tuple[int, _Slice]]:
-    """The slices of every unknown, by number, from which dyads build the mechanism."""
+) -> dict[int, _Slice]:
+    """The slices of unknowns, by number, from which dyads build the mechanism: of a few
+    where one of them always moves, else of all."""
+    slices: dict[int, _Slice] = {}
+    always_moves = False
     for number, unknown in enumerate(structure.unknowns[:MOST_TRIED]):
         plan = make_plan(structure.mechanism, (unknown.variable,))
         if plan is None:
             continue
         one = _slice(Builder(structure, geometry, plan), number, rng)
-        if one is not None:
-            yield number, one
+        if one is None:
+            continue
+        slices[number] = one
+        always_moves = always_moves or one.always_moves
+        if always_moves and len(slices) >= MOST_DRIVERS:
+            break
+    return slices
 
 
 def _slices_of_groups(
