@@ -20,11 +20,13 @@ class Family:
     the parameters p. All are complex.
 
     There are as many equations as unknowns x, or more, of which generic combinations
-    are followed. Raises `ValueError` where there are fewer.
+    are followed. ``is_projective``: whether x are homogeneous coordinates, the first of
+    which is zero at infinity. Raises `ValueError` where there are fewer.
     """
 
     tape: Tape
     n: int
+    is_projective: bool = False
 
     def __post_init__(self) -> None:
         if self.tape.m < self.n:

@@ -29,13 +29,8 @@ from bifurc.decisions import (
 )
 from bifurc.domain import Domain
 from bifurc.equations.differentiation import with_gradients
-from bifurc.equations.factors import (
-    Factors,
-    Ratio,
-    polynomial_factors,
-    simplest_ratio,
-    written_factors,
-)
+from bifurc.equations.factors import Factors, polynomial_factors, written_factors
+from bifurc.equations.polynomials import Ratio, simplest_ratio
 from bifurc.equations.rims import NO_RIMS, Rims
 from bifurc.equations.system import LARGEST_DENSE
 from bifurc.equations.tape import Tape, TapeWriter, rounding_of_constants
@@ -576,7 +571,7 @@ def _with_written_factors(problem: FunctionProblem) -> Simplified | None:
         # what a root leaves may be a square, along which starts seem to shrink to a point
         rows = sorted(set(factors.rows))
         region = _first_region(problem)
-        factors = polynomial_factors(tape, rows, region, _ratio_of(problem))
+        factors = polynomial_factors(tape, rows, region, ratio_of(problem))
     return Simplified(factors.radical(), factors) if factors.are_simpler else None
 
 
@@ -614,10 +609,10 @@ def _factors_where_flat(own: UnitProblem, flatness: np.ndarray) -> Factors | Non
     if tape is None or not len(rows):
         return None
     region = own.own_units.outwards(own.region.T).T
-    return polynomial_factors(tape, rows.tolist(), region, _ratio_of(own.problem))
+    return polynomial_factors(tape, rows.tolist(), region, ratio_of(own.problem))
 
 
-def _ratio_of(problem: FunctionProblem) -> Ratio:
+def ratio_of(problem: FunctionProblem) -> Ratio:
     """What the doubles on the tape of a problem stand for."""
     return simplest_ratio if problem.has_exact_constants else Fraction
 

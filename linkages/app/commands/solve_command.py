@@ -38,6 +38,14 @@ if TYPE_CHECKING:
     "that nothing is missing; 0 for none.",
 )
 @click.option(
+    "--paths",
+    default=200,
+    show_default=True,
+    type=click.IntRange(0, 10_000),
+    help="Follow all isolated solutions of as many polynomials as unknowns along so many "
+    "paths at most, to count them; 0 for none.",
+)
+@click.option(
     "--charts",
     default=1500,
     show_default=True,
@@ -54,6 +62,7 @@ def solve_command(
     as_json: bool,
     no_certify: bool,
     boxes: int,
+    paths: int,
     charts: int,
     figures: options.FigureOptions,
     search: options.SearchOptions,
@@ -82,12 +91,18 @@ def solve_command(
     system = read_equations(equations, _values(parameters))
     require_out(out)
     require_folder(out)
-    paths: list[Path] = []
+    written: list[Path] = []
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
         atlas = explore_system(
             system,
-            replace(search, certify=not no_certify, boxes=boxes, charts=charts),
+            replace(
+                search,
+                certify=not no_certify,
+                boxes=boxes,
+                paths=paths,
+                charts=charts,
+            ),
         )
         summary = make_summary(atlas)
         try:
@@ -100,13 +115,13 @@ def solve_command(
                 from linkages.app.files import write_data
 
                 with writing_to(out):
-                    paths = write_data(atlas, out, summary)
+                    written = write_data(atlas, out, summary)
     if out is not None:
         from linkages.app.files import write_figures
 
         with writing_to(out):
-            paths += write_figures(atlas, out, options=figures)
-        say_written(paths, out)
+            written += write_figures(atlas, out, options=figures)
+        say_written(written, out)
     code = exit_code_of(atlas)
     if as_json and code is not ExitCode.DONE:
         click.echo(verdict_of(atlas), err=True)
