@@ -83,7 +83,8 @@ class SearchSettings:
     which surfaces are covered. ``prove``: whether the problem's audit, if it has one,
     takes the time to find out if a branch is missing. ``boxes``: into how many the bounds
     of exact equations of two to four unknowns are divided at most, to prove that nothing
-    is missing; 0 for not at all. ``certify``: whether every branch
+    is missing; 0 for not at all. ``paths``: along how many all isolated solutions of
+    as many polynomials as unknowns are followed at most; 0 for none. ``certify``: whether every branch
     gets a certificate, and is traced again, finer, where that is refused.
     ``near_motions``: whether curves along which the system is nearly solved are traced;
     without, points of them that solve it are isolated like any other. ``tracing``:
@@ -96,6 +97,7 @@ class SearchSettings:
     charts: int = 1500
     prove: bool = True
     boxes: int = 20_000
+    paths: int = 200
     certify: bool = True
     near_motions: bool = True
     tracing: TraceSettings = field(default_factory=TraceSettings)
@@ -104,6 +106,7 @@ class SearchSettings:
         check_whole("starts", self.starts, 1)
         check_whole("charts", self.charts, 0)
         check_whole("boxes", self.boxes, 0)
+        check_whole("paths", self.paths, 0)
         check_number("budget", self.budget)
         check_type("prove", self.prove, bool)
         check_type("certify", self.certify, bool)

@@ -11,25 +11,29 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from bifurc.equations.polynomials import (
+    OF_POLYNOMIALS,
+    READINGS,
+    Reading,
+    expanded,
+    polynomial_part,
+    simplest_ratio,
+)
 from bifurc.equations.rims import NO_RIMS, Rims, at_rim, rims_of, without_root
 from bifurc.equations.tape import PARTIAL, Node, Operation, Tape, TapeWriter
 
 if TYPE_CHECKING:
     from flint import fmpq_mpoly  # few searches need it
 
-BITS_OF_DOUBLES = 54  # ratios of more are no simpler than a double
-# units in the last place by which a number is off that is rounded, and that is computed
-ROUNDED, COMPUTED = 0.5, 4.0
-Reading: TypeAlias = Callable[[float], Fraction]  # what a double stands for
-MOST_TERMS = 400  # of a polynomial whose factors are looked for
+COMPUTED = 4.0  # units in the last place by which a number is off that was computed
 
 
 @dataclass(frozen=True)
@@ -193,15 +197,6 @@ def _where_defined(
 
 # --- of polynomials -------------------------------------------------------------------
 
-_OF_POLYNOMIALS = (
-    Operation.CONSTANT,
-    Operation.ADD,
-    Operation.SUBTRACT,
-    Operation.MULTIPLY,
-    Operation.SHIFT,
-    Operation.SCALE,
-    Operation.OVER,
-)
 # A quotient may be zero where what it is divided by is, and a root has no derivative.
 _REFUSED = (Operation.DIVIDE, Operation.SQRT, Operation.CBRT, Operation.POWER)
 
@@ -231,17 +226,17 @@ class _Polynomials:
         """The slots of the square-free factors of the polynomial in slot ``output``, newly
         written, and the power of each; None where there is none."""
         writer = self.writer
-        inner = _polynomial_part(writer, output)
+        inner = polynomial_part(writer, output)
         nodes = {slot: writer.node(slot) for slot in inner}
         if not all(math.isfinite(node.constant) for node in nodes.values()):
             return None
         generators = [
-            slot for slot in inner if nodes[slot].operation not in _OF_POLYNOMIALS
+            slot for slot in inner if nodes[slot].operation not in OF_POLYNOMIALS
         ]
         if not generators or any(nodes[k].operation in _REFUSED for k in generators):
             return None
         shifts = {slot: _shift_of(nodes[slot], self.origins) for slot in generators}
-        polynomial = _expanded(nodes, output, shifts, self.reading)
+        polynomial = expanded(nodes, output, shifts, self.reading)
         if polynomial is None or not polynomial:
             return None
         degrees = zip(generators, polynomial.degrees(), strict=True)
@@ -273,88 +268,6 @@ def _shift_of(generator: Node, origins: Sequence[float]) -> float:
     if generator.operation is not Operation.UNKNOWN:
         return 0.0
     return origins[generator.left]
-
-
-def _polynomial_part(writer: TapeWriter, output: int) -> list[int]:
-    """The slots between that of a polynomial and its unknowns and functions, operands
-    first."""
-    needed = {output}
-    for slot in range(output, -1, -1):
-        node = writer.node(slot)
-        is_inner = node.operation in _OF_POLYNOMIALS
-        if slot not in needed or not is_inner or node.operation is Operation.CONSTANT:
-            continue
-        needed.add(node.left)
-        if node.operation in (Operation.ADD, Operation.SUBTRACT, Operation.MULTIPLY):
-            needed.add(node.right)
-    return sorted(needed)
-
-
-def simplest_ratio(number: float, units: float = ROUNDED) -> Fraction:
-    """The ratio of fewest digits, as a rule, that is so many ``units`` in the last place
-    from a double: 9/100 of 0.09. With it x^2 - 0.6 x + 0.09 is a square, which it is not
-    in doubles."""
-    exact = Fraction(number)
-    reach = Fraction(units) * Fraction(math.ulp(number))
-    for bits in range(0, BITS_OF_DOUBLES, 3):
-        near = exact.limit_denominator(1 << bits)
-        if abs(near - exact) <= reach:
-            return near
-    return exact
-
-
-def shortest_decimal(number: float) -> Fraction:
-    """The decimal of fewest digits that is rounded to a double."""
-    return Fraction(repr(number))
-
-
-READINGS: tuple[Reading, ...] = (simplest_ratio, shortest_decimal)
-
-
-def _expanded(
-    nodes: dict[int, Node],
-    output: int,
-    shifts: dict[int, float],
-    reading: Reading,
-) -> fmpq_mpoly | None:
-    """The polynomial in slot ``output`` over the rational numbers, in the generators,
-    given by their slots, less the ``shifts`` of them, with constants by a ``reading``;
-    None where it has more than `MOST_TERMS`."""
-    from flint import fmpq, fmpq_mpoly_ctx
-
-    domain = fmpq_mpoly_ctx.get([f"g{slot}" for slot in shifts])
-    values: dict[int, fmpq_mpoly] = {
-        slot: symbol + fmpq(*shift.as_integer_ratio())
-        for (slot, shift), symbol in zip(shifts.items(), domain.gens(), strict=True)
-    }
-    for slot, node in nodes.items():
-        if slot in values:
-            continue
-        number = fmpq(*reading(node.constant).as_integer_ratio())
-        values[slot] = _value(node, domain.constant(number), values)
-        if len(values[slot]) > MOST_TERMS:
-            return None
-    return values[output]
-
-
-def _value(node: Node, number: fmpq_mpoly, values: dict[int, fmpq_mpoly]) -> fmpq_mpoly:
-    """The polynomial that an operation on polynomials gives, with its constant as a
-    ``number``."""
-    if node.operation is Operation.CONSTANT:
-        return number
-    left = values[node.left]
-    if node.operation is Operation.SHIFT:
-        return left + number
-    if node.operation is Operation.SCALE:
-        return left * number
-    if node.operation is Operation.OVER:
-        return left / number
-    right = values[node.right]
-    if node.operation is Operation.ADD:
-        return left + right
-    if node.operation is Operation.SUBTRACT:
-        return left - right
-    return left * right
 
 
 def _written(

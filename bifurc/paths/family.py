@@ -20,11 +20,13 @@ class Family:
     the parameters p. All are complex.
 
     There are as many equations as unknowns x, or more, of which generic combinations
-    are followed. Raises `ValueError` where there are fewer.
+    are followed. ``is_projective``: whether x are homogeneous coordinates, the first of
+    which is zero at infinity. Raises `ValueError` where there are fewer.
     """
 
     tape: Tape
     n: int
+    is_projective: bool = False
 
     def __post_init__(self) -> None:
         if self.tape.m < self.n:
@@ -75,6 +77,11 @@ class Family:
         at = self._with_parameters(points, parameters)
         jacobians: np.ndarray = self.tape.compiled.complex_jacobians(at)
         return jacobians[:, :, : self.n]
+
+    def is_regular(self, point: np.ndarray, parameters: np.ndarray) -> bool:
+        """Whether the equations are independent at a point (n,)."""
+        (jacobian,) = self.jacobians(point[None], parameters)
+        return int(np.linalg.matrix_rank(jacobian)) == self.n
 
     def _with_parameters(
         self, points: np.ndarray, parameters: np.ndarray

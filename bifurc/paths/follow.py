@@ -16,7 +16,12 @@ from enum import IntEnum
 
 import numpy as np
 
-from bifurc.decisions import is_same_path_end, solves_all_equations
+from bifurc.decisions import (
+    is_at_infinity,
+    is_same_path_end,
+    is_singular_path_end,
+    solves_all_equations,
+)
 from bifurc.limits import Deadline
 from bifurc.paths.family import Family
 
@@ -24,7 +29,11 @@ ORDER = 8  # of the series by which the next point is predicted
 TOLERANCE = 1e-5  # of a prediction, over 1 + the size of the point
 SMALLER = 1e-2  # of the tolerance with which paths are followed again
 AGAIN = 3  # times at most
-MOST_STEPS = 2000
+MOST_STEPS = 10_000
+TINY = 1e-300  # keeps rows of zeros from being divided by
+LEAST_RATIO = (
+    1e-7  # of singular values, where multiple ends are known to half the digits
+)
 NEARBY = 1e-6  # along any direction: points that are compared
 
 
@@ -140,13 +149,42 @@ def _followed(
         MOST_STEPS,
         deadline.left,
     )
+    jacobians = family.jacobians(points, last)
+    _tell_singular_and_infinite(family, points, _rank_ratios(jacobians), ends)
     solves_all = np.ones(len(points), dtype=bool)
     if family.tape.m > family.n:
         misfits = np.abs(family.residuals(points, last)).max(axis=1, initial=0.0)
-        sizes = np.abs(family.jacobians(points, last)).max(axis=(1, 2), initial=0.0)
+        sizes = np.abs(jacobians).max(axis=(1, 2), initial=0.0)
         sizes *= 1.0 + np.abs(points).max(axis=1, initial=0.0)
         solves_all = solves_all_equations(misfits / sizes)
     return Paths(points, rests, ends, windings, steps, solves_all)
+
+
+def _tell_singular_and_infinite(
+    family: Family, points: np.ndarray, ratios: np.ndarray, ends: np.ndarray
+) -> None:
+    """Correct the ``ends`` (k,) of paths at ``points`` (k, n) by the ``ratios`` (k,) of
+    singular values there: at a point of a curve of solutions the tracker has nothing
+    left to correct."""
+    is_singular = (ends == PathEnd.REGULAR) & is_singular_path_end(ratios)
+    ends[is_singular] = PathEnd.SINGULAR
+    if not family.is_projective:
+        return
+    nearness = np.abs(points[:, 0]) / np.abs(points).max(axis=1)
+    nearness *= np.maximum(ratios, LEAST_RATIO)
+    has_come = (ends == PathEnd.REGULAR) | (ends == PathEnd.SINGULAR)
+    ends[has_come & is_at_infinity(nearness)] = PathEnd.AT_INFINITY
+
+
+def _rank_ratios(matrices: np.ndarray) -> np.ndarray:
+    """The smallest singular value of matrices (k, m, n) over the largest (k,), rows
+    counted by their sizes; 0 where they are not finite."""
+    is_finite = np.all(np.isfinite(matrices), axis=(1, 2))
+    matrices = np.where(is_finite[:, None, None], matrices, 0.0)
+    rows = np.abs(matrices).max(axis=2, initial=0.0, keepdims=True)
+    values = np.linalg.svd(matrices / np.maximum(rows, TINY), compute_uv=False)
+    ratios: np.ndarray = values[:, -1] / np.maximum(values[:, 0], TINY)
+    return ratios
 
 
 def _are_doubtful(paths: Paths) -> np.ndarray:

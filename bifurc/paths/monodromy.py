@@ -72,11 +72,15 @@ def solve_generic(
     rng: np.random.Generator,
     deadline: Deadline | None = None,
     most: int = MOST_SOLUTIONS,
+    linear_in: int | None = None,
 ) -> GenericSolutions:
     """The solutions of the member with generic complex ``parameters`` (q,), of which
     ``start`` (n,) is one; where there are more than ``most``, some of them.
 
-    Raises `ValueError` where the start is no regular solution.
+    ``linear_in``: a parameter, by number, while which moves alone the sum of all
+    solutions is linear in it, and that of no part of them; without, it is asked of a
+    curve that has further points. Raises `ValueError` where the start is no regular
+    solution.
     """
     deadline = deadline or Deadline()
     fibre = Fibre(np.asarray(parameters, complex), np.asarray(start, complex)[None])
@@ -86,6 +90,8 @@ def solve_generic(
     fibre = _enlarged(family, fibre, ways, rng, deadline)
     if deadline.passed or len(fibre.solutions) > most:
         return GenericSolutions(fibre, None)
+    if linear_in is not None:
+        return _tested(family, fibre, ways, linear_in, rng, deadline)
     curve = _CurveOverLine(family, fibre, size, rng, deadline)
     trace = None
     for _ in range(TESTS):
@@ -99,9 +105,29 @@ def solve_generic(
     return GenericSolutions(fibre, trace)
 
 
+def _tested(
+    family: Family,
+    fibre: Fibre,
+    ways: _Ways,
+    linear_in: int,
+    rng: np.random.Generator,
+    deadline: Deadline,
+) -> GenericSolutions:
+    """A fibre with all solutions, told by their sum while one parameter moves."""
+    trace = None
+    for _ in range(TESTS):
+        trace = _trace(family, fibre, linear_in, ways.sizes[linear_in], deadline)
+        has_all = trace is not None and is_linear_trace(trace)
+        if has_all or deadline.passed or len(fibre.solutions) > ways.most:
+            break
+        fibre = _enlarged(family, fibre, ways, rng, deadline)
+    return GenericSolutions(fibre, trace)
+
+
 def _require_start(family: Family, fibre: Fibre) -> None:
     paths = follow_paths(family, fibre.solutions, fibre.parameters, fibre.parameters)
-    if not np.all(paths.is_regular):
+    is_regular = family.is_regular(fibre.solutions[0], fibre.parameters)
+    if not is_regular or not np.all(paths.is_regular):
         raise ValueError("start: it is not allowed; it must be a regular solution")
 
 
@@ -145,6 +171,24 @@ def _enlarged(
     return Fibre(fibre.parameters, known)
 
 
+def _trace(
+    family: Family, fibre: Fibre, parameter: int, step: float, deadline: Deadline
+) -> float | None:
+    """How far the sum of the solutions is from linear in a ``parameter``, by number,
+    that moves by a ``step``, over its change; None where paths were lost."""
+    sums = [fibre.solutions.sum(axis=0)]
+    for shift in (step, -step):
+        moved = fibre.parameters.copy()
+        moved[parameter] += shift
+        paths = follow_paths(family, fibre.solutions, fibre.parameters, moved, deadline)
+        if not np.all(paths.is_regular):
+            return None
+        sums.append(paths.points.sum(axis=0))
+    here, ahead, behind = sums
+    change = max(np.abs(ahead - here).max(), np.abs(behind - here).max(), 1.0)
+    return float(np.abs(ahead - 2.0 * here + behind).max() / change)
+
+
 class _CurveOverLine:
     """The curve of the solutions (x, t) of a ``family`` at the parameters p + t v, p
     those of a ``fibre``, in the hyperplanes a x + b t = s.
@@ -181,17 +225,7 @@ class _CurveOverLine:
     def trace(self, deadline: Deadline) -> float | None:
         """How far the sum of the points is from linear in s, over its change; None
         where paths were lost."""
-        sums = [self.slice.solutions.sum(axis=0)]
-        for shift in (1.0, -1.0):
-            moved = self.slice.parameters.copy()
-            moved[-1] += shift
-            paths = self._followed(moved, deadline)
-            if not np.all(paths.is_regular):
-                return None
-            sums.append(paths.points.sum(axis=0))
-        here, ahead, behind = sums
-        change = max(np.abs(ahead - here).max(), np.abs(behind - here).max(), 1.0)
-        return float(np.abs(ahead - 2.0 * here + behind).max() / change)
+        return _trace(self.family, self.slice, -1, 1.0, deadline)
 
     def solutions_in(self, fibre: Fibre, deadline: Deadline) -> Fibre:
         """The fibre at t = 0 with the points of the curve there."""

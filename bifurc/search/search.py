@@ -9,6 +9,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from bifurc.completeness import Level
 from bifurc.decisions import (
     is_at_rest,
     is_hidden_by,
@@ -17,6 +18,7 @@ from bifurc.decisions import (
     may_be_crossed,
     stops_short,
 )
+from bifurc.function_problem import FunctionProblem
 from bifurc.limits import CutOff, Deadline, cut_off_after
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
@@ -33,7 +35,9 @@ from bifurc.search.components import (
     singular_points_of,
 )
 from bifurc.search.findings import Findings, Run
+from bifurc.search.isolated import IsolatedSolutions, isolated_solutions
 from bifurc.search.near_motion_search import NearMotionSearch
+from bifurc.search.own_units.unit_problem import UnitProblem
 from bifurc.search.point_search import BRANCH_REACH, SEED_REACH, PointSearch
 from bifurc.search.records import Start, half_branch_starts
 from bifurc.search.seed_book import Fate, SeedFate
@@ -51,7 +55,7 @@ from bifurc.search.subdivision import (
     subdivide,
 )
 from bifurc.search.tracing import Tracer
-from bifurc.seeds import Seeds
+from bifurc.seeds import Audit, Seeds
 from bifurc.settings import SearchSettings
 from bifurc.singular.classify import classify_from_nearby
 from bifurc.singular.dimension import local_dimensions
@@ -389,6 +393,38 @@ class Search:
         local = local_dimensions(self.problem, solutions, self.run.deadline)
         return solutions[local.dimension < LEAST_SAMPLED]
 
+    def follow_paths(self) -> Starts:
+        """Take all isolated solutions of as many polynomials as unknowns for seeds, and
+        say how many there are."""
+        problem, findings = self.problem, self.findings
+        found = self._isolated()
+        if found is None:
+            return
+        points = found.points
+        if isinstance(problem, UnitProblem):
+            points = problem.own_units.inwards(points)
+        points, gaps = problem.project(points)
+        is_inside = problem.domain.are_inside(points)
+        self._add_seeds(findings.book.seeds.with_constructed(points[is_inside]))
+        yield []
+        inside = int(np.count_nonzero(is_inside & is_start_solved(gaps)))
+        claim = found.claim(inside)
+        has_all = claim.level is Level.CERTIFIED
+        more = len(findings.traced) + len(findings.components.seeds)
+        if has_all and (more or len(findings.rigid) != inside):
+            return  # doubles do not tell them apart, or from what is nearly solved
+        findings.set_audit(Audit((claim,), np.empty((0, problem.n)), has_all))
+
+    def _isolated(self) -> IsolatedSolutions | None:
+        """The isolated solutions of the user's equations; None where these are not
+        asked for or not known."""
+        problem, settings = self.problem, self.settings
+        users = problem.problem if isinstance(problem, UnitProblem) else problem
+        is_asked = settings.paths > 0 and self.findings.book.seeds.audit is None
+        if not is_asked or self.run.is_over or not isinstance(users, FunctionProblem):
+            return None
+        return isolated_solutions(users, settings.paths, self.run.deadline)
+
     def audit_in_boxes(self) -> Starts:
         """Divide the bounds of exact equations into boxes, and trace the arcs that show
         up there, until all are known or nothing new comes of it."""
@@ -456,5 +492,6 @@ STEPS: tuple[Callable[[Search], Starts], ...] = (
     Search.join_branches,
     Search.mend_at_germs,
     Search.audit_branches,
+    Search.follow_paths,
     Search.audit_in_boxes,
 )

@@ -173,7 +173,8 @@ class SearchOptions:
     ``starts`` is the number of random starts, ``seed`` that of their generator,
     ``tolerance`` that of the curves, ``budget`` the most seconds; ``certify``: whether
     forms get certificates; ``boxes``: into how many the bounds of equations are divided
-    at most; ``charts``: with how many surfaces are covered at most.
+    at most; ``paths``: along how many isolated solutions are followed at most;
+    ``charts``: with how many surfaces are covered at most.
     """
 
     starts: int = 200
@@ -182,6 +183,7 @@ class SearchOptions:
     budget: float = math.inf
     certify: bool = True
     boxes: int = 20_000
+    paths: int = 200
     charts: int = 1500
 
     def settings(self) -> SearchSettings:
@@ -194,6 +196,7 @@ class SearchOptions:
             budget=self.budget,
             certify=self.certify,
             boxes=self.boxes,
+            paths=self.paths,
             charts=self.charts,
             tracing=tracing,
         )

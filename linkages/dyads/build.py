@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any, TypeAlias
 
@@ -75,7 +76,8 @@ class Builder:
             if step.is_group:
                 return False
             if len(step.parts) == 1:
-                if not any(contact.is_turn for contact in step.contacts):
+                ends = (self._end(one, standing, inner) for one in step.contacts)
+                if self.geometry.leaves_loose(*ends):
                     return False
                 continue
             joints = self._dyad(step, standing, inner)
@@ -138,9 +140,14 @@ class Builder:
         ]
         return group.poses(own, standing, geometry.size)
 
-    def generic_counts(self) -> list[GenericCount]:
-        """In how many complex ways each step closes, for generic lengths."""
-        return [generic_count(self.plan.part, step) for step in self.plan.steps]
+    def generic_count(self) -> GenericCount | None:
+        """How many complex configurations there are, for generic lengths; None where
+        dyads are all that is built."""
+        if not self.plan.has_groups:
+            return None
+        counts = [generic_count(self.plan.part, step) for step in self.plan.steps]
+        ways = math.prod(one.ways for one in counts)
+        return GenericCount(ways, max(one.trace for one in counts))
 
     def _dyad(
         self, step: Step, state: dict[int, Any], inner: dict[int, Any]

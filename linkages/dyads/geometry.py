@@ -214,6 +214,12 @@ class PlaneGeometry:
             results.append((first, first.after(PlanePose(slider.start.turn, shift))))
         return results
 
+    def leaves_loose(self, one: PlaneJoint, other: PlaneJoint) -> bool:
+        """Whether a body may move on two joints that hold it on what stands."""
+        if isinstance(one, Pivot) and isinstance(other, Pivot):
+            return self._is_nothing(abs(other.second - one.second))
+        return isinstance(one, Rail) and isinstance(other, Rail)
+
     def may_be_degenerate(
         self, one: PlaneJoint, middle: PlaneJoint, other: PlaneJoint
     ) -> bool:

@@ -258,10 +258,12 @@ def _group(pattern: Pattern) -> _Group:
 @cache
 def generic_solutions(pattern: Pattern) -> GenericSolutions:
     """Those of one generic member, found once a process. Raises `UnfollowedError` where
-    the time is over."""
+    it moves, and where the time is over."""
     group, deadline = _group(pattern), current_deadline()
     rng = np.random.default_rng(SEED)
     start, parameters = group.generic_member(rng)
+    if not group.family.is_regular(start, parameters):
+        raise UnfollowedError("it moves, or has more bars than hold it")
     generic = solve_generic(
         group.family, start, parameters, rng, deadline, MOST_ASSEMBLIES
     )

@@ -14,14 +14,14 @@ from linkages.dyads.group import (
     all_assemblies,
     generic_solutions,
 )
-from linkages.dyads.plan import Step
+from linkages.dyads.plan import Plan, Step
 
 DYAD = 2  # configurations in which a dyad closes
 
 
 @dataclass(frozen=True)
 class GenericCount:
-    """In how many complex ways a step closes: by a formula, or followed along paths
+    """In how many complex ways something closes: by a formula, or followed along paths
     with a ``trace`` test."""
 
     ways: int
@@ -84,6 +84,16 @@ def _pose(own: np.ndarray, places: np.ndarray) -> PlanePose:
     turn = complex((places[1] - places[0]) / (own[1] - own[0]))
     turn /= abs(turn)
     return PlanePose(turn, complex(places[0] - turn * own[0]))
+
+
+def are_held_by_pins(plan: Plan) -> bool:
+    """Whether pins hold all groups of a plan larger than dyads."""
+    try:
+        for step in plan.groups:
+            PinnedGroup(plan.part, step)
+    except UnfollowedError:
+        return False
+    return True
 
 
 def generic_count(part: tuple[int, ...], step: Step) -> GenericCount:

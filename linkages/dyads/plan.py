@@ -1,7 +1,7 @@
 """In which order the bodies of a mechanism are placed, one group after the other.
 
-With one variable known, the driver, bodies that are joined by known variables are one
-part. From one of the largest parts on two parts at a time are placed, which close a
+With some variables known, the drivers, bodies that are joined by known variables are
+one part. From one of the largest parts on two parts at a time are placed, which close a
 chain of three joints, or one part that two joints hold already (Assur's decomposition
 into groups of the second class). Where nothing more is placed so, what is left is one
 larger group, but for the dyads that stand on it.
@@ -10,7 +10,7 @@ larger group, but for the dyads that stand on it.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -67,18 +67,23 @@ class Plan:
         return max((len(step.parts) for step in self.steps), default=0)
 
     @property
+    def groups(self) -> list[Step]:
+        """The steps that place more than a dyad."""
+        return [step for step in self.steps if step.is_group]
+
+    @property
     def has_groups(self) -> bool:
         """Whether it takes more than dyads."""
-        return any(step.is_group for step in self.steps)
+        return bool(self.groups)
 
 
 def make_plan(
-    mechanism: Mechanism, driver: int | None, with_groups: bool = False
+    mechanism: Mechanism, drivers: Collection[int], with_groups: bool = False
 ) -> Plan | None:
-    """How a ``mechanism`` is built where the variable of this number has a given
-    value, or, without, where only locked ones have; None where dyads, and, if it is
-    ``with_groups``, larger groups do not do."""
-    known = _known_pairs(mechanism, driver)
+    """How a ``mechanism`` is built where the variables of these numbers, the
+    ``drivers``, and those that are locked have given values; None where dyads, and, if
+    it is ``with_groups``, larger groups do not do."""
+    known = _known_pairs(mechanism, drivers)
     if known is None:
         return None
     numbers = {body: k for k, body in enumerate(mechanism.bodies)}
@@ -102,14 +107,14 @@ def make_plan(
     return min(plans, key=lambda plan: plan.largest_group, default=None)
 
 
-def _known_pairs(mechanism: Mechanism, driver: int | None) -> list[int] | None:
+def _known_pairs(mechanism: Mechanism, drivers: Collection[int]) -> list[int] | None:
     """The pairs, by number, that have known values only; None where one has a variable
     that is not known beside another, or that is coupled."""
     known = []
     leaders = [one.leader.number for one in mechanism.variables]
     for number, pair in enumerate(mechanism.pairs):
         is_known = [
-            mechanism.variables[k].locked is not None or leaders[k] == driver
+            mechanism.variables[k].locked is not None or leaders[k] in drivers
             for k in pair.variables
         ]
         if all(is_known):

@@ -4,14 +4,15 @@ they say of its motions.
 Where dyads build the mechanism from a driver (`linkages.dyads.plan`), every
 configuration at a value of the driver is known, and a motion on which the driver passes
 that value cannot be missed. A motion on which it stands still needs a dyad that closes
-in a whole curve of configurations.
+in a whole curve of configurations. Where no driver is of that use, larger groups build
+the mechanism from two drivers, one at a time, that no motion leaves standing both.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -24,7 +25,8 @@ from bifurc.seeds import Audit
 from linkages.dyads.build import Builder, Geometry, TooManyError
 from linkages.dyads.geometry import DegenerateDyadError, PlaneGeometry
 from linkages.dyads.group import UnfollowedError
-from linkages.dyads.plan import make_plan
+from linkages.dyads.pinned import GenericCount, are_held_by_pins
+from linkages.dyads.plan import Plan, make_plan
 from linkages.dyads.space import SpaceGeometry
 from linkages.statements import LinkageClaim, random_assemblies
 from linkages.structure.plane import normal_of_plane
@@ -39,12 +41,14 @@ MOST_TRIED = 16  # variables that are looked at as drivers
 
 class _Slice(NamedTuple):
     """What is built at all values of a driver: ``points`` (k, n), whether the driver
-    ``always_moves`` on a motion, and how far apart, rad or the structure's unit, the
-    values are (``step``)."""
+    ``always_moves`` on a motion, how far apart, rad or the structure's unit, the
+    values are (``step``), and how many configurations of larger groups were ``followed``
+    at each."""
 
     points: np.ndarray
     always_moves: bool
     step: float
+    followed: GenericCount | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,9 +56,10 @@ class DyadSlices:
     """Configurations ``starts`` (k, n) of a ``structure``, all that there are at the
     values of some ``drivers``, numbers of unknowns, ``step`` apart.
 
-    ``misses_none``: a motion that is not among them is a small one. ``complex_count``:
-    how many complex assemblies there are where these were followed along paths, with
-    the ``trace`` test of them; None where dyads do.
+    ``misses_none``: a motion that is not among them is a small one. ``counts``: how
+    many complex configurations there are at a value of every driver, or without one,
+    where these were followed along paths, with the ``trace`` test of them; none where
+    dyads do.
     """
 
     structure: Structure
@@ -62,7 +67,7 @@ class DyadSlices:
     drivers: tuple[int, ...]
     steps: tuple[float, ...]
     misses_none: bool
-    complex_count: int | None = None
+    counts: tuple[int, ...] = ()
     trace: float = 0.0
 
     def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
@@ -70,23 +75,34 @@ class DyadSlices:
         every configuration in the slices."""
         nowhere = np.empty((0, len(self.structure.unknowns)))
         if not self.drivers:
-            has_all = self.complex_count is not None
+            has_all = bool(self.counts)
             return Audit((self._claim_of_assemblies(),), nowhere, has_all)
+        return Audit((self._claim_of_motions(), random_assemblies()), nowhere)
+
+    def _claim_of_motions(self) -> Claim:
+        """That motions on which a driver passes a slice are here."""
+        if self.counts:
+            return LinkageClaim.GROUPS.claim(
+                Scope.MOTIONS,
+                Level.CERTIFIED,
+                moves=self._moves(),
+                complex=" and ".join(map(str, sorted(set(self.counts)))),
+                trace=self.trace,
+            )
         kind, level = LinkageClaim.DYADS, Level.CERTIFIED
         if not self.misses_none:
             kind, level = LinkageClaim.DYADS_MISSING, Level.ESTIMATED
-        claim = kind.claim(Scope.MOTIONS, level, moves=self._moves())
-        return Audit((claim, random_assemblies()), nowhere)
+        return kind.claim(Scope.MOTIONS, level, moves=self._moves())
 
     def _claim_of_assemblies(self) -> Claim:
         """That all assemblies of what nothing moves are here."""
-        if self.complex_count is None:
+        if not self.counts:
             return LinkageClaim.ALL_BUILT.claim(Scope.MOTIONS, Level.CERTIFIED)
         return LinkageClaim.ALL_OF_GROUPS.claim(
             Scope.MOTIONS,
             Level.CERTIFIED,
             real=len(self.starts),
-            complex=self.complex_count,
+            complex=self.counts[0],
             trace=self.trace,
         )
 
@@ -122,26 +138,30 @@ def _slice_by_dyads(
     geometry = _geometry(structure)
     if geometry is None or _follows_many_turns(structure):
         return None
-    still = make_plan(structure.mechanism, None, with_groups=True)
+    still = make_plan(structure.mechanism, (), with_groups=True)
     if still is not None:
         built = _built_at_once(Builder(structure, geometry, still))
         if built is not None or not still.has_groups:
             return built
-    slices: dict[int, _Slice] = {}
-    always_moves = False
-    for number, one in _slices(structure, geometry, rng):
-        slices[number] = one
-        always_moves = any(known.always_moves for known in slices.values())
-        if always_moves and len(slices) >= MOST_DRIVERS:
-            break
-    if not slices:
-        return None
+    slices = _slices_of_dyads(structure, geometry, rng)
+    if not slices and isinstance(geometry, PlaneGeometry):
+        slices = _slices_of_groups(structure, geometry, rng)
+    return _joined(structure, slices) if slices else None
+
+
+def _joined(structure: Structure, slices: Mapping[int, _Slice]) -> DyadSlices:
+    """All slices, by the number of the unknown that drives."""
+    parts = slices.values()
+    counts = [one.followed for one in parts if one.followed is not None]
+    always_moves = any(one.always_moves for one in parts) or bool(counts)
     return DyadSlices(
         structure,
-        np.concatenate([one.points for one in slices.values()]),
+        np.concatenate([one.points for one in parts]),
         tuple(slices),
-        tuple(one.step for one in slices.values()),
+        tuple(one.step for one in parts),
         misses_none=always_moves or len(slices) == len(structure.unknowns),
+        counts=tuple(one.ways for one in counts),
+        trace=max((one.trace for one in counts), default=0.0),
     )
 
 
@@ -154,15 +174,15 @@ def _built_at_once(builder: Builder) -> DyadSlices | None:
         return None
     if points is None:
         return None
-    counts = builder.generic_counts() if builder.plan.has_groups else []
+    count = builder.generic_count()
     return DyadSlices(
         builder.structure,
         points,
         (),
         (),
         misses_none=True,
-        complex_count=math.prod(one.ways for one in counts) if counts else None,
-        trace=max((one.trace for one in counts), default=0.0),
+        counts=(count.ways,) if count else (),
+        trace=count.trace if count else 0.0,
     )
 
 
@@ -193,28 +213,93 @@ def _follows_many_turns(structure: Structure) -> bool:
     )
 
 
-def _slices(
+def _slices_of_dyads(
     structure: Structure, geometry: Geometry, rng: np.random.Generator
-) -> Iterator[tuple[int, _Slice]]:
-    """The slices of every unknown, by number, from which dyads build the mechanism."""
+) -> dict[int, _Slice]:
+    """The slices of unknowns, by number, from which dyads build the mechanism: of a few
+    where one of them always moves, else of all."""
+    slices: dict[int, _Slice] = {}
+    always_moves = False
     for number, unknown in enumerate(structure.unknowns[:MOST_TRIED]):
-        plan = make_plan(structure.mechanism, unknown.variable)
+        plan = make_plan(structure.mechanism, (unknown.variable,))
         if plan is None:
             continue
-        low, high = unknown.low, unknown.high
-        if np.isfinite(unknown.period):
-            low, high = 0.0, unknown.period
-        elif unknown.is_angle:
-            # what is a turn away is the same for dyads
-            high = min(high, low + TURN)
-        step = (high - low) / SLICES
-        places = low + step * (np.arange(SLICES) + rng.uniform())
-        builder = Builder(structure, geometry, plan)
+        one = _slice(Builder(structure, geometry, plan), number, rng)
+        if one is None:
+            continue
+        slices[number] = one
+        always_moves = always_moves or one.always_moves
+        if always_moves and len(slices) >= MOST_DRIVERS:
+            break
+    return slices
+
+
+def _slices_of_groups(
+    structure: Structure, geometry: PlaneGeometry, rng: np.random.Generator
+) -> dict[int, _Slice]:
+    """The slices of a few unknowns, by number, from which larger groups build the
+    mechanism, and of which one moves on every motion; none where that is not known."""
+    plans: dict[int, Plan] = {}
+    for number, unknown in enumerate(structure.unknowns[:MOST_TRIED]):
+        plan = make_plan(structure.mechanism, (unknown.variable,), with_groups=True)
+        if plan is not None and are_held_by_pins(plan):
+            plans[number] = plan
+    slices: dict[int, _Slice] = {}
+    while drivers := _that_move(structure, geometry, plans):
+        left = [one for one in drivers if one not in slices]
+        if not left:
+            return {one: slices[one] for one in drivers}
+        number = left[0]
+        found = _slice(Builder(structure, geometry, plans[number]), number, rng)
+        if found is None:
+            del plans[number]
+        else:
+            slices[number] = found
+    return {}
+
+
+def _that_move(
+    structure: Structure, geometry: PlaneGeometry, plans: Mapping[int, Plan]
+) -> tuple[int, ...]:
+    """The unknowns, of those with ``plans`` with the least groups, of which one moves
+    on every motion: where they stand still, dyads build all. None where there are not
+    such."""
+    order = sorted(plans, key=lambda number: plans[number].largest_group)
+    for count in range(2, MOST_DRIVERS + 1):
+        for numbers in itertools.combinations(order, count):
+            variables = [structure.unknowns[number].variable for number in numbers]
+            plan = make_plan(structure.mechanism, variables)
+            if plan is None:
+                continue
+            builder = Builder(structure, geometry, plan)
+            if builder.is_never_degenerate(_values(structure, None, 0.0)):
+                return numbers
+    return ()
+
+
+def _slice(builder: Builder, number: int, rng: np.random.Generator) -> _Slice | None:
+    """That of an unknown, by number; None where it is not known that it has all
+    configurations."""
+    structure = builder.structure
+    unknown = structure.unknowns[number]
+    low, high = unknown.low, unknown.high
+    if np.isfinite(unknown.period):
+        low, high = 0.0, unknown.period
+    elif unknown.is_angle:
+        # what is a turn away is the same for dyads
+        high = min(high, low + TURN)
+    step = (high - low) / SLICES
+    places = low + step * (np.arange(SLICES) + rng.uniform())
+    try:
         points = _points_at(builder, number, places)
-        if points is not None:
-            at_first = _values(structure, number, places[0])
-            always_moves = builder.is_never_degenerate(at_first)
-            yield number, _Slice(points, always_moves, step)
+        count = builder.generic_count()
+    except UnfollowedError:
+        return None
+    if points is None:
+        return None
+    at_first = _values(structure, number, places[0])
+    always_moves = builder.is_never_degenerate(at_first)
+    return _Slice(points, always_moves, step, count)
 
 
 def _values(structure: Structure, number: int | None, place: float) -> list[float]:

@@ -135,6 +135,13 @@ class SpaceGeometry:
         roots = (root, -root) if root > 0.0 else (0.0,)
         return [along + sign * across for sign in roots]
 
+    def leaves_loose(self, one: Axis, other: Axis) -> bool:
+        """Whether a part may move on two joints that hold it on what stands: they have
+        one axis."""
+        own = _between(one.second, other.second)
+        across = _length(_cross(one.second.direction, own))
+        return is_degenerate_dyad(across / max(_length(own), 1e-300))
+
     def may_be_degenerate(self, one: Axis, pin: Axis, other: Axis) -> bool:
         """Whether a dyad may close in a whole curve of configurations somewhere."""
         first, second = _cosines(one, pin, other)

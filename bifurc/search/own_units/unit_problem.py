@@ -32,13 +32,8 @@ from bifurc.decisions import (
 from bifurc.domain import Domain
 from bifurc.equations.differentiation import with_gradients
 from bifurc.equations.evaluation import Equations
-from bifurc.equations.factors import (
-    READINGS,
-    Factors,
-    Reading,
-    polynomial_factors,
-    written_factors,
-)
+from bifurc.equations.factors import Factors, polynomial_factors, written_factors
+from bifurc.equations.polynomials import READINGS, Reading
 from bifurc.equations.recording import Recording
 from bifurc.equations.rims import NO_RIMS, Rims
 from bifurc.equations.system import LARGEST_DENSE

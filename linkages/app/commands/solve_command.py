@@ -38,6 +38,14 @@ if TYPE_CHECKING:
     "that nothing is missing; 0 for none.",
 )
 @click.option(
+    "--paths",
+    default=200,
+    show_default=True,
+    type=click.IntRange(0, 10_000),
+    help="Follow all isolated solutions of as many polynomials as unknowns along so many "
+    "paths at most, to count them; 0 for none.",
+)
+@click.option(
     "--charts",
     default=1500,
     show_default=True,
@@ -62,6 +70,7 @@ def solve_command(
     as_json: bool,
     no_certify: bool,
     boxes: int,
+    paths: int,
     charts: int,
     axes: tuple[str, ...],
     figures: options.FigureOptions,
@@ -85,8 +94,10 @@ def solve_command(
     system = _system_of(equations, parameters, axes)
     output.require_out(out)
     output.require_folder(out)
-    choice = replace(search, certify=not no_certify, boxes=boxes, charts=charts)
-    paths: list[Path] = []
+    choice = replace(
+        search, certify=not no_certify, boxes=boxes, paths=paths, charts=charts
+    )
+    written: list[Path] = []
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
         atlas = explore_system(system, choice)
@@ -101,10 +112,10 @@ def solve_command(
                 from linkages.app.files import write_data
 
                 with output.writing_to(out):
-                    paths = write_data(atlas, out, summary)
+                    written = write_data(atlas, out, summary)
     if out is not None:
-        paths += _write_figures(atlas, out, axes, figures)
-        output.say_written(paths, out)
+        written += _write_figures(atlas, out, axes, figures)
+        output.say_written(written, out)
     code = exit_code_of(atlas)
     if not as_json:
         say_steps(atlas, equations, parameters, out)

@@ -9,9 +9,9 @@ import bifurc
 from bifurc.equations.factors import (
     Factors,
     polynomial_factors,
-    simplest_ratio,
     written_factors,
 )
+from bifurc.equations.polynomials import simplest_ratio
 from bifurc.equations.recording import record
 from bifurc.equations.tape import Tape
 

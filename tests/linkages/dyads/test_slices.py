@@ -1,6 +1,7 @@
 """Slices built of dyads hold every configuration, and what is said of them is true."""
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -10,8 +11,11 @@ from bifurc.completeness import Level
 from bifurc.settings import SearchSettings
 from bifurc.system import relative_gaps
 from linkages.closure.closure import Closure
+from linkages.dyads import slices as slices_module
+from linkages.dyads.geometry import Pivot, PlaneGeometry
 from linkages.dyads.slices import SLICES, for_subject
 from linkages.files.arcs import read_arcs
+from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.statements import LinkageClaim
@@ -24,6 +28,7 @@ from tests.linkages.mechanisms.known_mechanisms import (
 from tests.linkages.mechanisms.test_maps import slider_crank
 from tests.linkages.turns.test_translates import revolutes
 from tests.maps import map_of
+from tests.samples import one_in
 
 
 def six_bar_on_sphere():
@@ -53,15 +58,15 @@ BUILT = {
     ),
     "Dixon I": mechanism_of_case(cases()["Dixon I, K(3,3)"]),
     "on a sphere": read_arcs(six_bar_on_sphere(), "six-bar", np.pi / 180),
+    # a group of the third class: a ternary link on three bars
+    "double Watt": mechanism_of_case(
+        cases()["double Watt mechanism with slanted couplers (cusp 3/2)"]
+    ),
     "a network with two locks": linkages.load("four-bennett-network").held(
         {"1": 0.7, "5": 0.5}
     ),
 }
 NOT_BUILT = {
-    # a group of the third class: a ternary link on three bars
-    "double Watt": mechanism_of_case(
-        cases()["double Watt mechanism with slanted couplers (cusp 3/2)"]
-    ),
     "two freedoms": mechanism_of_case(cases()["parallelogram lattice 2 x 2"]),
     "slides in space": mechanism_of_case(cases()["Bennett geometry with joints CRCR"]),
     # creases of a Miura sheet come in line, and then fold together
@@ -110,6 +115,69 @@ def test_a_mechanism_of_dyads_is_certified(name):
 @pytest.mark.parametrize("name", NOT_BUILT)
 def test_nothing_is_said_where_dyads_do_not_build_it(name):
     assert sliced(NOT_BUILT[name]) is None
+
+
+def eight_bar(seed):
+    """Eight links and ten pins at random places; no part of it is rigid."""
+    rng = np.random.default_rng(seed)
+    pairs = list(combinations(range(8), 2))
+    parts = [set(part) for size in range(2, 9) for part in combinations(range(8), size)]
+    while True:
+        edges = [pairs[k] for k in rng.choice(len(pairs), 10, replace=False)]
+        inside = [sum(part.issuperset(edge) for edge in edges) for part in parts]
+        freedoms = [
+            3 * (len(part) - 1) - 2 * count
+            for part, count in zip(parts, inside, strict=True)
+        ]
+        if min(freedoms) > 0:
+            break
+    joints = []
+    for number, edge in enumerate(edges):
+        point = (*rng.normal(size=2), 0.0)
+        joints.append(Joint(f"J{number}", "revolute", tuple(map(str, edge)), point, Z))
+    return Mechanism(tuple(joints))
+
+
+# random ones that dyads build from no driver, and the complex configurations at a value
+# of each of two
+EIGHT_BARS = {
+    4: (12, 12),
+    8: (12, 16),
+    25: (16, 16),
+    38: (12, 14),
+    57: (12, 16),
+    69: (12, 16),
+    102: (12, 16),
+    125: (12, 12),
+    141: (12, 16),
+    158: (12, 16),
+}
+
+
+@pytest.mark.parametrize("seed", one_in(10, EIGHT_BARS))
+def test_eight_bars_of_larger_groups_have_the_forms_of_many_random_starts(
+    seed, monkeypatch
+):
+    mechanism = eight_bar(seed)
+    found = map_linkage(mechanism, settings=FEW)
+    assert found.completeness.level is Level.CERTIFIED
+    assert sliced(mechanism).counts == EIGHT_BARS[seed]
+    monkeypatch.setattr(slices_module, "_slices_of_groups", lambda *_: {})
+    settings = SearchSettings(starts=4000, certify=False)
+    dense = map_linkage(mechanism, settings=settings)
+    assert dense.completeness.level is Level.ESTIMATED
+    lengths, known = (
+        sorted(form.branch.length for form in atlas.forms) for atlas in (found, dense)
+    )
+    assert np.allclose(lengths, known, rtol=1e-8)
+
+
+@pytest.mark.parametrize("has_offset", [True, False])
+def test_a_part_on_two_pins_at_one_place_may_move(has_offset):
+    """A link on the coupler and the frame, which hold it once their pins are apart."""
+    geometry = PlaneGeometry(np.array(Z), 1.0)
+    one, other = Pivot(0j, 0j), Pivot(1j, 0.5j * has_offset)
+    assert geometry.leaves_loose(one, other) is not has_offset
 
 
 def test_a_rhombus_that_folds_leaves_motions_on_which_the_driver_stands_still():

@@ -1,0 +1,84 @@
+"""Isolated solutions of as many polynomials as unknowns are counted."""
+
+import numpy as np
+import pytest
+
+import bifurc
+from bifurc.completeness import Level
+from bifurc.search.answer.completeness import SearchClaim
+from bifurc.settings import SearchSettings
+
+FEW = SearchSettings(starts=5, near_motions=False)
+
+
+def explored(function, bounds, settings=FEW, **more):
+    return bifurc.explore(
+        bifurc.FunctionProblem(function, bounds, **more), settings=settings
+    )
+
+
+def claims_of(atlas, kind):
+    return [one for one in atlas.completeness.claims if kind.is_kind_of(one)]
+
+
+def economics(x):
+    """Five equations with 8 complex solutions."""
+    return [
+        (x[0] + x[0] * x[1] + x[1] * x[2] + x[2] * x[3]) * x[4] - 1,
+        (x[1] + x[0] * x[2] + x[1] * x[3]) * x[4] - 2,
+        (x[2] + x[0] * x[3]) * x[4] - 3,
+        x[3] * x[4] - 4,
+        x[0] + x[1] + x[2] + x[3] + 1,
+    ]
+
+
+def test_five_equations_are_counted():
+    atlas = explored(economics, [(-30, 30)] * 5)
+    (claim,) = claims_of(atlas, SearchClaim.ALL_ISOLATED)
+    assert claim.data["complex"] == 8
+    assert claim.data["real"] == claim.data["inside"] == len(atlas.rigid)
+    for point in atlas.rigid:
+        assert np.abs(economics(point)).max() < 1e-9
+    assert atlas.completeness.level is Level.CERTIFIED
+
+
+def test_solutions_outside_the_bounds_are_counted_and_not_listed():
+    atlas = explored(lambda x: [x[0] ** 2 - 4, x[1] - x[0]], [(-1, 3)] * 2)
+    (claim,) = claims_of(atlas, SearchClaim.ALL_ISOLATED)
+    assert (claim.data["real"], claim.data["inside"], len(atlas.rigid)) == (2, 1, 1)
+
+
+def two_links(angles):
+    a, b = angles
+    x = 2 * np.cos(a) + 1.5 * np.cos(b) - 1.2
+    return [x, 2 * np.sin(a) + 1.5 * np.sin(b) - 0.7]
+
+
+@pytest.mark.parametrize("turns", [1, 2])
+def test_angles_are_found_at_all_whole_turns_within_bounds(turns):
+    bounds = [(-np.pi, (2 * turns - 1) * np.pi)] * 2
+    atlas = explored(two_links, bounds)
+    (claim,) = claims_of(atlas, SearchClaim.ALL_ISOLATED)
+    assert claim.data["complex"] == 2
+    assert len(atlas.rigid) == 2 * turns**2
+
+
+NOT_COUNTED = {
+    "no polynomial": lambda x: [x[0] ** 2 + np.exp(x[1]) - 1.5, x[0] - 0.5],
+    "an angle and its sine": lambda x: [x[0] - np.sin(x[0]) - 0.1, x[1] - x[0]],
+    "a curve": lambda x: [x[0] * x[1], x[0] * (x[1] - 1)],
+}
+
+
+@pytest.mark.parametrize("name", NOT_COUNTED)
+def test_what_is_not_known_to_be_all_is_not_certified(name):
+    atlas = explored(NOT_COUNTED[name], [(-4, 4)] * 2)
+    assert not claims_of(atlas, SearchClaim.ALL_ISOLATED)
+    assert atlas.completeness.level is Level.ESTIMATED
+
+
+@pytest.mark.parametrize("paths", [0, 4])
+def test_no_more_paths_are_followed_than_are_asked_for(paths):
+    settings = SearchSettings(starts=5, near_motions=False, paths=paths)
+    atlas = explored(economics, [(-30, 30)] * 5, settings)
+    assert atlas.completeness.level is Level.ESTIMATED
