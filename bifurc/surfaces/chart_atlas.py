@@ -33,9 +33,10 @@ class Covering(Enum):
     """Why no more charts were made, with what to do next."""
 
     COMPLETE = "complete: every part of the surface inside the bounds is covered"
-    SINGULAR = (
-        "incomplete: no chart fits at some places, or a sheet that is not covered "
-        "crosses; look for singular points of the surface there"
+    SINGULAR = "incomplete: but for isolated singular points it is covered"
+    UNFIT = (
+        "incomplete: no chart fits at some places, about which no isolated singular "
+        "point is known, or a sheet that is not covered crosses"
     )
     UNDECIDED = (
         "incomplete: at some places sheets lie nearer to one another than can be told "

@@ -16,6 +16,7 @@ from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.sheet import follow_sheets
 
 OUTLINE = -1  # label of an edge that nothing has cut yet
+BORDER = -2  # of one along the first bound; the others follow below it
 
 
 class Polygon(NamedTuple):
@@ -74,8 +75,8 @@ def octagon(radius: float) -> Polygon:
 
 
 # Corners of neighbouring polygons closer than this, over their charts' radius, are one
-# vertex.
-MERGED = 0.15
+# vertex; and those between the same three charts, or two and a bound.
+MERGED, MERGED_OF_SAME = 0.15, 0.7
 # Relative residual above which a corner could not be lifted.
 SOLVED = 1e-9
 # Height over the radius above which a corner was lifted onto another sheet.
@@ -97,10 +98,12 @@ class FlatCharts(NamedTuple):
 
 class _Corners(NamedTuple):
     """The corners of all polygons one behind the other: where they lie on the surface
-    (v, n), and the number (v,) of the chart to whose polygon each belongs."""
+    (v, n), the number (v,) of the chart to whose polygon each belongs, and that and the
+    labels of the two edges there in order (v, 3)."""
 
     points: np.ndarray
     owner: np.ndarray
+    between: np.ndarray
 
 
 def assemble_charts(
@@ -180,7 +183,10 @@ def _lift_corners(problem: Problem, charts: FlatCharts) -> _Corners:
     is_out_of_reach = (gaps > SOLVED) | (height > TOO_HIGH * radii)
     points[is_out_of_reach] = flat[is_out_of_reach]
     _follow_beside_others(problem, charts, y, owner, points)
-    return _Corners(points, owner)
+    labels = [(q.labels, np.roll(q.labels, 1)) for q in charts.polygons]
+    after, before = np.concatenate([np.empty((2, 0), dtype=int), *labels], axis=1)
+    between = np.sort(np.stack([owner, after, before], axis=1), axis=1)
+    return _Corners(points, owner, between)
 
 
 def _follow_beside_others(
@@ -211,20 +217,23 @@ def _merge_corners(
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree
 
-    points, owner = corners
+    points, owner, _ = corners
     if not len(points):
         return np.empty(0, dtype=int)
     tree = cKDTree(
         torus.into_box(points, problem.domain.periods),
         boxsize=torus.tree_box(problem.domain.periods),
     )
-    reach = MERGED * radii.max()
+    reach = MERGED_OF_SAME * radii.max()
     i, j = tree.query_pairs(reach, output_type="ndarray").T
     gaps = problem.domain.difference(points[i], points[j])
     distance = np.linalg.norm(gaps, axis=1)
     one, other = owner[i], owner[j]
-    near = distance < MERGED * np.minimum(radii[one], radii[other])
-    same = near & _are_adjacent(one, other, neighbours, len(radii))
+    distance /= np.minimum(radii[one], radii[other])
+    is_adjacent = _are_adjacent(one, other, neighbours, len(radii))
+    is_same = np.all(corners.between[i] == corners.between[j], axis=1)
+    same = (distance < MERGED_OF_SAME) & is_same
+    same |= (distance < MERGED) & is_adjacent
     i, j = i[same], j[same]
     count = len(points)
     graph = csr_array((np.ones(len(i)), (i, j)), shape=(count, count))

@@ -31,11 +31,18 @@ from bifurc.numerics.null_spaces import (
 )
 from bifurc.problem import Problem
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
-from bifurc.surfaces.complex import FlatCharts, Polygon, assemble_charts, octagon
+from bifurc.surfaces.complex import (
+    BORDER,
+    FlatCharts,
+    Polygon,
+    assemble_charts,
+    octagon,
+)
 from bifurc.surfaces.crossing_sheets import has_uncovered_crossing
 from bifurc.surfaces.disk import AGREE, BEND, Disk, TangentPlane, fitting_disk
 from bifurc.surfaces.other_sheets import solutions_across
 from bifurc.surfaces.sheet import follow_sheets
+from bifurc.surfaces.singular_places import SingularPlaces
 
 # Largest height above a disk at which a solution lies in it, over the distance in its
 # plane; rounding is allowed for.
@@ -47,13 +54,15 @@ RIM = 1.1
 SMOOTH = 0.9
 # Radius of a chart, over that of the one from which it was made, at most.
 GROWTH = 1.4
-# Radius over the largest one below which no chart is made.
-SMALLEST = 1.0 / 64
+# Radius over the largest one below which no chart is made next to a singular point, and
+# how far from that, over this radius.
+SMALLEST, NEXT_TO = 1.0 / 64, 16.0
+# Radius over the scale below which no chart is made at all: the size of a neck.
+TINIEST = 1e-8
 # Distance of a centre from another one, over the radius there, that is not worth a
 # chart.
 TOO_CLOSE = 0.2
-# Distance, over the largest radius, beyond which a centre was corrected onto another
-# sheet.
+# Distance, over the radius, beyond which a centre was corrected onto another sheet.
 TOO_FAR = 0.5
 # Relative residual above which a centre is no solution.
 SOLVED = 1e-10
@@ -66,8 +75,6 @@ ON_DISK, HOLE = 1e-9, 1e-3
 SAME = 1e-7
 # Pairs of charts of which it is not known whether they are on one sheet, at most.
 MOST_UNDECIDED = 20
-# Label of the edges along the bounds.
-BORDER = -2
 
 
 def cover_surface(
@@ -106,7 +113,7 @@ def cover_surface(
         outcome = cover.judge()
     covering = assemble_charts(problem, cover.charts, outcome)
     if covering.complete and has_uncovered_crossing(problem, covering, AGREE):
-        return replace(covering, outcome=Covering.SINGULAR)
+        return replace(covering, outcome=Covering.UNFIT)
     return covering
 
 
@@ -160,6 +167,7 @@ class _Cover:
         self._looked_from = 0
         # how many pairs of charts could not be told to be on one sheet or on two
         self._undecided = 0
+        self._singular_places = SingularPlaces(problem)
 
     @property
     def charts(self) -> FlatCharts:
@@ -283,12 +291,28 @@ class _Cover:
     def judge(self) -> Covering:
         """What is known when no more charts are wanted: places at which none fits may
         still be uncovered by the charts next to them."""
-        if any(self._is_hole(place) for place in self._unfit_places):
-            return Covering.SINGULAR
         seeds = np.array(self._unfit_seeds).reshape(-1, self._problem.n)
-        if not np.all(self.are_covered(seeds)):
-            return Covering.SINGULAR
-        return Covering.UNDECIDED if self._undecided else Covering.COMPLETE
+        holes = list(seeds[~self.are_covered(seeds)])
+        holes += [self._above(p) for p in self._unfit_places if self._is_hole(p)]
+        if not all(self._has_a_reason(hole) for hole in holes):
+            return Covering.UNFIT
+        if self._undecided:
+            return Covering.UNDECIDED
+        return Covering.SINGULAR if holes else Covering.COMPLETE
+
+    def _above(self, place: _UnfitPlace) -> np.ndarray:
+        """Where on the rim of a chart (n,) no other one fits."""
+        i, direction = place
+        above: np.ndarray = (
+            self._centers[i] + self._radii[i] * self._bases[i] @ direction
+        )
+        return above
+
+    def _has_a_reason(self, hole: np.ndarray) -> bool:
+        """Whether an isolated singular point lies next to a place (n,)."""
+        reach = NEXT_TO * SMALLEST * self._largest
+        place = self._singular_places.next_to(hole, reach)
+        return place is not None and not place.is_on_curve
 
     def _is_hole(self, place: _UnfitPlace) -> bool:
         """Whether the polygon of a chart has a vertex outside the disk there."""
@@ -326,7 +350,7 @@ class _Cover:
             )
             is_there = are_reached[0]
         distance = np.linalg.norm(centers[0] - start)
-        if not is_there or distance > TOO_FAR * self._largest:
+        if not is_there or distance > TOO_FAR * radius:
             return Placement.UNFIT
         return self._make(centers[0], basis, GROWTH * radius)
 
@@ -341,16 +365,23 @@ class _Cover:
             return Placement.COVERED
         # without equations across it there is no other sheet
         normal = right[0, -3] if self._problem.n > 2 else np.zeros(self._problem.n)
-        disk = fitting_disk(
-            self._problem,
-            TangentPlane(center, plane, normal),
-            largest=min(radius, self._largest),
-            smallest=SMALLEST * self._largest,
-        )
+        disk = self._disk(TangentPlane(center, plane, normal), radius)
         if disk is None:
             return Placement.UNFIT
         self.add(center, plane, disk)
         return Placement.MADE
+
+    def _disk(self, plane: TangentPlane, radius: float) -> Disk | None:
+        """The disk of a chart, of at most ``radius``: a small one only where no
+        singular point is the reason, as in a neck."""
+        small = SMALLEST * self._largest
+        disk = fitting_disk(self._problem, plane, min(radius, self._largest), small)
+        if disk is not None:
+            return disk
+        if self._singular_places.next_to(plane.center, NEXT_TO * small) is not None:
+            return None
+        tiniest = TINIEST * self._problem.domain.scale
+        return fitting_disk(self._problem, plane, min(radius, small), tiniest)
 
     def _is_close_to_a_center(self, center: np.ndarray, basis: np.ndarray) -> bool:
         """Whether a chart about ``center`` (n,) would be close to another one."""
@@ -393,12 +424,14 @@ class _Cover:
         outside by rounding is not cut off: a surface may run in a bound."""
         domain = self._problem.domain
         low, high = domain.bounds.T
-        for sign, rooms in ((-1.0, center - low), (1.0, high - center)):
+        for side, rooms in enumerate((center - low, high - center)):
+            sign = 2.0 * side - 1.0
             for k in np.flatnonzero(np.isfinite(rooms)):
                 normal, room = sign * basis[k], max(rooms[k], 0.0)
                 farthest = (polygon.vertices @ normal).max(initial=0.0)
                 if farthest > room + domain.slack:
-                    polygon = polygon.clip(normal, room, BORDER)
+                    label = BORDER - 2 * int(k) - side
+                    polygon = polygon.clip(normal, room, label)
         return polygon
 
     def _cut_by_chart(
