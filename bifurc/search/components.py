@@ -23,6 +23,7 @@ from bifurc.decisions import (
 from bifurc.limits import Deadline
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
+from bifurc.search.own_units.unit_problem import UnitProblem
 from bifurc.search.records import Components, SingularCurve
 from bifurc.settings import TraceSettings
 from bifurc.singular.dimension import local_dimensions
@@ -153,10 +154,14 @@ def cover_components(
     seconds = deadline.left
     if not seconds:
         return []
+    metric = np.ones(problem.n)
+    if isinstance(problem, UnitProblem):
+        # areas of the user's unknowns, but for one factor for all
+        metric = problem.own_units.sizes / problem.own_units.sizes.max()
     if components.deflated is not None:
         problem = components.deflated
     covering = cover_surface(
-        problem, samples, radius=RADIUS, charts=charts, seconds=seconds
+        problem, samples, radius=RADIUS, charts=charts, seconds=seconds, metric=metric
     )
     if len(covering):
         components.charts = covering

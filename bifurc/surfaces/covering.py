@@ -30,17 +30,18 @@ from bifurc.numerics.null_spaces import (
     planes_next_to,
 )
 from bifurc.problem import Problem
+from bifurc.surfaces.area import Sizes, cell_sizes
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.complex import (
-    BORDER,
-    FlatCharts,
-    Polygon,
-    assemble_charts,
-    octagon,
+    Cells,
+    fitted_cells,
+    neighbours_of,
+    without_empty_polygons,
 )
 from bifurc.surfaces.crossing_sheets import has_uncovered_crossing
 from bifurc.surfaces.disk import AGREE, BEND, Disk, TangentPlane, fitting_disk
 from bifurc.surfaces.other_sheets import solutions_across
+from bifurc.surfaces.polygon import BORDER, FlatCharts, Polygon, octagon
 from bifurc.surfaces.sheet import follow_sheets
 from bifurc.surfaces.singular_places import SingularPlaces
 
@@ -59,6 +60,9 @@ GROWTH = 1.4
 SMALLEST, NEXT_TO = 1.0 / 64, 16.0
 # Radius over the scale below which no chart is made at all: the size of a neck.
 TINIEST = 1e-8
+# Radius of a chart that is too large among others, over what it was, how often that is
+# looked at, and the error of an area that is known well enough, over it.
+SMALLER, MENDING, WELL_KNOWN = 0.7, 8, 1e-7
 # Distance of a centre from another one, over the radius there, that is not worth a
 # chart.
 TOO_CLOSE = 0.2
@@ -85,13 +89,15 @@ def cover_surface(
     charts: int = 2000,
     seconds: float = np.inf,
     atlas: ChartAtlas | None = None,
+    metric: np.ndarray | None = None,
 ) -> ChartAtlas:
     """Charts over the components of dimension 2 that the regular solutions ``seeds``
     (k, n) lie on.
 
     ``radius`` is the largest of a chart, in units of the problem's scale: they shrink
     where the surface bends. At most ``charts`` charts are made in at most ``seconds``;
-    those of an ``atlas``, of an earlier call, stay and are continued. Raises
+    those of an ``atlas``, of an earlier call, stay and are continued. Areas are taken
+    after the unknowns are multiplied by ``metric`` (n,), by 1 unless given. Raises
     `ProblemError` for seeds of a wrong shape and limits that are not positive.
     """
     seeds = np.asarray(seeds, dtype=float)
@@ -104,17 +110,51 @@ def cover_surface(
     cover = _Cover(problem, radius * problem.domain.scale)
     if atlas is not None:
         cover.add_all(atlas)
-    outcome = cover.grow(charts, deadline)
-    if outcome is Covering.COMPLETE:
-        outcome = cover.spread(seeds, charts, deadline)
-    while outcome is Covering.COMPLETE and cover.has_charts_to_look_from:
-        outcome = cover.spread(cover.look_across(), charts, deadline)
-    if outcome is Covering.COMPLETE:
-        outcome = cover.judge()
-    covering = assemble_charts(problem, cover.charts, outcome)
+    outcome = cover.finish(seeds, charts, deadline)
+    metric = np.ones(problem.n) if metric is None else metric
+    for _ in range(MENDING):
+        flat, cells = cover.cells()
+        sizes = cell_sizes(problem, flat, cells, metric)
+        too_large = _too_large(flat, cells, sizes)
+        if outcome is not Covering.COMPLETE or not len(too_large):
+            break
+        cover.shrink(flat, too_large)
+        outcome = cover.finish(seeds, charts, deadline)
+    if outcome is Covering.COMPLETE and (
+        np.any(cells.misfits()) or np.any(sizes.outside)
+    ):
+        outcome = Covering.MISFIT
+    covering = ChartAtlas(
+        centers=flat.centers,
+        bases=flat.bases,
+        radii=flat.radii,
+        neighbours=neighbours_of(flat.polygons),
+        vertices=cells.vertices,
+        polygons=cells.begin,
+        polygon_sizes=np.bincount(cells.chart, minlength=len(flat.radii)),
+        areas=sizes.areas,
+        area_errors=sizes.errors,
+        periods=problem.domain.periods,
+        outcome=outcome,
+    )
     if covering.complete and has_uncovered_crossing(problem, covering, AGREE):
         return replace(covering, outcome=Covering.UNFIT)
     return covering
+
+
+def _too_large(charts: FlatCharts, cells: Cells, sizes: Sizes) -> np.ndarray:
+    """Numbers (k,) of the charts that are larger than others where polygons do not fit
+    together; where they do, of those whose areas are not known well enough."""
+    misfits = cells.misfits()
+    if not np.any(misfits):
+        share = sizes.errors / max(sizes.areas.sum(), 1e-300)
+        is_large = (share.sum() > WELL_KNOWN) & (share > WELL_KNOWN / len(share))
+        return np.flatnonzero(is_large | (sizes.outside != 0.0))
+    numbers = set()
+    for vertex in np.unique(cells.begin[misfits]):
+        about = cells.chart[cells.begin == vertex]
+        numbers.add(int(about[np.argmax(charts.radii[about])]))
+    return np.array(sorted(numbers))
 
 
 class Placement(Enum):
@@ -152,6 +192,14 @@ class _Cover:
     def __init__(self, problem: Problem, largest: float):
         self._problem = problem
         self._largest = largest  # radius of a chart
+        # how many pairs of charts could not be told to be on one sheet or on two
+        self._undecided = 0
+        self._singular_places = SingularPlaces(problem)
+        self._forget_charts()
+
+    def _forget_charts(self) -> None:
+        """Begin without charts."""
+        problem = self._problem
         self._centers = np.empty((0, problem.n))
         self._bases = np.empty((0, problem.n, 2))
         self._radii = np.empty(0)
@@ -165,20 +213,28 @@ class _Cover:
         self._open: deque[int] = deque()
         # number of charts from which other sheets have been looked for
         self._looked_from = 0
-        # how many pairs of charts could not be told to be on one sheet or on two
-        self._undecided = 0
-        self._singular_places = SingularPlaces(problem)
 
-    @property
-    def charts(self) -> FlatCharts:
-        """The charts made so far."""
-        return FlatCharts(
+    def cells(self) -> tuple[FlatCharts, Cells]:
+        """The charts made so far but for those of whose polygons the others leave
+        nothing, and their polygons fitted together."""
+        charts = FlatCharts(
             centers=self._centers,
             bases=self._bases,
             radii=self._radii,
             are_clear=self._are_clear,
             polygons=self._polygons,
         )
+        charts = without_empty_polygons(charts)
+        return charts, fitted_cells(self._problem, charts)
+
+    def shrink(self, charts: FlatCharts, too_large: np.ndarray) -> None:
+        """Make the charts of these numbers (k,) smaller, and cut all polygons anew."""
+        radii = charts.radii.copy()
+        radii[too_large] *= SMALLER
+        self._forget_charts()
+        for i, radius in enumerate(radii.tolist()):
+            disk = Disk(radius, bool(charts.are_clear[i]))
+            self.add(charts.centers[i], charts.bases[i], disk)
 
     @property
     def has_charts_to_look_from(self) -> bool:
@@ -231,6 +287,15 @@ class _Cover:
         return same
 
     # --- growing ----------------------------------------------------------------------
+
+    def finish(self, seeds: np.ndarray, charts: int, deadline: Deadline) -> Covering:
+        """Cover the surfaces of solutions (k, n), and those next to them."""
+        outcome = self.grow(charts, deadline)
+        if outcome is Covering.COMPLETE:
+            outcome = self.spread(seeds, charts, deadline)
+        while outcome is Covering.COMPLETE and self.has_charts_to_look_from:
+            outcome = self.spread(self.look_across(), charts, deadline)
+        return self.judge() if outcome is Covering.COMPLETE else outcome
 
     def spread(self, seeds: np.ndarray, charts: int, deadline: Deadline) -> Covering:
         """Cover the surfaces of those of the regular solutions (k, n) that lie in no
