@@ -79,75 +79,102 @@ class _Measure:
     def sizes(self, along: int, rays: int) -> Sizes:
         """Areas with so many nodes along edges and along rays, and errors by nodes to
         which the surface was not followed and by what lies outside the bounds."""
-        cells = self._cells
         nodes, weights = _gauss(along)
         curves, are_known = self._curves(nodes)
         corners, rates = self._outlines(curves, nodes)
         turned = _cross(corners, rates) * weights  # (e, along)
         t, t_weights = _gauss(rays)
-        chart = np.repeat(cells.chart, along)
-        ends = self._graphs.part(chart)
-        points, is_there = ends.along(corners.reshape(-1, 2), t)
-        points = points.reshape(-1, self._problem.n)
         plane = (t * t_weights) * turned.reshape(-1, 1)
-        ratio = self._ratios(np.repeat(chart, rays), points).reshape(plane.shape)
+        chart = np.repeat(self._cells.chart, along)
+        ends = corners.reshape(-1, 2)
+        points, is_there = self._graphs.part(chart).along(ends, t)
+        ratio = self._ratios(chart, points)
         positions = corners.reshape(-1, 1, 2) * t[:, None]
-        errors = np.zeros(self._count)
-        for cell in np.unique(chart[~is_there.all(axis=1)]):
-            own = (chart == cell)[:, None]
-            gap = _fill(ratio, positions, own & is_there, own & ~is_there)
-            errors[cell] = gap * np.abs(plane[own & ~is_there]).sum()
-        errors[cells.chart[~are_known[self._edge]]] = np.inf
-        areas = self._sums(chart, (ratio * plane).sum(axis=1))
-        # a cell beside a bound that bends is the difference of sectors
-        is_bent = self._sums(cells.chart, turned.min(axis=1) < 0.0) > 0
-        is_inside = self._problem.domain.are_inside(points).reshape(plane.shape)
-        is_inside |= is_bent[chart, None]
-        outside = self._sums(chart, (ratio * plane * ~is_inside).sum(axis=1))
-        return Sizes(areas, errors + BLURRED * outside, outside)
+        gaps = _fill_cells(ratio, positions, is_there, chart)[:, None]
+        parts = ratio * plane
+        is_outside = self._are_outside(points) & ~self._are_bent(turned)[chart, None]
+        outside = self._sums(chart, parts * is_outside)
+        errors = self._sums(chart, gaps * np.abs(plane)) + BLURRED * outside
+        errors[self._cells.chart[~are_known[self._edge]]] = np.inf
+        return Sizes(self._sums(chart, parts), errors, outside)
+
+    def _are_bent(self, turned: np.ndarray) -> np.ndarray:
+        """Which cells (c,) are differences of sectors, some of which are turned (e, k)
+        backwards, as one beside a bound that bends."""
+        are_back = turned.min(axis=1) < 0.0
+        are_bent: np.ndarray = self._sums(self._cells.chart, are_back[:, None]) > 0
+        return are_bent
+
+    def _are_outside(self, points: np.ndarray) -> np.ndarray:
+        """Which points (k, s, n) lie outside the bounds (k, s)."""
+        flat = points.reshape(-1, self._problem.n)
+        are_outside: np.ndarray = ~self._problem.domain.are_inside(flat)
+        return are_outside.reshape(points.shape[:2])
 
     def _ratios(self, chart: np.ndarray, points: np.ndarray) -> np.ndarray:
-        """Areas on the surface at its points (k, n) over those in the planes of charts
-        (k,)."""
-        slopes = self._graphs.part(chart).slopes(points) * self._metric[:, None]
-        ratios: np.ndarray = np.sqrt(np.linalg.det(np.swapaxes(slopes, 1, 2) @ slopes))
+        """Areas on the surface at its points (k, s, n), over those in the planes of
+        charts (k,): (k, s)."""
+        graphs = self._graphs.part(np.repeat(chart, points.shape[1]))
+        slopes = graphs.slopes(points.reshape(-1, self._problem.n))
+        slopes *= self._metric[:, None]
+        squares = np.linalg.det(np.swapaxes(slopes, 1, 2) @ slopes)
+        ratios: np.ndarray = np.sqrt(squares).reshape(points.shape[:2])
         return ratios
 
     def _sums(self, chart: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Sums (c,) of values (k,), each of a ``chart`` (k,)."""
-        return np.bincount(chart, values, minlength=self._count)
+        """Sums (c,) of values (k, s), each row of a ``chart`` (k,)."""
+        return np.bincount(chart, values.sum(axis=1), minlength=self._count)
 
     def _curves(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Points (u, k, n) of all edges, from the vertex of the lower number on, and
         whether they are known (u,): between those to which the surface was followed
         others are interpolated."""
-        cells, n = self._cells, self._problem.n
+        cells, n, count = self._cells, self._problem.n, len(nodes)
         begin, end = cells.vertices[self._pairs.T]
         chord = self._problem.domain.difference(end, begin)
         points = begin[:, None] + nodes[:, None] * chord[:, None]
         shape = points.shape
-        graphs = self._graphs.part(np.repeat(cells.chart[self._first], len(nodes)))
+        chart = np.repeat(cells.chart[self._first], count)
+        graphs = self._graphs.part(chart)
         positions = graphs.positions(points.reshape(-1, n))
         points, is_there = graphs.above(positions)
-        label = np.repeat(cells.label[self._first], len(nodes))
+        label = np.repeat(cells.label[self._first], count)
         border = np.flatnonzero(label <= BORDER)
-        charts = np.repeat(cells.chart[self._first], len(nodes))[border]
-        points[border], is_there[border] = self._graphs.part(charts).onto_bounds(
+        points[border], is_there[border] = self._graphs.part(chart[border]).onto_bounds(
             positions[border], bounds_of(label[border], n)
         )
-        points, is_there = points.reshape(shape), is_there.reshape(shape[:2])
+        points = points.reshape(shape)
+        return points, self._fill_edges(points, is_there.reshape(shape[:2]), nodes)
+
+    def _fill_edges(
+        self, points: np.ndarray, is_there: np.ndarray, nodes: np.ndarray
+    ) -> np.ndarray:
+        """Interpolate ``points`` (u, k, n) of edges that are not there, inside the
+        bounds, and whether all are known then (u,)."""
         are_known = is_there.all(axis=1)
-        for k in np.flatnonzero(~are_known & (cells.label[self._first] > BORDER)):
-            there = is_there[k]
-            if there.sum() >= FEWEST_ON_EDGE:
-                places = np.concatenate([[0.0], nodes[there], [1.0]])
-                known = np.concatenate([begin[k, None], points[k, there], end[k, None]])
-                offsets = self._problem.domain.difference(known, begin[k])
-                through = np.linalg.solve(np.vander(places), offsets)
-                at = np.vander(nodes[~there], len(places))
-                points[k, ~there] = begin[k] + at @ through
-                are_known[k] = True
-        return points, are_known
+        is_inner = self._cells.label[self._first] > BORDER
+        can_be_filled = is_inner & (is_there.sum(axis=1) >= FEWEST_ON_EDGE)
+        for k in np.flatnonzero(~are_known & can_be_filled):
+            begin, end = self._cells.vertices[self._pairs[k]]
+            points[k] = self._between(points[k], is_there[k], nodes, (begin, end))
+        are_filled: np.ndarray = are_known | can_be_filled
+        return are_filled
+
+    def _between(
+        self,
+        points: np.ndarray,
+        are_known: np.ndarray,
+        nodes: np.ndarray,
+        ends: tuple[np.ndarray, np.ndarray],
+    ) -> np.ndarray:
+        """Points (k, n) at ``nodes`` (k,) of the polynomial through those of them that
+        ``are_known`` (k,) and through both ``ends`` (n,)."""
+        places = np.concatenate([[0.0], nodes[are_known], [1.0]])
+        known = np.concatenate([ends[0][None], points[are_known], ends[1][None]])
+        offsets = self._problem.domain.difference(known, ends[0])
+        through = np.linalg.solve(np.vander(places), offsets)
+        between: np.ndarray = ends[0] + np.vander(nodes, len(places)) @ through
+        return between
 
     def _outlines(
         self, curves: np.ndarray, nodes: np.ndarray
@@ -168,22 +195,29 @@ class _Measure:
         return outline[:, 1:-1], rates[:, 1:-1]
 
 
-def _fill(
-    ratio: np.ndarray, positions: np.ndarray, known: np.ndarray, lost: np.ndarray
-) -> float:
-    """Put values of the polynomial that fits the ``known`` ratios (k, s) of one cell,
-    at ``positions`` (k, s, 2), in the place of those ``lost``, and how far off they may
-    be; infinitely where too few are known."""
-    y = positions[known]
-    if len(y) < 2 * len(POWERS):
-        return np.inf
-    size = np.abs(y).max()
-    terms = np.prod((y / size)[:, None] ** POWERS, axis=2)
-    values = ratio[known]
-    fit = np.linalg.lstsq(terms, values, rcond=None)[0]
-    at = np.prod((positions[lost] / size)[:, None] ** POWERS, axis=2)
-    ratio[lost] = at @ fit
-    return float(np.abs(terms @ fit - values).max())
+def _fill_cells(
+    ratio: np.ndarray, positions: np.ndarray, is_there: np.ndarray, chart: np.ndarray
+) -> np.ndarray:
+    """Put values of a polynomial that fits the others in the place of ratios (k, s)
+    that are not there, and how far off they may be (k,).
+
+    The rays (k,), with ``positions`` (k, s, 2), are those of cells of a ``chart`` (k,)
+    each, and every cell has a polynomial. Where too few are known it is infinite.
+    """
+    gaps = np.zeros(len(chart))
+    for cell in np.unique(chart[~is_there.all(axis=1)]):
+        own = np.flatnonzero(chart == cell)
+        known = is_there[own]
+        y = positions[own] / np.abs(positions[own]).max()
+        terms = np.prod(y[:, :, None] ** POWERS, axis=3)
+        gaps[own] = np.inf
+        if known.sum() >= 2 * len(POWERS):
+            values = ratio[own]
+            fit = np.linalg.lstsq(terms[known], values[known], rcond=None)[0]
+            ratio[own] = np.where(known, values, terms @ fit)
+            misses = np.abs(terms[known] @ fit - values[known]).max()
+            gaps[own] = np.where(known.all(axis=1), 0.0, misses)
+    return gaps
 
 
 def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:

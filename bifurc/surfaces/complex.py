@@ -51,10 +51,6 @@ class Cells(NamedTuple):
         """Which edges (e,) do not fit: one inside the bounds that not just two polygons
         have, in opposite directions, and one about a vertex where polygons meet that
         are not one fan."""
-        from scipy.sparse import csr_array
-        from scipy.sparse.csgraph import connected_components
-
-        count = len(self.chart)
         _, edge, sizes = np.unique(
             self.pairs, axis=0, return_inverse=True, return_counts=True
         )
@@ -62,22 +58,29 @@ class Cells(NamedTuple):
         is_border = (sizes[edge] == 1) & (self.label <= BORDER)
         turns = np.bincount(edge, weights=turn, minlength=len(sizes))
         is_shared = (sizes[edge] == 2) & (turns[edge] == 0)
-        is_misfit = ~(is_border | is_shared)
-        # an edge and the one after its twin leave the same vertex
         order = np.lexsort((turn, edge))
         order = order[is_shared[order]]
-        one, other = order[0::2], order[1::2]
+        fans = self._fans(order[0::2], order[1::2])
+        misfits: np.ndarray = ~(is_border | is_shared) | (fans[self.begin] > 1)
+        return misfits
+
+    def _fans(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """How many fans of polygons meet at each vertex (v,); ``one`` (k,) and ``other``
+        (k,) are the numbers of edges that are twins."""
+        from scipy.sparse import csr_array
+        from scipy.sparse.csgraph import connected_components
+
+        count = len(self.chart)
         after = np.arange(1, count + 1)
         is_last = np.append(self.chart[1:] != self.chart[:-1], True)
-        first = np.searchsorted(self.chart, self.chart)
-        after[is_last] = first[is_last]
+        after[is_last] = np.searchsorted(self.chart, self.chart)[is_last]
+        # an edge and the one after its twin leave the same vertex
         i, j = np.concatenate([one, other]), np.concatenate([after[other], after[one]])
         graph = csr_array((np.ones(len(i)), (i, j)), shape=(count, count))
         _, fan = connected_components(graph, directed=False)
-        fans = np.unique(np.stack([self.begin, fan], axis=1), axis=0)[:, 0]
-        of_vertex = np.bincount(fans, minlength=len(self.vertices))
-        misfits: np.ndarray = is_misfit | (of_vertex[self.begin] > 1)
-        return misfits
+        vertices = np.unique(np.stack([self.begin, fan], axis=1), axis=0)[:, 0]
+        fans: np.ndarray = np.bincount(vertices, minlength=len(self.vertices))
+        return fans
 
 
 def fitted_cells(problem: Problem, charts: FlatCharts) -> Cells:
@@ -173,10 +176,17 @@ def _lift_corners(problem: Problem, charts: FlatCharts) -> _Corners:
     is_solved = relative_gaps(problem, points) <= SOLVED
     is_out_of_reach = ~is_solved | (height > TOO_HIGH * radii)
     points[is_out_of_reach] = flat[is_out_of_reach]
-    labels = [(q.labels, np.roll(q.labels, 1)) for q in charts.polygons]
-    after, before = np.concatenate([np.empty((2, 0), dtype=int), *labels], axis=1)
-    between = np.sort(np.stack([owner, after, before], axis=1), axis=1)
+    between = _between(owner, charts.polygons)
     return _Corners(points, owner, y, between, is_there)
+
+
+def _between(owner: np.ndarray, polygons: list[Polygon]) -> np.ndarray:
+    """The charts and bounds (v, 3), in order, that meet at the corners of polygons,
+    each of a chart (v,)."""
+    labels = [(polygon.labels, np.roll(polygon.labels, 1)) for polygon in polygons]
+    after, before = np.concatenate([np.empty((2, 0), dtype=int), *labels], axis=1)
+    between: np.ndarray = np.sort(np.stack([owner, after, before], axis=1), axis=1)
+    return between
 
 
 def _merge_corners(

@@ -15,6 +15,7 @@ both charts are cut along the same line up to fourth order.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum
 from typing import NamedTuple
@@ -62,7 +63,7 @@ SMALLEST, NEXT_TO = 1.0 / 64, 16.0
 TINIEST = 1e-8
 # Radius of a chart that is too large among others, over what it was, how often that is
 # looked at, and the error of an area that is known well enough, over it.
-SMALLER, MENDING, WELL_KNOWN = 0.7, 8, 1e-7
+SMALLER, MENDING, WELL_KNOWN = 0.7, 4, 1e-7
 # Distance of a centre from another one, over the radius there, that is not worth a
 # chart.
 TOO_CLOSE = 0.2
@@ -110,21 +111,31 @@ def cover_surface(
     cover = _Cover(problem, radius * problem.domain.scale)
     if atlas is not None:
         cover.add_all(atlas)
-    outcome = cover.finish(seeds, charts, deadline)
-    metric = np.ones(problem.n) if metric is None else metric
+    unit = np.ones(problem.n) if metric is None else metric
+    covering = _covering(cover, lambda: cover.finish(seeds, charts, deadline), unit)
+    if covering.complete and has_uncovered_crossing(problem, covering, AGREE):
+        return replace(covering, outcome=Covering.UNFIT)
+    return covering
+
+
+def _covering(
+    cover: _Cover, finish: Callable[[], Covering], metric: np.ndarray
+) -> ChartAtlas:
+    """The charts that ``finish`` ends with, their polygons fitted together and measured
+    in ``metric`` (n,): where that does not go well they are made smaller first."""
+    outcome = finish()
+    flat, cells, sizes = _measured(cover, metric)
     for _ in range(MENDING):
-        flat, cells = cover.cells()
-        sizes = cell_sizes(problem, flat, cells, metric)
         too_large = _too_large(flat, cells, sizes)
         if outcome is not Covering.COMPLETE or not len(too_large):
             break
         cover.shrink(flat, too_large)
-        outcome = cover.finish(seeds, charts, deadline)
-    if outcome is Covering.COMPLETE and (
-        np.any(cells.misfits()) or np.any(sizes.outside)
-    ):
+        outcome = finish()
+        flat, cells, sizes = _measured(cover, metric)
+    does_not_fit = np.any(cells.misfits()) or np.any(sizes.outside)
+    if outcome is Covering.COMPLETE and does_not_fit:
         outcome = Covering.MISFIT
-    covering = ChartAtlas(
+    return ChartAtlas(
         centers=flat.centers,
         bases=flat.bases,
         radii=flat.radii,
@@ -134,12 +145,15 @@ def cover_surface(
         polygon_sizes=np.bincount(cells.chart, minlength=len(flat.radii)),
         areas=sizes.areas,
         area_errors=sizes.errors,
-        periods=problem.domain.periods,
+        periods=cover.problem.domain.periods,
         outcome=outcome,
     )
-    if covering.complete and has_uncovered_crossing(problem, covering, AGREE):
-        return replace(covering, outcome=Covering.UNFIT)
-    return covering
+
+
+def _measured(cover: _Cover, metric: np.ndarray) -> tuple[FlatCharts, Cells, Sizes]:
+    """The charts, their polygons fitted together, and the sizes of these."""
+    flat, cells = cover.cells()
+    return flat, cells, cell_sizes(cover.problem, flat, cells, metric)
 
 
 def _too_large(charts: FlatCharts, cells: Cells, sizes: Sizes) -> np.ndarray:
@@ -190,7 +204,7 @@ class _Cover:
     whose polygons may be open."""
 
     def __init__(self, problem: Problem, largest: float):
-        self._problem = problem
+        self.problem = problem
         self._largest = largest  # radius of a chart
         # how many pairs of charts could not be told to be on one sheet or on two
         self._undecided = 0
@@ -199,7 +213,7 @@ class _Cover:
 
     def _forget_charts(self) -> None:
         """Begin without charts."""
-        problem = self._problem
+        problem = self.problem
         self._centers = np.empty((0, problem.n))
         self._bases = np.empty((0, problem.n, 2))
         self._radii = np.empty(0)
@@ -225,7 +239,7 @@ class _Cover:
             polygons=self._polygons,
         )
         charts = without_empty_polygons(charts)
-        return charts, fitted_cells(self._problem, charts)
+        return charts, fitted_cells(self.problem, charts)
 
     def shrink(self, charts: FlatCharts, too_large: np.ndarray) -> None:
         """Make the charts of these numbers (k,) smaller, and cut all polygons anew."""
@@ -251,9 +265,7 @@ class _Cover:
         is_open = ~is_clear & ~are_covered[point]
         point, chart, y = point[is_open], chart[is_open], y[is_open]
         planes = self._bases[chart]
-        ends, are_reached = follow_sheets(
-            self._problem, self._centers[chart], planes, y
-        )
+        ends, are_reached = follow_sheets(self.problem, self._centers[chart], planes, y)
         on_sheet = ~are_reached | self._are_same(ends, points[point], planes)
         are_covered[point[on_sheet]] = True
         return are_covered
@@ -263,7 +275,7 @@ class _Cover:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Numbers (p,) of solutions (k, n), and of charts (p,) in whose disks they lie or
         little above them, with the positions (p, 2) there."""
-        offset = self._problem.domain.difference(points[:, None], self._centers)
+        offset = self.problem.domain.difference(points[:, None], self._centers)
         distance = np.linalg.norm(offset, axis=2)
         point, chart = np.nonzero(distance < RIM * self._radii)
         offset = offset[point, chart]
@@ -279,10 +291,10 @@ class _Cover:
         """Whether the ends (k, n) of rays in ``planes`` (k, n, 2) are solutions (k, n)
         or (n,). Off the surface redundant equations contradict one another, and their
         least squares move an end a little along it."""
-        gaps = self._problem.domain.difference(points, ends)
+        gaps = self.problem.domain.difference(points, ends)
         along = np.einsum("kij,ki->kj", planes, gaps)
         across = gaps - np.einsum("kij,kj->ki", planes, along)
-        moved = np.linalg.norm(along, axis=1) + SAME * self._problem.domain.scale
+        moved = np.linalg.norm(along, axis=1) + SAME * self.problem.domain.scale
         same: np.ndarray = np.linalg.norm(across, axis=1) < moved
         return same
 
@@ -311,7 +323,7 @@ class _Cover:
 
     def _start(self, seed: np.ndarray) -> Placement:
         """Make the first chart of a surface about a regular solution (n,)."""
-        _, right = null_spaces(self._problem, seed[None])
+        _, right = null_spaces(self.problem, seed[None])
         plane = right[0, -2:].T
         placement = self._make(seed, plane, self._largest)
         if placement is Placement.UNFIT:
@@ -324,7 +336,7 @@ class _Cover:
         first, self._looked_from = self._looked_from, len(self._radii)
         charts = first + np.flatnonzero(~self._are_clear[first:])
         return solutions_across(
-            self._problem,
+            self.problem,
             self._centers[charts],
             self._bases[charts],
             self._radii[charts],
@@ -356,7 +368,7 @@ class _Cover:
     def judge(self) -> Covering:
         """What is known when no more charts are wanted: places at which none fits may
         still be uncovered by the charts next to them."""
-        seeds = np.array(self._unfit_seeds).reshape(-1, self._problem.n)
+        seeds = np.array(self._unfit_seeds).reshape(-1, self.problem.n)
         holes = list(seeds[~self.are_covered(seeds)])
         holes += [self._above(p) for p in self._unfit_places if self._is_hole(p)]
         if not all(self._has_a_reason(hole) for hole in holes):
@@ -406,12 +418,12 @@ class _Cover:
         basis, radius = self._bases[i], self._radii[i]
         start = self._centers[i] + radius * basis @ direction
         if self._are_clear[i]:
-            centers, gaps = correct_normal(self._problem, start[None], basis[None])
+            centers, gaps = correct_normal(self.problem, start[None], basis[None])
             is_there = gaps[0] < SOLVED
         else:
             rim = (radius * direction)[None]
             centers, are_reached = follow_sheets(
-                self._problem, self._centers[i][None], basis[None], rim
+                self.problem, self._centers[i][None], basis[None], rim
             )
             is_there = are_reached[0]
         distance = np.linalg.norm(centers[0] - start)
@@ -422,14 +434,14 @@ class _Cover:
     def _make(self, center: np.ndarray, basis: np.ndarray, radius: float) -> Placement:
         """Make the chart, of at most ``radius``, about a solution (n,) with a tangent
         plane next to ``basis``."""
-        sigma, right = null_spaces(self._problem, center[None])
+        sigma, right = null_spaces(self.problem, center[None])
         plane = planes_next_to(sigma, right, basis)[0]
         if cosines_between_planes(basis, plane)[-1] < SMOOTH:
             return Placement.UNFIT
         if self._is_close_to_a_center(center, plane):
             return Placement.COVERED
         # without equations across it there is no other sheet
-        normal = right[0, -3] if self._problem.n > 2 else np.zeros(self._problem.n)
+        normal = right[0, -3] if self.problem.n > 2 else np.zeros(self.problem.n)
         disk = self._disk(TangentPlane(center, plane, normal), radius)
         if disk is None:
             return Placement.UNFIT
@@ -440,13 +452,13 @@ class _Cover:
         """The disk of a chart, of at most ``radius``: a small one only where no
         singular point is the reason, as in a neck."""
         small = SMALLEST * self._largest
-        disk = fitting_disk(self._problem, plane, min(radius, self._largest), small)
+        disk = fitting_disk(self.problem, plane, min(radius, self._largest), small)
         if disk is not None:
             return disk
         if self._singular_places.next_to(plane.center, NEXT_TO * small) is not None:
             return None
-        tiniest = TINIEST * self._problem.domain.scale
-        return fitting_disk(self._problem, plane, min(radius, small), tiniest)
+        tiniest = TINIEST * self.problem.domain.scale
+        return fitting_disk(self.problem, plane, min(radius, small), tiniest)
 
     def _is_close_to_a_center(self, center: np.ndarray, basis: np.ndarray) -> bool:
         """Whether a chart about ``center`` (n,) would be close to another one."""
@@ -487,7 +499,7 @@ class _Cover:
     ) -> Polygon:
         """The part of a polygon about ``center`` (n,) inside the bounds. What lies
         outside by rounding is not cut off: a surface may run in a bound."""
-        domain = self._problem.domain
+        domain = self.problem.domain
         low, high = domain.bounds.T
         for side, rooms in enumerate((center - low, high - center)):
             sign = 2.0 * side - 1.0
@@ -504,7 +516,7 @@ class _Cover:
     ) -> None:
         """Cut polygon i where its disk intersects the one about ``center`` (n,)."""
         basis = self._bases[i]
-        offset = self._problem.domain.difference(center, self._centers[i])
+        offset = self.problem.domain.difference(center, self._centers[i])
         x = basis.T @ offset
         height = float(np.linalg.norm(offset - basis @ x))
         polygon = self._polygons[i]
@@ -515,7 +527,7 @@ class _Cover:
         self, center: np.ndarray, basis: np.ndarray, radius: float
     ) -> _Overlaps:
         """The charts that overlap a disk about ``center`` (n,), or lie above it."""
-        offset = self._problem.domain.difference(self._centers, center)
+        offset = self.problem.domain.difference(self._centers, center)
         distance = np.linalg.norm(offset, axis=1)
         near = np.flatnonzero(distance < radius + self._radii)
         x = offset[near] @ basis
@@ -540,7 +552,7 @@ class _Cover:
         starts = np.tile(center, (len(numbers), 1))
         planes = np.tile(basis, (len(numbers), 1, 1))
         ends, are_reached = follow_sheets(
-            self._problem, starts, planes, near.positions[is_open]
+            self.problem, starts, planes, near.positions[is_open]
         )
         is_same = self._are_same(ends, self._centers[numbers], planes)
         self._undecided += int(np.count_nonzero(~are_reached))

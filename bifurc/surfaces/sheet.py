@@ -183,16 +183,16 @@ class _Rays:
         is_taken[some] = are_arcs(
             self.problem, planes[some], begin.part(some), end.part(some)
         )
-        self._pass(rays[is_taken], begin.part(is_taken), end.part(is_taken))
-        self.before.put(rays[is_taken], begin.part(is_taken))
-        self.at.put(rays[is_taken], end.part(is_taken))
+        self._reach(rays[is_taken], begin.part(is_taken), end.part(is_taken))
         # a cubic is off by the fourth power of the step
         room = CONTRACTION / 2 / np.maximum(corrected.contractions, 1e-300)
         growth = np.clip(np.sqrt(np.sqrt(room)), 0.5, 2.0)
         self.steps[rays] *= np.where(is_taken, growth, 0.5)
 
-    def _pass(self, rays: np.ndarray, begin: Nodes, end: Nodes) -> None:
-        """Note where rays pass between two nodes."""
+    def _reach(self, rays: np.ndarray, begin: Nodes, end: Nodes) -> None:
+        """Note that rays went from one node to the next, and where they passed."""
+        self.before.put(rays, begin)
+        self.at.put(rays, end)
         is_between = (begin.t[:, None] < self.shares) & (self.shares <= end.t[:, None])
         ray, share = np.nonzero(is_between)
         points = on_cubic(begin.part(ray), end.part(ray), self.shares[share])
