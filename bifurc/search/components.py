@@ -304,7 +304,11 @@ def _lowest_charts(problem: Problem, charts: ChartAtlas) -> np.ndarray:
     one, other = charts.neighbours.T
     np.minimum.at(lowest_beside, one, sigma[other])
     np.minimum.at(lowest_beside, other, sigma[one])
-    is_small = sigma < SMALL * np.median(sigma)
+    # the median over the surface: next to singular points there are many small charts
+    order = np.argsort(sigma, kind="stable")
+    covered = np.cumsum(charts.areas[order])
+    middle = np.searchsorted(covered, 0.5 * covered[-1])
+    is_small = sigma < SMALL * sigma[order[min(middle, len(order) - 1)]]
     numbers = np.flatnonzero((sigma <= lowest_beside) & is_small)
     return numbers[np.argsort(sigma[numbers], kind="stable")]
 

@@ -90,7 +90,7 @@ class _Measure:
         points, is_there = self._graphs.part(chart).along(ends, t)
         ratio = self._ratios(chart, points)
         positions = corners.reshape(-1, 1, 2) * t[:, None]
-        gaps = _fill_cells(ratio, positions, is_there, chart)[:, None]
+        gaps = _fill_cells(ratio, positions, is_there, chart)
         parts = ratio * plane
         is_outside = self._are_outside(points) & ~self._are_bent(turned)[chart, None]
         outside = self._sums(chart, parts * is_outside)
@@ -199,12 +199,12 @@ def _fill_cells(
     ratio: np.ndarray, positions: np.ndarray, is_there: np.ndarray, chart: np.ndarray
 ) -> np.ndarray:
     """Put values of a polynomial that fits the others in the place of ratios (k, s)
-    that are not there, and how far off they may be (k,).
+    that are not there, and how far off they may be (k, 1).
 
     The rays (k,), with ``positions`` (k, s, 2), are those of cells of a ``chart`` (k,)
     each, and every cell has a polynomial. Where too few are known it is infinite.
     """
-    gaps = np.zeros(len(chart))
+    gaps = np.zeros((len(chart), 1))
     for cell in np.unique(chart[~is_there.all(axis=1)]):
         own = np.flatnonzero(chart == cell)
         known = is_there[own]
@@ -216,7 +216,7 @@ def _fill_cells(
             fit = np.linalg.lstsq(terms[known], values[known], rcond=None)[0]
             ratio[own] = np.where(known, values, terms @ fit)
             misses = np.abs(terms[known] @ fit - values[known]).max()
-            gaps[own] = np.where(known.all(axis=1), 0.0, misses)
+            gaps[own] = np.where(known.all(axis=1, keepdims=True), 0.0, misses)
     return gaps
 
 
