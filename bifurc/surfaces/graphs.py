@@ -101,12 +101,9 @@ class Graphs:
         ``on_bound`` (k, 2 n) says on which: of each unknown the lower, then the upper
         one, numbered as labels of edges below `BORDER` are.
         """
-        if not len(positions):
-            return self._centers, np.zeros(0, dtype=bool)
         positions = positions.copy()
         bounds = self._problem.domain.bounds.ravel()
         at = np.where(on_bound, bounds, 0.0)
-        is_there = np.ones(len(positions), dtype=bool)
         for _ in range(ROUNDS):
             points, is_there = self.above(positions)
             gaps = np.where(on_bound, at - np.repeat(points, 2, axis=1), 0.0)
