@@ -207,6 +207,8 @@ def _surface(surface: Surface, unknowns: Unknowns) -> Surface:
             centers=unknowns.points(charts.centers),
             bases=unknowns.bases(charts.bases),
             radii=unknowns.size * charts.radii,
+            areas=unknowns.size**2 * charts.areas,
+            area_errors=unknowns.size**2 * charts.area_errors,
             vertices=unknowns.points(charts.vertices),
             periods=unknowns.periods,
         )

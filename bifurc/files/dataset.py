@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 FORMAT = "bifurc atlas"
-FORMAT_VERSION = 10
+FORMAT_VERSION = 11
 CHECKSUM = "checksum"  # an attribute of files
 LINKAGE_UNITS = {"twists": "rad"}
 

@@ -157,6 +157,9 @@ def normal_corrections(
     faster than an SVD of every matrix, and what a step loses to rounding the next one
     mends. `DAMPING` keeps them regular at singular points.
     """
+    if not len(points):
+        nothing = np.empty(0)
+        return NormalCorrections(points, nothing, nothing, nothing, nothing)
     points = points.copy()
     border = bases @ np.swapaxes(bases, 1, 2) + DAMPING * np.eye(problem.n)
     lengths = np.zeros((NORMAL_STEPS, len(points)))

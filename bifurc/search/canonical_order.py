@@ -135,7 +135,7 @@ def _surface_features(surface: Surface, scale: float) -> np.ndarray:
     if charts is None or not charts.area > 0:
         return np.concatenate([kind, np.zeros(1 + 2 * n)])
     middles = charts.triangles.mean(axis=1)
-    shares = charts.triangle_areas / charts.area
+    shares = charts.triangle_areas / charts.triangle_areas.sum()
     means = shares @ _embedded(middles, charts.periods, scale)
     size = [-np.log(charts.area)]
     return np.concatenate([kind, size, -means])

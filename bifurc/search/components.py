@@ -8,6 +8,8 @@ curve is a regular solution (`bifurc.curves.deflation`): it is traced like a for
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from bifurc.atlas import Surface
@@ -21,19 +23,24 @@ from bifurc.decisions import (
     may_be_singular,
 )
 from bifurc.limits import Deadline
-from bifurc.numerics.singular_values import singular_values
+from bifurc.numerics.singular_values import factors_of, singular_values
 from bifurc.problem import Problem
+from bifurc.search.own_units.unit_problem import UnitProblem
 from bifurc.search.records import Components, SingularCurve
 from bifurc.settings import TraceSettings
 from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
 from bifurc.singular.point import SingularPoint
-from bifurc.surfaces.chart_atlas import ChartAtlas
+from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.covering import cover_surface
 from bifurc.surfaces.crossing_sheets import is_on_singular_curve
 from bifurc.surfaces.geodesic import entrances
 from bifurc.surfaces.walk import reached_charts
+from bifurc.system import relative_jacobians, relative_residuals
 
+# Places at which it is seen whether charts lie between sheets, with how many digits, and
+# what is missed there by rounding, over the magnitude.
+LOOKS, DIGITS, ROUNDING = 8, 50, 1e-13
 WHOLE = (Outcome.CLOSED, Outcome.LEFT_REGION)
 
 
@@ -155,12 +162,20 @@ def cover_components(
     seconds = deadline.left
     if not seconds:
         return []
+    metric = np.ones(problem.n)
+    if isinstance(problem, UnitProblem):
+        # areas of the user's unknowns, but for one factor for all
+        metric = problem.own_units.sizes / problem.own_units.sizes.max()
+    outer = problem
     if components.deflated is not None:
         problem = components.deflated
     covering = cover_surface(
-        problem, samples, radius=RADIUS, charts=charts, seconds=seconds
+        problem, samples, radius=RADIUS, charts=charts, seconds=seconds, metric=metric
     )
     if len(covering):
+        is_double = components.deflated is not None and covering.complete
+        if is_double and _are_several(outer, covering):
+            covering = replace(covering, outcome=Covering.UNDECIDED)
         components.charts = covering
         chart = covering.chart_at(samples)
         # also beside charts that are complete: where surfaces cross they leave slivers
@@ -169,6 +184,28 @@ def cover_components(
         components.part_of = np.where(chart >= 0, covering.part[chart], -1)
         return []
     return [] if deadline.passed else components.seeds.pop(2)
+
+
+def _are_several(problem: Problem, charts: ChartAtlas) -> bool:
+    """Whether charts along which F' has a lower rank but for rounding may lie between
+    sheets that are very near to each other: what of F the rank leaves out vanishes with
+    the square of the distance on a double surface, and not between two."""
+    import mpmath  # it takes longer to import than a small problem to solve
+
+    precise = problem.precise_residual()
+    step = max(1, len(charts) // LOOKS)
+    for place in charts.centers[::step]:
+        left, *_ = factors_of(relative_jacobians(problem, place[None]))
+        missed = relative_residuals(problem, place[None])[0]
+        most = ROUNDING
+        if precise is not None:
+            with mpmath.workdps(DIGITS):
+                values = precise([mpmath.mpf(float(x)) for x in place])
+            missed = np.array(values, dtype=float) / problem.magnitude
+            most = ROUNDING**2
+        if np.linalg.norm(left[0, :, problem.n - NULLITY :].T @ missed) > most:
+            return True
+    return False
 
 
 def parts_through(
@@ -269,7 +306,11 @@ def _lowest_charts(problem: Problem, charts: ChartAtlas) -> np.ndarray:
     one, other = charts.neighbours.T
     np.minimum.at(lowest_beside, one, sigma[other])
     np.minimum.at(lowest_beside, other, sigma[one])
-    is_small = sigma < SMALL * np.median(sigma)
+    # the median over the surface: next to singular points there are many small charts
+    order = np.argsort(sigma, kind="stable")
+    covered = np.cumsum(charts.areas[order])
+    middle = np.searchsorted(covered, 0.5 * covered[-1])
+    is_small = sigma < SMALL * sigma[order[min(middle, len(order) - 1)]]
     numbers = np.flatnonzero((sigma <= lowest_beside) & is_small)
     return numbers[np.argsort(sigma[numbers], kind="stable")]
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 NEAREST = 16
 # Distance of a chart from a singular point next to it, over its radius, at most.
 NEXT_TO = 12.0
+MOST_DIGITS = 10  # of an area
 # The same, over the distance of the nearest chart.
 NEAR_THE_NEAREST = 2.0
 # Distance from the centre, over the radius, up to which a chart holds a solution.
@@ -33,9 +34,14 @@ class Covering(Enum):
     """Why no more charts were made, with what to do next."""
 
     COMPLETE = "complete: every part of the surface inside the bounds is covered"
-    SINGULAR = (
-        "incomplete: no chart fits at some places, or a sheet that is not covered "
-        "crosses; look for singular points of the surface there"
+    MISFIT = (
+        "complete: but the charts do not fit together everywhere, and how many holes "
+        "and handles there are is not known"
+    )
+    SINGULAR = "incomplete: but for isolated singular points it is covered"
+    UNFIT = (
+        "incomplete: no chart fits at some places, about which no isolated singular "
+        "point is known, or a sheet that is not covered crosses"
     )
     UNDECIDED = (
         "incomplete: at some places sheets lie nearer to one another than can be told "
@@ -58,7 +64,8 @@ class ChartAtlas:
     tangent planes there, ``radii`` (c,) those of the disks. The polygon of a chart
     lists the ``vertices`` (v, n) around it, solutions that it shares with its
     neighbours; the ``polygons``, with ``polygon_sizes`` (c,) entries each, stand one
-    behind the other. ``neighbours`` (p, 2) are the pairs of charts whose polygons have
+    behind the other; their ``areas`` (c,) on the surface are known to within
+    ``area_errors`` (c,). ``neighbours`` (p, 2) are the pairs of charts whose polygons have
     an edge in common.
     """
 
@@ -69,6 +76,8 @@ class ChartAtlas:
     vertices: np.ndarray
     polygons: np.ndarray
     polygon_sizes: np.ndarray
+    areas: np.ndarray
+    area_errors: np.ndarray
     periods: np.ndarray
     outcome: Covering
 
@@ -86,7 +95,7 @@ class ChartAtlas:
     @property
     def complete(self) -> bool:
         """Whether the whole surface inside the bounds is covered."""
-        return self.outcome is Covering.COMPLETE
+        return self.outcome in (Covering.COMPLETE, Covering.MISFIT)
 
     @property
     def is_short_of_charts(self) -> bool:
@@ -127,17 +136,21 @@ class ChartAtlas:
 
     @cached_property
     def area(self) -> float:
-        """Area of the triangles: below that of a surface all covered by a share of
-        (radius x curvature)^2 / 8. What corners that are fitted together move adds up to
-        1 % either way, most along the bounds."""
-        return float(self.triangle_areas.sum())
+        """Area of the charts, by quadrature over their polygons."""
+        return float(self.areas.sum())
+
+    @cached_property
+    def area_error(self) -> float:
+        """How far the area may be off, by the errors of all polygons."""
+        return float(self.area_errors.sum())
 
     @property
     def area_words(self) -> str:
-        """The area as text, with no more digits than flat triangles give; of an
-        unfinished covering it says that there is more."""
-        rounded = float(f"{self.area:.3g}")
-        words = f"{rounded:g}"
+        """The area as text, with the digits that are sure; of an unfinished covering it
+        says that there is more."""
+        share = max(self.area_error / self.area, 10.0**-MOST_DIGITS)
+        digits = max(1, int(-np.log10(share)))
+        words = f"{self.area:.{digits}g}"
         return words if self.complete else f"more than {words}"
 
     @cached_property
@@ -150,11 +163,11 @@ class ChartAtlas:
     def euler_characteristic(self) -> int | None:
         """Vertices - edges + polygons; None for an incomplete covering, or where
         polygons do not fit together."""
-        if not self.complete or np.any(self._polygons_at_edge > 2):
+        if self.outcome is not Covering.COMPLETE:
             return None
         vertices = len(np.unique(self.polygons))
         edges = len(self._polygons_at_edge)
-        return vertices - edges + len(self)
+        return vertices - edges + int(np.count_nonzero(self.polygon_sizes))
 
     # --- connected parts --------------------------------------------------------------
 
@@ -197,6 +210,8 @@ class ChartAtlas:
             vertices=self.vertices[vertices],
             polygons=renumbered,
             polygon_sizes=self.polygon_sizes[charts],
+            areas=self.areas[charts],
+            area_errors=self.area_errors[charts],
             periods=self.periods,
             outcome=self.outcome,
         )

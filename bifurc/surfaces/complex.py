@@ -1,6 +1,4 @@
-"""Convex polygons about the origins of the tangent planes of charts, each of whose edges
-knows what made it, and those of overlapping charts put together to one closed
-complex."""
+"""The polygons of charts that overlap put together to one closed complex."""
 
 from __future__ import annotations
 
@@ -8,132 +6,130 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc import torus
-from bifurc.numerics.binary_forms import unit_vectors
-from bifurc.numerics.corrector import correct_normal
 from bifurc.problem import Problem
-from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
-from bifurc.surfaces.sheet import follow_sheets
-
-OUTLINE = -1  # label of an edge that nothing has cut yet
-
-
-class Polygon(NamedTuple):
-    """Vertices (v, 2), counterclockwise, and the labels (v,) of the edges: edge i runs
-    from vertex i to the next one."""
-
-    vertices: np.ndarray
-    labels: np.ndarray
-
-    @property
-    def is_empty(self) -> bool:
-        """Whether nothing is left of it."""
-        return len(self.vertices) == 0
-
-    def clip(self, normal: np.ndarray, offset: float, label: int) -> Polygon:
-        """The part where ``normal . y <= offset``; the edge along the cut gets
-        ``label``.
-
-        The same polygon where the line misses it, an empty one where nothing is left.
-        """
-        if self.is_empty:
-            return self
-        height: list[float] = (self.vertices @ normal - offset).tolist()
-        if max(height) <= 0.0:
-            return self
-        if min(height) > 0.0:
-            return Polygon(self.vertices[:0], self.labels[:0])
-        count = len(height)
-        next_height = height[1:] + height[:1]
-        edges = range(count)
-        leaves = next(i for i in edges if height[i] <= 0.0 < next_height[i])
-        enters = next(i for i in edges if next_height[i] <= 0.0 < height[i])
-        count_inside = (leaves - enters) % count
-        inside = [(enters + 1 + i) % count for i in range(count_inside)]
-        begin = self._crossing(leaves, height[leaves], next_height[leaves])
-        end = self._crossing(enters, height[enters], next_height[enters])
-        new_labels = [label, self.labels[enters]]
-        return Polygon(
-            np.concatenate([self.vertices[inside], [begin, end]]),
-            np.concatenate([self.labels[inside], new_labels]),
-        )
-
-    def _crossing(self, edge: int, begin: float, end: float) -> np.ndarray:
-        """The point (2,) of an edge on the line, from the heights of its two ends."""
-        first = self.vertices[edge]
-        last = self.vertices[(edge + 1) % len(self.vertices)]
-        point: np.ndarray = first + begin / (begin - end) * (last - first)
-        return point
-
-
-def octagon(radius: float) -> Polygon:
-    """The octagon around the circle of ``radius``."""
-    angles = np.pi / 4 * (np.arange(8) + 0.5)
-    size = radius / np.cos(np.pi / 8)
-    return Polygon(size * unit_vectors(angles), np.full(8, OUTLINE))
-
+from bifurc.surfaces.graphs import SOLVED, Graphs, bounds_of
+from bifurc.surfaces.polygon import BORDER, FlatCharts, Polygon
+from bifurc.system import relative_gaps
 
 # Corners of neighbouring polygons closer than this, over their charts' radius, are one
-# vertex.
-MERGED = 0.15
-# Relative residual above which a corner could not be lifted.
-SOLVED = 1e-9
+# vertex; and those between the same three charts, or two and a bound.
+MERGED, MERGED_OF_SAME = 0.15, 0.7
 # Height over the radius above which a corner was lifted onto another sheet.
 TOO_HIGH = 0.5
 
 
-class FlatCharts(NamedTuple):
-    """Charts as they are made: ``centers`` (c, n), ``bases`` (c, n, 2) of the tangent
-    planes, ``radii`` (c,) of the disks, whether other sheets ``are_clear`` (c,) of
-    them, and c polygons in these planes, whose labels are the numbers of the charts on
-    the other side of each edge."""
-
-    centers: np.ndarray
-    bases: np.ndarray
-    radii: np.ndarray
-    are_clear: np.ndarray
-    polygons: list[Polygon]
-
-
 class _Corners(NamedTuple):
     """The corners of all polygons one behind the other: where they lie on the surface
-    (v, n), and the number (v,) of the chart to whose polygon each belongs."""
+    (v, n), the number (v,) of the chart to whose polygon each belongs, the positions
+    (v, 2) in its plane, it and the labels of the two edges there in order (v, 3), and
+    whether the surface was followed there (v,)."""
 
     points: np.ndarray
     owner: np.ndarray
+    positions: np.ndarray
+    between: np.ndarray
+    is_there: np.ndarray
 
 
-def assemble_charts(
-    problem: Problem, charts: FlatCharts, outcome: Covering
-) -> ChartAtlas:
-    """The atlas of ``charts``, the polygons fitted together.
+class Cells(NamedTuple):
+    """Polygons fitted together: ``vertices`` (v, n), and one behind the other around
+    each polygon the edges, each with the number of its ``chart`` (e,), the vertices
+    where it begins and ``end``s (e,), and its ``label`` (e,)."""
+
+    vertices: np.ndarray
+    chart: np.ndarray
+    begin: np.ndarray
+    end: np.ndarray
+    label: np.ndarray
+
+    @property
+    def pairs(self) -> np.ndarray:
+        """The two vertices (e, 2) of each edge, the lower number first."""
+        return np.sort(np.stack([self.begin, self.end], axis=1), axis=1)
+
+    def misfits(self) -> np.ndarray:
+        """Which edges (e,) do not fit: one inside the bounds that not just two polygons
+        have, in opposite directions, and one about a vertex where polygons meet that
+        are not one fan."""
+        _, edge, sizes = np.unique(
+            self.pairs, axis=0, return_inverse=True, return_counts=True
+        )
+        turn = np.where(self.begin < self.end, 1, -1)
+        is_border = (sizes[edge] == 1) & (self.label <= BORDER)
+        turns = np.bincount(edge, weights=turn, minlength=len(sizes))
+        is_shared = (sizes[edge] == 2) & (turns[edge] == 0)
+        order = np.lexsort((turn, edge))
+        order = order[is_shared[order]]
+        fans = self._fans(order[0::2], order[1::2])
+        misfits: np.ndarray = ~(is_border | is_shared) | (fans[self.begin] > 1)
+        return misfits
+
+    def _fans(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """How many fans of polygons meet at each vertex (v,); ``one`` (k,) and ``other``
+        (k,) are the numbers of edges that are twins."""
+        from scipy.sparse import csr_array
+        from scipy.sparse.csgraph import connected_components
+
+        count = len(self.chart)
+        after = np.arange(1, count + 1)
+        is_last = np.append(self.chart[1:] != self.chart[:-1], True)
+        after[is_last] = np.searchsorted(self.chart, self.chart)[is_last]
+        # an edge and the one after its twin leave the same vertex
+        i, j = np.concatenate([one, other]), np.concatenate([after[other], after[one]])
+        graph = csr_array((np.ones(len(i)), (i, j)), shape=(count, count))
+        _, fan = connected_components(graph, directed=False)
+        vertices = np.unique(np.stack([self.begin, fan], axis=1), axis=0)[:, 0]
+        fans: np.ndarray = np.bincount(vertices, minlength=len(self.vertices))
+        return fans
+
+
+def fitted_cells(problem: Problem, charts: FlatCharts) -> Cells:
+    """The polygons of ``charts`` fitted together, none of which is empty.
 
     Vertices are lifted onto the surface; those of neighbouring charts that nearly
     coincide become one, so that the polygons are the faces of a closed complex although
-    each was cut in a plane of its own. Charts of whose polygons the others leave
-    nothing are left out.
+    each was cut in a plane of its own. Those on bounds are moved there.
     """
-    charts = _without_empty_polygons(charts)
-    neighbours = _neighbours(charts.polygons)
     corners = _lift_corners(problem, charts)
+    neighbours = neighbours_of(charts.polygons)
     vertex = _merge_corners(problem, corners, charts.radii, neighbours)
-    first_corner = np.unique(vertex, return_index=True)[1]
-    distinct = vertex != _previous_vertex(vertex, charts.polygons)
-    sizes = np.bincount(corners.owner[distinct], minlength=len(charts.polygons))
-    return ChartAtlas(
-        centers=charts.centers,
-        bases=charts.bases,
-        radii=charts.radii,
-        neighbours=neighbours,
-        vertices=corners.points[first_corner],
-        polygons=vertex[distinct],
-        polygon_sizes=sizes,
-        periods=problem.domain.periods,
-        outcome=outcome,
+    following = _next_vertex(vertex, charts.polygons)
+    leaves = vertex != following
+    order = np.argsort(~corners.is_there, kind="stable")
+    first = order[np.unique(vertex[order], return_index=True)[1]]
+    labels = np.concatenate([np.empty(0, int), *(q.labels for q in charts.polygons)])
+    cells = Cells(
+        vertices=corners.points[first],
+        chart=corners.owner[leaves],
+        begin=vertex[leaves],
+        end=following[leaves],
+        label=labels[leaves],
     )
+    _move_onto_bounds(problem, charts, cells, corners, first)
+    return cells
 
 
-def _without_empty_polygons(charts: FlatCharts) -> FlatCharts:
+def _move_onto_bounds(
+    problem: Problem,
+    charts: FlatCharts,
+    cells: Cells,
+    corners: _Corners,
+    first: np.ndarray,
+) -> None:
+    """Move vertices at which edges along bounds end to these, over the surface.
+    ``first`` (v,) are the numbers of corners at the vertices."""
+    on_bound = np.zeros((len(cells.vertices), 2 * problem.n), dtype=bool)
+    along = bounds_of(cells.label, problem.n)
+    np.logical_or.at(on_bound, cells.begin, along)
+    np.logical_or.at(on_bound, cells.end, along)
+    moved = np.flatnonzero(on_bound.any(axis=1))
+    corner = first[moved]
+    graph = Graphs(problem, charts).part(corners.owner[corner])
+    points, is_there = graph.onto_bounds(corners.positions[corner], on_bound[moved])
+    cells.vertices[moved[is_there]] = points[is_there]
+
+
+def without_empty_polygons(charts: FlatCharts) -> FlatCharts:
     """The charts with a polygon, numbered anew."""
     has_polygon = _sizes(charts.polygons) > 0
     if np.all(has_polygon):
@@ -153,7 +149,7 @@ def _without_empty_polygons(charts: FlatCharts) -> FlatCharts:
     )
 
 
-def _neighbours(polygons: list[Polygon]) -> np.ndarray:
+def neighbours_of(polygons: list[Polygon]) -> np.ndarray:
     """Pairs (p, 2) of the numbers of polygons with an edge in common, in order."""
     pairs = set()
     for i, polygon in enumerate(polygons):
@@ -173,33 +169,24 @@ def _lift_corners(problem: Problem, charts: FlatCharts) -> _Corners:
     radii = charts.radii[owner]
     distance = np.maximum(np.linalg.norm(y, axis=1), 1e-300)
     y *= np.minimum(1.0, radii / distance)[:, None]
-    bases = charts.bases[owner]
-    flat = charts.centers[owner] + np.einsum("kij,kj->ki", bases, y)
-    points, gaps = correct_normal(problem, flat, bases)
+    graphs = Graphs(problem, charts).part(owner)
+    points, is_there = graphs.above(y)
+    flat = graphs.flat(y)
     height = np.linalg.norm(points - flat, axis=1)
-    is_out_of_reach = (gaps > SOLVED) | (height > TOO_HIGH * radii)
+    is_solved = relative_gaps(problem, points) <= SOLVED
+    is_out_of_reach = ~is_solved | (height > TOO_HIGH * radii)
     points[is_out_of_reach] = flat[is_out_of_reach]
-    _follow_beside_others(problem, charts, y, owner, points)
-    return _Corners(points, owner)
+    between = _between(owner, charts.polygons)
+    return _Corners(points, owner, y, between, is_there)
 
 
-def _follow_beside_others(
-    problem: Problem,
-    charts: FlatCharts,
-    positions: np.ndarray,
-    owner: np.ndarray,
-    points: np.ndarray,
-) -> None:
-    """Put solutions on the sheets of their charts in the place of those ``points`` (v,
-    n) above ``positions`` (v, 2) that belong to charts beside other sheets."""
-    corners = np.flatnonzero(~charts.are_clear[owner])
-    if not len(corners):
-        return
-    chart = owner[corners]
-    ends, are_reached = follow_sheets(
-        problem, charts.centers[chart], charts.bases[chart], positions[corners]
-    )
-    points[corners[are_reached]] = ends[are_reached]
+def _between(owner: np.ndarray, polygons: list[Polygon]) -> np.ndarray:
+    """The charts and bounds (v, 3), in order, that meet at the corners of polygons,
+    each of a chart (v,)."""
+    labels = [(polygon.labels, np.roll(polygon.labels, 1)) for polygon in polygons]
+    after, before = np.concatenate([np.empty((2, 0), dtype=int), *labels], axis=1)
+    between: np.ndarray = np.sort(np.stack([owner, after, before], axis=1), axis=1)
+    return between
 
 
 def _merge_corners(
@@ -209,49 +196,45 @@ def _merge_corners(
     one polygon or of two neighbours, are one."""
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
 
-    points, owner = corners
-    if not len(points):
-        return np.empty(0, dtype=int)
-    tree = cKDTree(
-        torus.into_box(points, problem.domain.periods),
-        boxsize=torus.tree_box(problem.domain.periods),
-    )
-    reach = MERGED * radii.max()
-    i, j = tree.query_pairs(reach, output_type="ndarray").T
+    points, owner = corners.points, corners.owner
+    count = len(points)
+    i, j = _corners_of_pairs(owner, len(radii), neighbours)
     gaps = problem.domain.difference(points[i], points[j])
     distance = np.linalg.norm(gaps, axis=1)
-    one, other = owner[i], owner[j]
-    near = distance < MERGED * np.minimum(radii[one], radii[other])
-    same = near & _are_adjacent(one, other, neighbours, len(radii))
-    i, j = i[same], j[same]
-    count = len(points)
+    distance /= np.minimum(radii[owner[i]], radii[owner[j]])
+    is_same = np.all(corners.between[i] == corners.between[j], axis=1)
+    is_one = (distance < MERGED) | (is_same & (distance < MERGED_OF_SAME))
+    i, j = i[is_one], j[is_one]
     graph = csr_array((np.ones(len(i)), (i, j)), shape=(count, count))
     vertex: np.ndarray = connected_components(graph, directed=False)[1]
     return vertex
 
 
-def _are_adjacent(
-    i: np.ndarray, j: np.ndarray, neighbours: np.ndarray, count: int
-) -> np.ndarray:
-    """Whether the charts ``i`` and ``j`` (k,), of ``count`` in all, are the same or
-    neighbours."""
-    # a pair of charts (low, high) as one number
-    low, high = np.minimum(i, j), np.maximum(i, j)
-    pairs = low * count + high
-    adjacent = neighbours[:, 0] * count + neighbours[:, 1]
-    same = np.arange(count) * (count + 1)
-    return np.isin(pairs, np.concatenate([adjacent, same]))
+def _corners_of_pairs(
+    owner: np.ndarray, count: int, neighbours: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Every two corners (p,) and (p,) of the same polygon or of two neighbours, of the
+    polygons of ``count`` charts to which they belong (v,)."""
+    sizes = np.bincount(owner, minlength=count)
+    first = np.cumsum(sizes) - sizes
+    place = np.arange(sizes.max(initial=0))
+    corner = np.where(place < sizes[:, None], first[:, None] + place, -1)
+    own = np.arange(count)
+    one = np.concatenate([own, neighbours[:, 0]])
+    other = np.concatenate([own, neighbours[:, 1]])
+    i, j = np.broadcast_arrays(corner[one][:, :, None], corner[other][:, None])
+    is_pair = (i >= 0) & (j > i)
+    return i[is_pair], j[is_pair]
 
 
-def _previous_vertex(vertex: np.ndarray, polygons: list[Polygon]) -> np.ndarray:
-    """The vertex (v,) before each corner, around its polygon."""
+def _next_vertex(vertex: np.ndarray, polygons: list[Polygon]) -> np.ndarray:
+    """The vertex (v,) after each corner, around its polygon."""
     sizes = _sizes(polygons)
     ends = np.cumsum(sizes)
-    previous = np.roll(vertex, 1)
-    previous[ends - sizes] = vertex[ends - 1]
-    return previous
+    following = np.roll(vertex, -1)
+    following[ends - 1] = vertex[ends - sizes]
+    return following
 
 
 def _sizes(polygons: list[Polygon]) -> np.ndarray:

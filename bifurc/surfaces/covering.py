@@ -15,6 +15,7 @@ both charts are cut along the same line up to fourth order.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum
 from typing import NamedTuple
@@ -30,12 +31,20 @@ from bifurc.numerics.null_spaces import (
     planes_next_to,
 )
 from bifurc.problem import Problem
+from bifurc.surfaces.area import Sizes, cell_sizes
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
-from bifurc.surfaces.complex import FlatCharts, Polygon, assemble_charts, octagon
+from bifurc.surfaces.complex import (
+    Cells,
+    fitted_cells,
+    neighbours_of,
+    without_empty_polygons,
+)
 from bifurc.surfaces.crossing_sheets import has_uncovered_crossing
 from bifurc.surfaces.disk import AGREE, BEND, Disk, TangentPlane, fitting_disk
 from bifurc.surfaces.other_sheets import solutions_across
+from bifurc.surfaces.polygon import BORDER, FlatCharts, Polygon, octagon
 from bifurc.surfaces.sheet import follow_sheets
+from bifurc.surfaces.singular_places import SingularPlaces
 
 # Largest height above a disk at which a solution lies in it, over the distance in its
 # plane; rounding is allowed for.
@@ -47,13 +56,18 @@ RIM = 1.1
 SMOOTH = 0.9
 # Radius of a chart, over that of the one from which it was made, at most.
 GROWTH = 1.4
-# Radius over the largest one below which no chart is made.
-SMALLEST = 1.0 / 64
+# Radius over the largest one below which no chart is made next to a singular point, and
+# how far from that, over this radius.
+SMALLEST, NEXT_TO = 1.0 / 64, 16.0
+# Radius over the scale below which no chart is made at all: the size of a neck.
+TINIEST = 1e-8
+# Radius of a chart that is too large among others, over what it was, how often that is
+# looked at, and the error of an area that is known well enough, over it.
+SMALLER, MENDING, WELL_KNOWN = 0.7, 4, 1e-7
 # Distance of a centre from another one, over the radius there, that is not worth a
 # chart.
 TOO_CLOSE = 0.2
-# Distance, over the largest radius, beyond which a centre was corrected onto another
-# sheet.
+# Distance, over the radius, beyond which a centre was corrected onto another sheet.
 TOO_FAR = 0.5
 # Relative residual above which a centre is no solution.
 SOLVED = 1e-10
@@ -66,8 +80,6 @@ ON_DISK, HOLE = 1e-9, 1e-3
 SAME = 1e-7
 # Pairs of charts of which it is not known whether they are on one sheet, at most.
 MOST_UNDECIDED = 20
-# Label of the edges along the bounds.
-BORDER = -2
 
 
 def cover_surface(
@@ -78,13 +90,15 @@ def cover_surface(
     charts: int = 2000,
     seconds: float = np.inf,
     atlas: ChartAtlas | None = None,
+    metric: np.ndarray | None = None,
 ) -> ChartAtlas:
     """Charts over the components of dimension 2 that the regular solutions ``seeds``
     (k, n) lie on.
 
     ``radius`` is the largest of a chart, in units of the problem's scale: they shrink
     where the surface bends. At most ``charts`` charts are made in at most ``seconds``;
-    those of an ``atlas``, of an earlier call, stay and are continued. Raises
+    those of an ``atlas``, of an earlier call, stay and are continued. Areas are taken
+    after the unknowns are multiplied by ``metric`` (n,), by 1 unless given. Raises
     `ProblemError` for seeds of a wrong shape and limits that are not positive.
     """
     seeds = np.asarray(seeds, dtype=float)
@@ -97,17 +111,64 @@ def cover_surface(
     cover = _Cover(problem, radius * problem.domain.scale)
     if atlas is not None:
         cover.add_all(atlas)
-    outcome = cover.grow(charts, deadline)
-    if outcome is Covering.COMPLETE:
-        outcome = cover.spread(seeds, charts, deadline)
-    while outcome is Covering.COMPLETE and cover.has_charts_to_look_from:
-        outcome = cover.spread(cover.look_across(), charts, deadline)
-    if outcome is Covering.COMPLETE:
-        outcome = cover.judge()
-    covering = assemble_charts(problem, cover.charts, outcome)
+    unit = np.ones(problem.n) if metric is None else metric
+    covering = _covering(cover, lambda: cover.finish(seeds, charts, deadline), unit)
     if covering.complete and has_uncovered_crossing(problem, covering, AGREE):
-        return replace(covering, outcome=Covering.SINGULAR)
+        return replace(covering, outcome=Covering.UNFIT)
     return covering
+
+
+def _covering(
+    cover: _Cover, finish: Callable[[], Covering], metric: np.ndarray
+) -> ChartAtlas:
+    """The charts that ``finish`` ends with, their polygons fitted together and measured
+    in ``metric`` (n,): where that does not go well they are made smaller first."""
+    outcome = finish()
+    flat, cells, sizes = _measured(cover, metric)
+    for _ in range(MENDING):
+        too_large = _too_large(flat, cells, sizes)
+        if outcome is not Covering.COMPLETE or not len(too_large):
+            break
+        cover.shrink(flat, too_large)
+        outcome = finish()
+        flat, cells, sizes = _measured(cover, metric)
+    does_not_fit = np.any(cells.misfits()) or np.any(sizes.outside)
+    if outcome is Covering.COMPLETE and does_not_fit:
+        outcome = Covering.MISFIT
+    return ChartAtlas(
+        centers=flat.centers,
+        bases=flat.bases,
+        radii=flat.radii,
+        neighbours=neighbours_of(flat.polygons),
+        vertices=cells.vertices,
+        polygons=cells.begin,
+        polygon_sizes=np.bincount(cells.chart, minlength=len(flat.radii)),
+        areas=sizes.areas,
+        area_errors=sizes.errors,
+        periods=cover.problem.domain.periods,
+        outcome=outcome,
+    )
+
+
+def _measured(cover: _Cover, metric: np.ndarray) -> tuple[FlatCharts, Cells, Sizes]:
+    """The charts, their polygons fitted together, and the sizes of these."""
+    flat, cells = cover.cells()
+    return flat, cells, cell_sizes(cover.problem, flat, cells, metric)
+
+
+def _too_large(charts: FlatCharts, cells: Cells, sizes: Sizes) -> np.ndarray:
+    """Numbers (k,) of the charts that are larger than others where polygons do not fit
+    together; where they do, of those whose areas are not known well enough."""
+    misfits = cells.misfits()
+    if not np.any(misfits):
+        share = sizes.errors / max(sizes.areas.sum(), 1e-300)
+        is_large = (share.sum() > WELL_KNOWN) & (share > WELL_KNOWN / len(share))
+        return np.flatnonzero(is_large | (sizes.outside != 0.0))
+    numbers = set()
+    for vertex in np.unique(cells.begin[misfits]):
+        about = cells.chart[cells.begin == vertex]
+        numbers.add(int(about[np.argmax(charts.radii[about])]))
+    return np.array(sorted(numbers))
 
 
 class Placement(Enum):
@@ -143,8 +204,16 @@ class _Cover:
     whose polygons may be open."""
 
     def __init__(self, problem: Problem, largest: float):
-        self._problem = problem
+        self.problem = problem
         self._largest = largest  # radius of a chart
+        # how many pairs of charts could not be told to be on one sheet or on two
+        self._undecided = 0
+        self._singular_places = SingularPlaces(problem)
+        self._forget_charts()
+
+    def _forget_charts(self) -> None:
+        """Begin without charts."""
+        problem = self.problem
         self._centers = np.empty((0, problem.n))
         self._bases = np.empty((0, problem.n, 2))
         self._radii = np.empty(0)
@@ -158,19 +227,28 @@ class _Cover:
         self._open: deque[int] = deque()
         # number of charts from which other sheets have been looked for
         self._looked_from = 0
-        # how many pairs of charts could not be told to be on one sheet or on two
-        self._undecided = 0
 
-    @property
-    def charts(self) -> FlatCharts:
-        """The charts made so far."""
-        return FlatCharts(
+    def cells(self) -> tuple[FlatCharts, Cells]:
+        """The charts made so far but for those of whose polygons the others leave
+        nothing, and their polygons fitted together."""
+        charts = FlatCharts(
             centers=self._centers,
             bases=self._bases,
             radii=self._radii,
             are_clear=self._are_clear,
             polygons=self._polygons,
         )
+        charts = without_empty_polygons(charts)
+        return charts, fitted_cells(self.problem, charts)
+
+    def shrink(self, charts: FlatCharts, too_large: np.ndarray) -> None:
+        """Make the charts of these numbers (k,) smaller, and cut all polygons anew."""
+        radii = charts.radii.copy()
+        radii[too_large] *= SMALLER
+        self._forget_charts()
+        for i, radius in enumerate(radii.tolist()):
+            disk = Disk(radius, bool(charts.are_clear[i]))
+            self.add(charts.centers[i], charts.bases[i], disk)
 
     @property
     def has_charts_to_look_from(self) -> bool:
@@ -187,9 +265,7 @@ class _Cover:
         is_open = ~is_clear & ~are_covered[point]
         point, chart, y = point[is_open], chart[is_open], y[is_open]
         planes = self._bases[chart]
-        ends, are_reached = follow_sheets(
-            self._problem, self._centers[chart], planes, y
-        )
+        ends, are_reached = follow_sheets(self.problem, self._centers[chart], planes, y)
         on_sheet = ~are_reached | self._are_same(ends, points[point], planes)
         are_covered[point[on_sheet]] = True
         return are_covered
@@ -199,7 +275,7 @@ class _Cover:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Numbers (p,) of solutions (k, n), and of charts (p,) in whose disks they lie or
         little above them, with the positions (p, 2) there."""
-        offset = self._problem.domain.difference(points[:, None], self._centers)
+        offset = self.problem.domain.difference(points[:, None], self._centers)
         distance = np.linalg.norm(offset, axis=2)
         point, chart = np.nonzero(distance < RIM * self._radii)
         offset = offset[point, chart]
@@ -215,14 +291,23 @@ class _Cover:
         """Whether the ends (k, n) of rays in ``planes`` (k, n, 2) are solutions (k, n)
         or (n,). Off the surface redundant equations contradict one another, and their
         least squares move an end a little along it."""
-        gaps = self._problem.domain.difference(points, ends)
+        gaps = self.problem.domain.difference(points, ends)
         along = np.einsum("kij,ki->kj", planes, gaps)
         across = gaps - np.einsum("kij,kj->ki", planes, along)
-        moved = np.linalg.norm(along, axis=1) + SAME * self._problem.domain.scale
+        moved = np.linalg.norm(along, axis=1) + SAME * self.problem.domain.scale
         same: np.ndarray = np.linalg.norm(across, axis=1) < moved
         return same
 
     # --- growing ----------------------------------------------------------------------
+
+    def finish(self, seeds: np.ndarray, charts: int, deadline: Deadline) -> Covering:
+        """Cover the surfaces of solutions (k, n), and those next to them."""
+        outcome = self.grow(charts, deadline)
+        if outcome is Covering.COMPLETE:
+            outcome = self.spread(seeds, charts, deadline)
+        while outcome is Covering.COMPLETE and self.has_charts_to_look_from:
+            outcome = self.spread(self.look_across(), charts, deadline)
+        return self.judge() if outcome is Covering.COMPLETE else outcome
 
     def spread(self, seeds: np.ndarray, charts: int, deadline: Deadline) -> Covering:
         """Cover the surfaces of those of the regular solutions (k, n) that lie in no
@@ -238,7 +323,7 @@ class _Cover:
 
     def _start(self, seed: np.ndarray) -> Placement:
         """Make the first chart of a surface about a regular solution (n,)."""
-        _, right = null_spaces(self._problem, seed[None])
+        _, right = null_spaces(self.problem, seed[None])
         plane = right[0, -2:].T
         placement = self._make(seed, plane, self._largest)
         if placement is Placement.UNFIT:
@@ -251,7 +336,7 @@ class _Cover:
         first, self._looked_from = self._looked_from, len(self._radii)
         charts = first + np.flatnonzero(~self._are_clear[first:])
         return solutions_across(
-            self._problem,
+            self.problem,
             self._centers[charts],
             self._bases[charts],
             self._radii[charts],
@@ -283,12 +368,28 @@ class _Cover:
     def judge(self) -> Covering:
         """What is known when no more charts are wanted: places at which none fits may
         still be uncovered by the charts next to them."""
-        if any(self._is_hole(place) for place in self._unfit_places):
-            return Covering.SINGULAR
-        seeds = np.array(self._unfit_seeds).reshape(-1, self._problem.n)
-        if not np.all(self.are_covered(seeds)):
-            return Covering.SINGULAR
-        return Covering.UNDECIDED if self._undecided else Covering.COMPLETE
+        seeds = np.array(self._unfit_seeds).reshape(-1, self.problem.n)
+        holes = list(seeds[~self.are_covered(seeds)])
+        holes += [self._above(p) for p in self._unfit_places if self._is_hole(p)]
+        if not all(self._has_a_reason(hole) for hole in holes):
+            return Covering.UNFIT
+        if self._undecided:
+            return Covering.UNDECIDED
+        return Covering.SINGULAR if holes else Covering.COMPLETE
+
+    def _above(self, place: _UnfitPlace) -> np.ndarray:
+        """Where on the rim of a chart (n,) no other one fits."""
+        i, direction = place
+        above: np.ndarray = (
+            self._centers[i] + self._radii[i] * self._bases[i] @ direction
+        )
+        return above
+
+    def _has_a_reason(self, hole: np.ndarray) -> bool:
+        """Whether an isolated singular point lies next to a place (n,)."""
+        reach = NEXT_TO * SMALLEST * self._largest
+        place = self._singular_places.next_to(hole, reach)
+        return place is not None and not place.is_on_curve
 
     def _is_hole(self, place: _UnfitPlace) -> bool:
         """Whether the polygon of a chart has a vertex outside the disk there."""
@@ -317,40 +418,47 @@ class _Cover:
         basis, radius = self._bases[i], self._radii[i]
         start = self._centers[i] + radius * basis @ direction
         if self._are_clear[i]:
-            centers, gaps = correct_normal(self._problem, start[None], basis[None])
+            centers, gaps = correct_normal(self.problem, start[None], basis[None])
             is_there = gaps[0] < SOLVED
         else:
             rim = (radius * direction)[None]
             centers, are_reached = follow_sheets(
-                self._problem, self._centers[i][None], basis[None], rim
+                self.problem, self._centers[i][None], basis[None], rim
             )
             is_there = are_reached[0]
         distance = np.linalg.norm(centers[0] - start)
-        if not is_there or distance > TOO_FAR * self._largest:
+        if not is_there or distance > TOO_FAR * radius:
             return Placement.UNFIT
         return self._make(centers[0], basis, GROWTH * radius)
 
     def _make(self, center: np.ndarray, basis: np.ndarray, radius: float) -> Placement:
         """Make the chart, of at most ``radius``, about a solution (n,) with a tangent
         plane next to ``basis``."""
-        sigma, right = null_spaces(self._problem, center[None])
+        sigma, right = null_spaces(self.problem, center[None])
         plane = planes_next_to(sigma, right, basis)[0]
         if cosines_between_planes(basis, plane)[-1] < SMOOTH:
             return Placement.UNFIT
         if self._is_close_to_a_center(center, plane):
             return Placement.COVERED
         # without equations across it there is no other sheet
-        normal = right[0, -3] if self._problem.n > 2 else np.zeros(self._problem.n)
-        disk = fitting_disk(
-            self._problem,
-            TangentPlane(center, plane, normal),
-            largest=min(radius, self._largest),
-            smallest=SMALLEST * self._largest,
-        )
+        normal = right[0, -3] if self.problem.n > 2 else np.zeros(self.problem.n)
+        disk = self._disk(TangentPlane(center, plane, normal), radius)
         if disk is None:
             return Placement.UNFIT
         self.add(center, plane, disk)
         return Placement.MADE
+
+    def _disk(self, plane: TangentPlane, radius: float) -> Disk | None:
+        """The disk of a chart, of at most ``radius``: a small one only where no
+        singular point is the reason, as in a neck."""
+        small = SMALLEST * self._largest
+        disk = fitting_disk(self.problem, plane, min(radius, self._largest), small)
+        if disk is not None:
+            return disk
+        if self._singular_places.next_to(plane.center, NEXT_TO * small) is not None:
+            return None
+        tiniest = TINIEST * self.problem.domain.scale
+        return fitting_disk(self.problem, plane, min(radius, small), tiniest)
 
     def _is_close_to_a_center(self, center: np.ndarray, basis: np.ndarray) -> bool:
         """Whether a chart about ``center`` (n,) would be close to another one."""
@@ -391,14 +499,16 @@ class _Cover:
     ) -> Polygon:
         """The part of a polygon about ``center`` (n,) inside the bounds. What lies
         outside by rounding is not cut off: a surface may run in a bound."""
-        domain = self._problem.domain
+        domain = self.problem.domain
         low, high = domain.bounds.T
-        for sign, rooms in ((-1.0, center - low), (1.0, high - center)):
+        for side, rooms in enumerate((center - low, high - center)):
+            sign = 2.0 * side - 1.0
             for k in np.flatnonzero(np.isfinite(rooms)):
                 normal, room = sign * basis[k], max(rooms[k], 0.0)
                 farthest = (polygon.vertices @ normal).max(initial=0.0)
                 if farthest > room + domain.slack:
-                    polygon = polygon.clip(normal, room, BORDER)
+                    label = BORDER - 2 * int(k) - side
+                    polygon = polygon.clip(normal, room, label)
         return polygon
 
     def _cut_by_chart(
@@ -406,7 +516,7 @@ class _Cover:
     ) -> None:
         """Cut polygon i where its disk intersects the one about ``center`` (n,)."""
         basis = self._bases[i]
-        offset = self._problem.domain.difference(center, self._centers[i])
+        offset = self.problem.domain.difference(center, self._centers[i])
         x = basis.T @ offset
         height = float(np.linalg.norm(offset - basis @ x))
         polygon = self._polygons[i]
@@ -417,7 +527,7 @@ class _Cover:
         self, center: np.ndarray, basis: np.ndarray, radius: float
     ) -> _Overlaps:
         """The charts that overlap a disk about ``center`` (n,), or lie above it."""
-        offset = self._problem.domain.difference(self._centers, center)
+        offset = self.problem.domain.difference(self._centers, center)
         distance = np.linalg.norm(offset, axis=1)
         near = np.flatnonzero(distance < radius + self._radii)
         x = offset[near] @ basis
@@ -442,7 +552,7 @@ class _Cover:
         starts = np.tile(center, (len(numbers), 1))
         planes = np.tile(basis, (len(numbers), 1, 1))
         ends, are_reached = follow_sheets(
-            self._problem, starts, planes, near.positions[is_open]
+            self.problem, starts, planes, near.positions[is_open]
         )
         is_same = self._are_same(ends, self._centers[numbers], planes)
         self._undecided += int(np.count_nonzero(~are_reached))

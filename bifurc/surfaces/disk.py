@@ -12,6 +12,7 @@ from bifurc.numerics.corrector import normal_corrections
 from bifurc.numerics.null_spaces import cosines_between_planes, tangent_planes
 from bifurc.problem import Problem
 from bifurc.surfaces.sheet import follow_sheets
+from bifurc.system import relative_jacobians
 
 # Largest height of the surface above a disk, over its radius.
 BEND = 0.12
@@ -24,6 +25,9 @@ SOLVED = 1e-9
 # near, the second step of Newton's method from there, over the first, and the distance
 # of where it ends from the centre, over that of where it begins, are smaller than these.
 ASIDE, CONTRACTION, BACK = 0.2, 0.25, 0.3
+# Change of F' across the plane up to the rim, over F', below which no sheet crosses in
+# the disk, and singular values, over the largest, that are taken for zero there.
+STEADY, NEGLIGIBLE = 0.5, 1e-12
 
 RIM = unit_vectors(np.pi / 4 * np.arange(8))
 
@@ -91,4 +95,17 @@ def _straight_above(
     is_back = np.all(distance <= BACK * np.linalg.norm(aside))
     is_direct = np.all(corrected.contractions < CONTRACTION)
     is_solved = corrected.gaps[:-2].max() < SOLVED
-    return corrected.points[:-2], bool(is_back and is_direct and is_solved)
+    points = corrected.points[:-2]
+    is_clear = (
+        is_back and is_direct and is_solved and _is_steady(problem, plane, points)
+    )
+    return points, bool(is_clear)
+
+
+def _is_steady(problem: Problem, plane: TangentPlane, points: np.ndarray) -> bool:
+    """Whether F' across the plane is at all ``points`` (k, n) much what it is at the
+    centre: where another sheet crosses it changes its sign."""
+    about = relative_jacobians(problem, np.concatenate([plane.center[None], points]))
+    across = about - about @ plane.basis @ plane.basis.T
+    changes = np.linalg.pinv(across[0], rcond=NEGLIGIBLE) @ (across[1:] - across[0])
+    return bool(np.linalg.norm(changes, ord=2, axis=(1, 2)).max() < STEADY)

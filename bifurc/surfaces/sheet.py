@@ -33,6 +33,7 @@ SOLVED = 1e-9
 STEEP = 0.3
 # Shortest step along a ray, over its length, and how many are tried.
 SHORTEST, STEPS = 5e-4, 60
+NOWHERE = np.empty(0)
 
 
 class Nodes(NamedTuple):
@@ -109,17 +110,35 @@ def follow_sheets(
     not reached stays at the last place that was.
     """
     rays = _Rays(problem, centers, planes, positions)
-    for _ in range(STEPS):
-        some = np.flatnonzero((rays.at.t < 1.0) & (rays.steps >= SHORTEST))
-        if not len(some):
-            break
-        rays.step(some)
+    rays.run()
     return rays.at.points, rays.at.t >= 1.0
 
 
+def follow_along(
+    problem: Problem,
+    centers: np.ndarray,
+    planes: np.ndarray,
+    positions: np.ndarray,
+    shares: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Solutions (k, s, n) on the way to ``positions`` (k, 2), at ``shares`` (s,) of
+    it, as by `follow_sheets`, and whether they are on the sheet (k, s): where the way is
+    lost, and right beside another sheet, they may be on that."""
+    rays = _Rays(problem, centers, planes, positions, shares)
+    rays.run()
+    starts = rays.passed.reshape(-1, problem.n)
+    corrected = normal_corrections(problem, starts, np.repeat(planes, len(shares), 0))
+    is_there = corrected.are_settled(problem) & (corrected.gaps < SOLVED)
+    is_there &= corrected.contractions < CONTRACTION
+    is_there = is_there.reshape(rays.passed.shape[:2])
+    is_there &= rays.at.t[:, None] >= shares
+    return corrected.points.reshape(rays.passed.shape), is_there
+
+
 class _Rays:
-    """Rays on the way: ``at`` the last nodes reached, the ``before`` them, and the
-    ``steps`` (k,) that are tried next, as shares of the rays."""
+    """Rays on the way: ``at`` the last nodes reached, the ``before`` them, the
+    ``steps`` (k,) that are tried next, as shares of the rays, and where they ``passed``
+    (k, s, n) at ``shares`` (s,) of their lengths, by the cubics."""
 
     def __init__(
         self,
@@ -127,6 +146,7 @@ class _Rays:
         centers: np.ndarray,
         planes: np.ndarray,
         positions: np.ndarray,
+        shares: np.ndarray = NOWHERE,
     ):
         self.problem = problem
         self.centers = centers
@@ -137,6 +157,16 @@ class _Rays:
         self.at = Nodes(np.zeros(count), centers.copy(), slopes.copy())
         self.before = Nodes(np.full(count, -1.0), centers - slopes, slopes.copy())
         self.steps = np.ones(count)
+        self.shares = shares
+        self.passed = centers[:, None] + shares[:, None] * slopes[:, None]
+
+    def run(self) -> None:
+        """Follow all rays as far as they go."""
+        for _ in range(STEPS):
+            some = np.flatnonzero((self.at.t < 1.0) & (self.steps >= SHORTEST))
+            if not len(some):
+                break
+            self.step(some)
 
     def step(self, rays: np.ndarray) -> None:
         """One step of the rays of these numbers, or a shorter one to try where that
@@ -153,12 +183,20 @@ class _Rays:
         is_taken[some] = are_arcs(
             self.problem, planes[some], begin.part(some), end.part(some)
         )
-        self.before.put(rays[is_taken], begin.part(is_taken))
-        self.at.put(rays[is_taken], end.part(is_taken))
+        self._reach(rays[is_taken], begin.part(is_taken), end.part(is_taken))
         # a cubic is off by the fourth power of the step
         room = CONTRACTION / 2 / np.maximum(corrected.contractions, 1e-300)
         growth = np.clip(np.sqrt(np.sqrt(room)), 0.5, 2.0)
         self.steps[rays] *= np.where(is_taken, growth, 0.5)
+
+    def _reach(self, rays: np.ndarray, begin: Nodes, end: Nodes) -> None:
+        """Note that rays went from one node to the next, and where they passed."""
+        self.before.put(rays, begin)
+        self.at.put(rays, end)
+        is_between = (begin.t[:, None] < self.shares) & (self.shares <= end.t[:, None])
+        ray, share = np.nonzero(is_between)
+        points = on_cubic(begin.part(ray), end.part(ray), self.shares[share])
+        self.passed[rays[ray], share] = points
 
     def _ahead(self, rays: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Where the cubics through the last two nodes lead (k, n)."""

@@ -43,6 +43,10 @@ from bifurc.surfaces.chart_atlas import Covering
 from bifurc.system import relative_gaps
 
 RIM = 1e-4  # scales from a rim at which starts end where F vanishes slowly towards it
+COVERING_DOUBTS = {
+    Covering.UNDECIDED: SearchDoubt.SHEETS_TOGETHER,
+    Covering.UNFIT: SearchDoubt.HOLES,
+}
 MOST_SAMPLES = 200  # of a surface at which it is seen what it misses
 
 
@@ -97,8 +101,8 @@ def _doubts_of_covering(surfaces: Sequence[Surface]) -> Iterator[Doubt]:
         yield SearchDoubt.CHARTS_RAN_OUT.doubt(starts=starts)
     for surface in surfaces:
         charts = surface.charts
-        if charts is not None and charts.outcome is Covering.UNDECIDED:
-            yield SearchDoubt.SHEETS_TOGETHER.doubt(surface.name)
+        if charts is not None and charts.outcome in COVERING_DOUBTS:
+            yield COVERING_DOUBTS[charts.outcome].doubt(surface.name)
 
 
 def doubts_of_near_misses(problem: Problem, misses: Sequence[Event]) -> Iterator[Doubt]:

@@ -139,6 +139,8 @@ def two_charts(periods: np.ndarray) -> ChartAtlas:
         vertices=np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]),
         polygons=np.array([0, 1, 2, 1, 3, 2]),
         polygon_sizes=np.array([3, 3]),
+        areas=np.array([0.5, 0.75]),
+        area_errors=np.array([1e-9, 0.125]),
         periods=periods,
         outcome=Covering.CHART_LIMIT,
     )

@@ -129,7 +129,7 @@ def test_a_file_of_an_older_layout_is_refused_with_both_versions(
     dataset.attrs["format_version"] = 1
     dataset.to_netcdf(tmp_path / "old.nc")
     with pytest.raises(
-        AtlasFileError, match=r"old\.nc: its format version is 1; this release reads 10"
+        AtlasFileError, match=r"old\.nc: its format version is 1; this release reads 11"
     ):
         load_atlas(tmp_path / "old.nc")
 

@@ -156,3 +156,16 @@ def test_a_surface_with_a_lower_rank_everywhere_is_one_and_no_heap_of_points():
         assert not atlas.points
         notes = [surface.note for surface in atlas.surfaces]
         assert sorted(notes) == ["", "F' has a lower rank all over it"]
+
+
+@pytest.mark.parametrize(("gap", "is_in_doubt"), [(1e-7, True), (0.0, False)])
+def test_sheets_nearer_than_doubles_tell_apart_are_in_doubt_and_double_ones_are_not(
+    gap: float, is_in_doubt: bool
+) -> None:
+    def two(u: np.ndarray) -> np.ndarray:
+        return np.array([(u[2] - 0.3 * u[0] ** 2) * (u[2] - 0.3 * u[0] ** 2 - gap)])
+
+    problem = FunctionProblem(two, [(-1, 1)] * 3)
+    atlas = explore(problem, settings=SearchSettings(starts=20))
+    assert len(atlas.surfaces) == 1
+    assert atlas.completeness.is_in_doubt is is_in_doubt

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bifurc.surfaces.complex import OUTLINE, Polygon, octagon
+from bifurc.surfaces.polygon import OUTLINE, Polygon, octagon
 
 RIGHT = np.array([1.0, 0.0])
 
