@@ -32,7 +32,6 @@ from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
 from bifurc.singular.point import SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
-from bifurc.surfaces.covering import cover_surface
 from bifurc.surfaces.crossing_sheets import is_on_singular_curve
 from bifurc.surfaces.geodesic import entrances
 from bifurc.surfaces.walk import reached_charts
@@ -158,6 +157,8 @@ def cover_components(
     # what assembles the charts at the end is imported before: an import is not cut off
     import scipy.sparse.csgraph
     import scipy.spatial  # noqa: F401
+
+    from bifurc.surfaces.covering import cover_surface
 
     seconds = deadline.left
     if not seconds:

@@ -101,10 +101,10 @@ def isolated_solutions(
 
 
 def _system_of(problem: FunctionProblem) -> PolynomialSystem | None:
-    """The equations as polynomials, as many as unknowns."""
+    """The equations as polynomials, as many as coordinates."""
     tape = problem.recording.tape
     has_own = type(problem).residuals is not FunctionProblem.residuals
-    if tape is None or tape.m != tape.n or has_own:
+    if tape is None or has_own:
         return None
     system = polynomial_system(tape, simplest_ratio)
     is_circle = np.isfinite(problem.domain.periods)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -35,7 +35,6 @@ from bifurc.search.components import (
     singular_points_of,
 )
 from bifurc.search.findings import Findings, Run
-from bifurc.search.isolated import IsolatedSolutions, isolated_solutions
 from bifurc.search.near_motion_search import NearMotionSearch
 from bifurc.search.own_units.unit_problem import UnitProblem
 from bifurc.search.point_search import BRANCH_REACH, SEED_REACH, PointSearch
@@ -60,6 +59,9 @@ from bifurc.settings import SearchSettings
 from bifurc.singular.classify import classify_from_nearby
 from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.point import Kind
+
+if TYPE_CHECKING:
+    from bifurc.search.isolated import IsolatedSolutions
 
 log = logging.getLogger(__name__)
 
@@ -423,6 +425,11 @@ class Search:
         is_asked = settings.paths > 0 and self.findings.book.seeds.audit is None
         if not is_asked or self.run.is_over or not isinstance(users, FunctionProblem):
             return None
+        tape = users.recording.tape
+        if tape is None or tape.m != tape.n:
+            return None
+        from bifurc.search.isolated import isolated_solutions  # few searches need it
+
         return isolated_solutions(users, settings.paths, self.run.deadline)
 
     def audit_in_boxes(self) -> Starts:

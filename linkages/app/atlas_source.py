@@ -21,7 +21,6 @@ from linkages.subject import Subject, as_subject, subject_at
 if TYPE_CHECKING:
     from bifurc.routes.route import Route
     from bifurc.routes.wishes import Wishes
-    from bifurc.systems.equation_file import EquationSystem
     from linkages.mechanisms.mechanism import Mechanism
 
 
@@ -36,13 +35,6 @@ def explore_linkage(linkage: Linkage | Mechanism, search: SearchOptions) -> Atla
         return map_linkage(
             linkage, settings=settings, seed=search.seed, progress=status
         )
-
-
-def explore_system(system: EquationSystem, search: SearchOptions) -> Atlas:
-    """The atlas of a system of equations; progress is shown on standard error."""
-    settings = search.settings()
-    with StatusLine() as status:
-        return system.explore(settings=settings, seed=search.seed, progress=status)
 
 
 def explore_parts(

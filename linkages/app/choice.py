@@ -116,23 +116,6 @@ def read_parameters(
     return _read_values(texts, "--param", lambda name: name in angles)
 
 
-def read_constants(texts: Sequence[str]) -> dict[str, float]:
-    """The constants of equations in "key=value"; raises `CommandError`."""
-    values = {}
-    for text in texts:
-        key, equals, number = text.partition("=")
-        try:
-            value = float(number)
-        except ValueError:
-            equals = ""
-        if not equals or not key.strip():
-            raise CommandError(f"--param {text}: it must be KEY=NUMBER")
-        if key.strip() in values:
-            raise CommandError(f"--param {text}: {key.strip()} is given twice")
-        values[key.strip()] = value
-    return values
-
-
 def _read_values(
     texts: Sequence[str], option: str, is_angle: Callable[[str], bool]
 ) -> dict[str, float]:

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from bifurc.systems.equation_file import holds_equations, read_equations
-from linkages.app.choice import read_constants, read_number, read_parameters
+from linkages.app.choice import read_number, read_parameters
+from linkages.app.equation_source import read_constants
 from linkages.app.exit_codes import CommandError
 from linkages.catalogue import entry
 from linkages.entry import (

@@ -55,6 +55,30 @@ assert result.exit_code == 0, result.output
     assert not modules_imported_by(statement) & heavy
 
 
+def test_equations_are_solved_without_anything_of_linkages(tmp_path):
+    path = tmp_path / "circle.toml"
+    path.write_text(
+        'equations = ["x^2 + y^2 = 1"]\n[unknowns]\nx = [-2, 2]\ny = [-2, 2]'
+    )
+    code = f"""
+from click.testing import CliRunner
+from linkages.app.cli import main
+result = CliRunner().invoke(main, ["solve", {str(path)!r}])
+assert result.exit_code == 0, result.output
+import sys
+print(*sys.modules)
+"""
+    run = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    loaded = {name for name in run.stdout.split() if name.startswith("linkages.")}
+    assert {name.split(".")[1] for name in loaded} == {"app"}
+
+
 def test_loading_a_linkage_needs_no_symbols_figures_or_datasets():
     statement = "import linkages; linkages.load('bennett')"
     assert not modules_imported_by(statement) & {"sympy", "matplotlib", "xarray"}

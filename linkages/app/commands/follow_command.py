@@ -99,11 +99,8 @@ def _atlas_of(
     atlas of the member from which they move."""
     from bifurc.systems.equation_file import holds_equations
     from bifurc.systems.verdict import verdict_of
-    from linkages.app.atlas_source import (
-        explore_linkage,
-        explore_system,
-        require_uninterrupted,
-    )
+    from linkages.app.atlas_source import explore_linkage, require_uninterrupted
+    from linkages.app.equation_source import explore_system
     from linkages.app.parameter_ranges import choose_equations, choose_members
     from linkages.linkage import is_linkage_file
 

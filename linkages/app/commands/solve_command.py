@@ -89,7 +89,7 @@ def solve_command(
     from bifurc.systems.summary import make_summary
     from bifurc.systems.verdict import verdict_of
     from linkages.app import output
-    from linkages.app.atlas_source import explore_system
+    from linkages.app.equation_source import explore_system
 
     system = _system_of(equations, parameters, axes)
     output.require_out(out)
@@ -151,7 +151,7 @@ def _system_of(
     """The system of a file, of which the ``axes`` of a diagram show something; raises
     `EquationFileError`, and `CommandError` for what is a linkage."""
     from bifurc.systems.equation_file import EquationFileError, read_equations
-    from linkages.app.choice import read_constants
+    from linkages.app.equation_source import read_constants
 
     values = read_constants(parameters)
     try:

@@ -9,11 +9,8 @@ from pathlib import Path
 from bifurc.atlas import Atlas
 from bifurc.completeness import Level
 from bifurc.errors import RouteError
-from linkages.app.answer.verdict import judge, rounding_of
 from linkages.app.exit_codes import ExitCode
 from linkages.app.options import AtlasOptions, HoldOptions
-from linkages.subject import subject_at
-from linkages.values import GeometryError
 
 LONGER = 10  # times a budget that was not enough
 MORE_STARTS = 2000  # random ones, where the usual number has met no curve
@@ -122,6 +119,11 @@ def _drawings(chosen: str) -> list[str]:
 
 def _about_the_table(atlas: Atlas, chosen: str, has_files: bool) -> list[str]:
     """Where nothing moves: to find what a table is meant to be."""
+    # equations need none of these
+    from linkages.app.answer.verdict import judge, rounding_of
+    from linkages.subject import subject_at
+    from linkages.values import GeometryError
+
     if judge(atlas).code is not ExitCode.DOES_NOT_MOVE:
         return []
     try:
