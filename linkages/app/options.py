@@ -331,6 +331,14 @@ form_option = click.option(
     metavar="FORM",
     help="A form, by its name or its number in the summary.  [default: every form]",
 )
+trace_option = click.option(
+    "--trace",
+    "trace",
+    multiple=True,
+    metavar="BODY:X,Y[,Z]",
+    help="The path of a point of a body, in the coordinates of the file; may be given "
+    "several times.",
+)
 param_option = click.option(
     "--param",
     "parameters",

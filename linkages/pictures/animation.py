@@ -15,6 +15,7 @@ from bifurc.atlas import Atlas
 from bifurc.errors import BifurcError
 from bifurc.figures.rc import drawing_style
 from linkages.export.model import Motion
+from linkages.links.traced_points import traced_point
 from linkages.pictures.picture import Painter
 from linkages.pictures.plot_linkage import draw_picture
 from linkages.subject import subject_at
@@ -53,19 +54,26 @@ def _installed_ffmpeg(path: Path) -> str:
 
 
 def write_animation(
-    atlas: Atlas, motions: Sequence[Motion], size: tuple[float, float], path: Path
+    atlas: Atlas,
+    motions: Sequence[Motion],
+    size: tuple[float, float],
+    path: Path,
+    trace: Sequence[str] = (),
 ) -> None:
     """Write the linkage of an atlas along motions, one after another, one picture for
-    each of their configurations, of a size in inches; raises `NoWriterError` and
-    `OSError`.
+    each of their configurations, of a size in inches, with the paths of the points of a
+    ``trace``; raises `NoWriterError`, `OSError`, and `GeometryError` for a point of no
+    body.
 
     It is seen from where the configuration is clear whose joints are farthest from one
     line, and all of the motions are within the picture.
     """
     points = np.concatenate([motion.configurations for motion in motions])
-    parts = subject_at(atlas).parts
+    subject = subject_at(atlas)
+    parts = subject.flat_parts if trace else subject.parts
     first = points[clearest(parts.breadths(points))]
-    painter = Painter(parts, first, points)
+    traced = [traced_point(parts, text) for text in trace]
+    painter = Painter(parts, first, points, traced)
     pictures = [painter.picture(point) for point in points]
     corners = np.array([picture.corners for picture in pictures])
     frame = np.array([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)])

@@ -8,6 +8,7 @@ with the field's symbols for ground, pins and sliders; others from where the pag
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
@@ -15,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linkages.links.parts import Parts, Symbol
+from linkages.links.traced_points import TracedPoint, traced_path
 from linkages.mechanisms.joint import Shape
 from linkages.scene import View
 
@@ -30,6 +32,8 @@ HATCH = 0.7  # length and distance of the strokes that are the ground, in radii
 END_ON = 1e-6  # of an axis: less is seen of one that points at the eye
 NOTHING = 1e-9  # of the size of the linkage: a line that is none
 ROUND = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 13)  # half of a circle
+CIRCLE = np.stack([np.cos(2.0 * ROUND), np.sin(2.0 * ROUND)], axis=1)
+DOT = 0.5  # of a traced point, in the radius of a joint
 
 
 class Part(Enum):
@@ -42,6 +46,7 @@ class Part(Enum):
     AXIS = "axis"
     JOINT = "joint"
     GROUND = "ground"
+    PATH = "path"
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,9 +84,15 @@ class Picture:
 class Painter:
     """Makes pictures of some parts, all from one side: from where that of the
     configuration ``first`` (n,) is clear, with rails as long as slides are used at
-    ``points`` (k, n)."""
+    ``points`` (k, n), and the paths there of ``traced`` points."""
 
-    def __init__(self, parts: Parts, first: np.ndarray, points: np.ndarray):
+    def __init__(
+        self,
+        parts: Parts,
+        first: np.ndarray,
+        points: np.ndarray,
+        traced: Sequence[TracedPoint] = (),
+    ):
         self._parts = parts
         self._lines = parts.lines(points)
         normal = parts.normal
@@ -94,6 +105,9 @@ class Painter:
         distances = np.linalg.norm(np.array(seats) - seats[0], axis=1)
         self._size = float(distances.max(initial=0.0)) or parts.size
         self._radius = RADIUS * self._size
+        self._traced = traced
+        paths = [self._seen(traced_path(parts, one, points)) for one in traced]
+        self._paths = [Stroke(Part.PATH, path[:, :2], -np.inf) for path in paths]
 
     def picture(self, point: np.ndarray) -> Picture:
         """The picture of a configuration (n,)."""
@@ -107,6 +121,12 @@ class Painter:
             text = symbol.name.removeprefix("joint ").removeprefix("joint")
             if text:
                 names.append(Name(text, self._seen(symbol.place)[:2]))
+        for one in self._traced:
+            (seen,) = self._seen(traced_path(self._parts, one, point[None]))
+            ring = seen[:2] + DOT * self._radius * CIRCLE
+            strokes.append(Stroke(Part.JOINT, ring, np.inf, closed=True))
+            names.append(Name(one.name, seen[:2]))
+        strokes += self._paths
         strokes.sort(key=lambda stroke: (stroke.part is Part.JOINT, stroke.depth))
         return Picture(strokes, names)
 
@@ -207,7 +227,7 @@ def _outline(shape: Shape, direction: np.ndarray) -> np.ndarray:
     """What is seen (k, 2) of a shape of radius 1 whose axis is a unit vector (3,), to
     the right, upwards and towards the eye."""
     if shape is Shape.BALL:
-        return BALL * np.concatenate([_arc(0.0, 1.0), _arc(np.pi, 1.0)])
+        return BALL * CIRCLE
     seen = float(np.hypot(direction[0], direction[1]))
     end_on = abs(float(direction[2]))
     turn = np.arctan2(direction[1], direction[0]) if seen > END_ON else 0.0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -15,6 +17,7 @@ from bifurc.figures.layout import Canvas, figure_of
 from bifurc.figures.rc import drawing_style, size_of_user
 from bifurc.figures.selection import Selection
 from bifurc.figures.style import Properties
+from linkages.links.traced_points import traced_point
 from linkages.pictures.picture import Painter, Part, Picture, Stroke
 from linkages.subject import subject_at
 from linkages.viewing.start import Place, first_place, start_of
@@ -22,6 +25,7 @@ from linkages.viewing.start import Place, first_place, start_of
 SIZE = (4.2, 3.6)  # inches
 ROOM = 0.08  # around the picture, in its extent, for names of joints
 SAMPLES = 60  # configurations of a form for which rails are long enough
+FINE_SAMPLES = 720  # at which paths of points are drawn
 HALO = 2.6  # points, on both sides of a link: what is behind it ends there
 LINK = "#0072B2"
 STYLES: dict[Part, Properties] = {
@@ -30,6 +34,7 @@ STYLES: dict[Part, Properties] = {
     Part.RAIL: {"color": "0.6", "linewidth": 1.0},
     Part.AXIS: {"color": "0.5", "linewidth": 0.8, "linestyle": (0, (8, 2, 1.5, 2))},
     Part.GROUND: {"color": "0.25", "linewidth": 0.9},
+    Part.PATH: {"color": "#D55E00", "linewidth": 1.2},
 }
 OUTLINES: dict[Part, Properties] = {
     Part.JOINT: {"color": "0.15", "linewidth": 1.1},
@@ -46,6 +51,7 @@ def plot_linkage(
     figure: Canvas | None = None,
     *,
     ax: Axes | None = None,
+    trace: Sequence[str] = (),
 ) -> Figure:
     """The linkage of an atlas in one configuration: ``s`` (arclength, rad) along a
     ``form``, by its name or its number from 1; where the page of `bifurc view` begins,
@@ -53,8 +59,10 @@ def plot_linkage(
 
     Planar linkages are seen straight from above, with the symbols for ground, pins and
     sliders; others with the axes of their joints. It is drawn into ``ax``, or into a
-    ``figure`` or a part of one, or into a new one. Raises `ProblemError` for a form
-    that is not there, and `linkages.NoLinkageError` where the atlas is of no linkage.
+    ``figure`` or a part of one, or into a new one. The paths of points along the form are
+    drawn that ``trace`` names as "BODY:X,Y" or "BODY:X,Y,Z". Raises `ProblemError` for a
+    form that is not there, `linkages.GeometryError` for a point of no body, and
+    `linkages.NoLinkageError` where the atlas is of no linkage.
 
     >>> import linkages
     >>> figure = linkages.plot_linkage(linkages.map_linkage(linkages.load("four-bar")))
@@ -63,7 +71,7 @@ def plot_linkage(
     """
     check_type("atlas", atlas, Atlas)
     place = place_of(atlas, form, s)
-    painter = painter_of(atlas, place)
+    painter = painter_of(atlas, place, trace)
     with drawing_style():
         ax = ax or _new_axes(figure)
         picture = painter.picture(place.point)
@@ -82,13 +90,18 @@ def place_of(atlas: Atlas, form: str | int | None, s: float | None) -> Place:
     return Place(branch(start_of(atlas, number) if s is None else s), number)
 
 
-def painter_of(atlas: Atlas, place: Place) -> Painter:
-    """What makes pictures of the linkage along the form on which a place is, seen from
-    where that place is clear."""
+def painter_of(atlas: Atlas, place: Place, trace: Sequence[str] = ()) -> Painter:
+    """What makes pictures of the linkage along the form on which a place is, with the
+    paths of the points of a ``trace`` along it, seen from where that place is clear."""
     points = place.point[None]
     if place.form is not None:
-        points = atlas.forms[place.form].branch.sample(SAMPLES)
-    return Painter(subject_at(atlas).parts, place.point, points)
+        samples = FINE_SAMPLES if trace else SAMPLES
+        points = atlas.forms[place.form].branch.sample(samples)
+    subject = subject_at(atlas)
+    # points are of bodies by the names of the file
+    parts = subject.flat_parts if trace else subject.parts
+    traced = [traced_point(parts, text) for text in trace]
+    return Painter(parts, place.point, points, traced)
 
 
 def _new_axes(figure: Canvas | None) -> Axes:

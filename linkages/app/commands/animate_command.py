@@ -48,6 +48,7 @@ FEWEST, MOST = 2, 5000
     metavar="WxH",
     help="Width and height in inches of 100 pixels.  [default: 4.8x4.0]",
 )
+@options.trace_option
 @options.atlas_options
 def animate_command(
     source: str,
@@ -56,6 +57,7 @@ def animate_command(
     route: tuple[str, str] | None,
     count: int,
     size: tuple[float, float],
+    trace: tuple[str, ...],
     choice: options.AtlasOptions,
 ) -> None:
     """Show a linkage that moves along a form or a route: straight from above where it
@@ -65,6 +67,7 @@ def animate_command(
     Examples:
       bifurc animate bennett --out bennett.gif
       bifurc animate four-bar --form 1 --form 2 --out both.gif --size 3.4x3.4
+      bifurc animate four-bar --out coupler.gif --trace 23:1,0.5
       bifurc animate out/atlas.nc --route "Form I" "Form II" --out route.mp4
     """
     from bifurc.files.atomic import replace_file
@@ -86,7 +89,7 @@ def animate_command(
     motions = choose_motions(atlas, forms, routes, count)
     shown = motions if forms else motions[:1]
     with writing_to(out):
-        replace_file(out, lambda part: write_animation(atlas, shown, size, part))
+        replace_file(out, lambda part: write_animation(atlas, shown, size, part, trace))
     names = ", ".join(motion.name for motion in shown)
     click.echo(f"wrote {out}: {names}", err=True)
     exit_by(judge(atlas))

@@ -31,6 +31,7 @@ COMMAND_LINE = ParameterSource.COMMANDLINE
 TARGETS = {
     "routes": MOTIONS,
     "count": MOTIONS,
+    "trace": (TABLE, *PICTURES),
     **dict.fromkeys(("diameter", "play", "wall", "size", "unit", "offsets"), PARTS),
 }
 
@@ -44,7 +45,7 @@ TARGETS = {
     required=True,
     metavar="FILE",
     help=(
-        "The file: .glb is an animated model, .csv a table of joint angles (rad), .stl "
+        "The file: .glb is an animated model, .csv a table of joint angles (rad) and paths, .stl "
         "parts for a printer, laid out, .step the same parts assembled, .mjcf (or .xml) "
         "and .sdf the linkage for simulators, where a form begins, .svg and .dxf a picture of "
         "it, where the page of bifurc view begins."
@@ -65,6 +66,7 @@ TARGETS = {
     361,
     "Configurations along each form or route, for .glb and .csv.",
 )
+@options.trace_option
 @options.print_options
 @options.atlas_options
 def export_command(
@@ -73,6 +75,7 @@ def export_command(
     forms: tuple[str, ...],
     routes: tuple[tuple[str, str], ...],
     count: int,
+    trace: tuple[str, ...],
     choice: options.AtlasOptions,
     printing: options.PrintOptions,
 ) -> None:
@@ -88,6 +91,7 @@ def export_command(
     Examples:
       bifurc export bennett --to bennett.glb
       bifurc export altmann --form 1 --to altmann.csv --count 100
+      bifurc export four-bar --form 1 --to coupler.csv --trace 23:1,0.5
       bifurc export out/atlas.nc --route "Form I" "Bennett 4R" --to route.glb
       bifurc export bennett --to bennett.stl --size 120 --diameter 8
       bifurc export slider_crank.toml --to slider_crank.step
@@ -111,9 +115,9 @@ def export_command(
     elif is_one_of(out, MECHANISMS):
         export_mechanism(atlas, forms, out)
     elif is_one_of(out, PICTURES):
-        export_picture(atlas, forms, out)
+        export_picture(atlas, forms, trace, out)
     else:
-        export_motions(atlas, forms, routes, count, out)
+        export_motions(atlas, forms, routes, count, trace, out)
     if is_one_of(out, MECHANISMS):
         say_next(f"bifurc map {shlex.quote(str(out))}")
     else:
@@ -249,8 +253,11 @@ def export_mechanism(atlas: Atlas, texts: tuple[str, ...], out: Path) -> None:
     click.echo(f"wrote {out}: {form.name}", err=True)
 
 
-def export_picture(atlas: Atlas, forms: tuple[str, ...], out: Path) -> None:
-    """Write the picture of a linkage where a form, or else the map, is first shown."""
+def export_picture(
+    atlas: Atlas, forms: tuple[str, ...], trace: tuple[str, ...], out: Path
+) -> None:
+    """Write the picture of a linkage where a form, or else the map, is first shown, with
+    the paths of the points of a ``trace``."""
     from linkages.app.output import write_content
     from linkages.app.texts.form_names import choose_form
     from linkages.pictures.dxf import make_dxf
@@ -260,12 +267,13 @@ def export_picture(atlas: Atlas, forms: tuple[str, ...], out: Path) -> None:
     content: str | bytes
     if is_one_of(out, (".dxf",)):
         place = place_of(atlas, name, None)
-        content = make_dxf(painter_of(atlas, place).picture(place.point))
+        content = make_dxf(painter_of(atlas, place, trace).picture(place.point))
     else:
         from bifurc.figures.plotting import RESOLUTION
         from bifurc.figures.rendering import contents_of
 
-        content = contents_of(plot_linkage(atlas, name), RESOLUTION, ["svg"])["svg"]
+        figure = plot_linkage(atlas, name, trace=trace)
+        content = contents_of(figure, RESOLUTION, ["svg"])["svg"]
     write_content(out, content, TO)
     click.echo(f"wrote {out}", err=True)
 
@@ -275,22 +283,28 @@ def export_motions(
     forms: tuple[str, ...],
     routes: tuple[tuple[str, str], ...],
     count: int,
+    trace: tuple[str, ...],
     out: Path,
 ) -> None:
-    """Write the motions along forms and routes."""
+    """Write the motions along forms and routes, in a table with the paths of the points
+    of a ``trace``."""
     from linkages.app.motions import choose_motions
     from linkages.app.output import write_content
     from linkages.app.texts.form_names import choose_forms
 
     motions = choose_motions(atlas, forms, routes, count)
     chosen = choose_forms(atlas, () if routes else forms)
-    write_content(out, make_content(atlas, motions, chosen, out), TO)
+    write_content(out, make_content(atlas, motions, chosen, trace, out), TO)
     names = ", ".join(motion.name for motion in motions)
     click.echo(f"wrote {out}: {names}", err=True)
 
 
 def make_content(
-    atlas: Atlas, motions: list[Motion], forms: list[Form], out: Path
+    atlas: Atlas,
+    motions: list[Motion],
+    forms: list[Form],
+    trace: tuple[str, ...],
+    out: Path,
 ) -> bytes:
     """What the file of that ending holds; bodies of a planar mechanism lie in the layers
     in which they pass each other along ``forms``."""
@@ -300,7 +314,7 @@ def make_content(
                 f"--to {out}: a table holds one form or route, and there are "
                 f"{len(motions)}; name one with --form or --route"
             )
-        return make_table(atlas, motions[0]).encode("utf-8")
+        return make_table(atlas, motions[0], trace).encode("utf-8")
     from importlib.metadata import version
 
     from linkages.app.reports.layers import parts_in_layers
@@ -313,11 +327,18 @@ def make_content(
     return make_glb(model, f"bifurc {version('bifurc')}")
 
 
-def make_table(atlas: Atlas, motion: Motion) -> str:
+def make_table(atlas: Atlas, motion: Motion, trace: tuple[str, ...] = ()) -> str:
     """The joint variables along a motion: angles of a loop, or all variables of a
-    mechanism and the unit quaternions of its spherical joints."""
+    mechanism and the unit quaternions of its spherical joints; then the coordinates of
+    the points of a ``trace``."""
+    import numpy as np
+
     from linkages.export.model import make_angle_table
+    from linkages.links.traced_points import traced_columns
     from linkages.subject import subject_at
 
-    names, values = subject_at(atlas).joint_values(motion.configurations)
-    return make_angle_table(motion.arclength, values, names)
+    subject, points = subject_at(atlas), motion.configurations
+    names, values = subject.joint_values(points)
+    heads, columns = traced_columns(subject.flat_parts, trace, points)
+    table = np.concatenate([values, columns], axis=1)
+    return make_angle_table(motion.arclength, table, [*names, *heads])
