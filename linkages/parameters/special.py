@@ -4,8 +4,9 @@ Members over the range are mapped. Where a map has a near miss, the equations of
 bifurcation with the parameter among the unknowns are solved from there: that is a value at
 which a bifurcation appears. Bifurcations that are there all along are followed; where the
 parameter turns back two of them are born. Where the angle of a joint changes along a form
-the less the nearer a value is, the equations of a joint at rest are solved. Between members
-with different maps and no such value, further ones are mapped.
+the less the nearer a value is, the equations of a joint at rest are solved. Random starts,
+with the parameter among the unknowns, reach motions that are there at one value alone.
+Between members with different maps and no such value, further ones are mapped.
 """
 
 from __future__ import annotations
@@ -20,12 +21,14 @@ import numpy as np
 from bifurc import torus
 from bifurc.atlas import Atlas
 from bifurc.decisions import is_null, is_same_point, is_start_solved
+from bifurc.equations.expression_problem import TapeProblem
 from bifurc.following.follow import FollowedPoint, FollowError, follow_singular_point
 from bifurc.following.rest_problem import RestProblem, rest_problems
 from bifurc.following.singular_problem import SingularPointProblem
 from bifurc.limits import Deadline
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.numerics.singular_values import singular_values
+from bifurc.parametrised import ParametrisedProblem
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
 from linkages.labels import FormLabels
@@ -45,6 +48,7 @@ NULLITY = 2  # at a crossing of two curves
 NEARBY = 1e-4  # rad: beside a special value points move with the root of a rounding
 PLACES = 60  # of a form, of which one is nearest to losing rank
 SAMPLES = 400  # of a followed curve, by which another start on it is known
+STARTS, SEED = 96, 0  # from which motions at one value alone are looked for
 ROUNDING = 4e-16  # of a place, that doubles leave
 
 
@@ -57,6 +61,8 @@ class ChangeKind(Enum):
     BIRTH = "birth"
     # Joints have one angle all along a form at this value alone.
     REST = "rest"
+    # The members move, or move in more ways, at this value alone.
+    MOTION = "motion"
     # Maps on both sides differ; no equation was found that says why.
     BETWEEN_MAPS = "between maps"
 
@@ -65,6 +71,7 @@ WORDS = {
     ChangeKind.SINGULAR: "at this value alone there is a singular point",
     ChangeKind.BIRTH: "two singular points become one",
     ChangeKind.REST: "at this value alone a joint rests along a form",
+    ChangeKind.MOTION: "at this value alone there is a motion",
     ChangeKind.BETWEEN_MAPS: "maps beside it differ, for a reason that was not found",
 }
 
@@ -108,7 +115,8 @@ class MapChange:
         words = WORDS[self.kind]
         if self.joints:
             words += f" ({', '.join(f'joint {joint}' for joint in self.joints)})"
-        if self.kind is ChangeKind.BETWEEN_MAPS or self.at is None:
+        is_of_maps = self.kind in (ChangeKind.BETWEEN_MAPS, ChangeKind.MOTION)
+        if is_of_maps or self.at is None:
             return words
         if self.kind is ChangeKind.REST:
             at_rest = {joint for form in self.at.at_rest for joint in form}
@@ -160,6 +168,7 @@ class _SpecialSearch:
         for k, place in enumerate(places):
             value = low + (high - low) * place / MEMBERS
             self.look_at(value, closely=k % LOOKED_AT == 0)
+        self._from_random_starts()
 
     def look_at(self, value: float, closely: bool = True) -> None:
         """Map the member at a value, and look for changes from there; where not
@@ -285,6 +294,38 @@ class _SpecialSearch:
         change = MapChange(found, error, ChangeKind.REST, None, joints=joints)
         self._add(replace(change, problem=problem, solution=points[0]))
 
+    def _from_random_starts(self) -> None:
+        """Look for values at which alone there is a motion: there the closure, with the
+        parameter among the unknowns, leaves the parameter no way to go."""
+        own, sizes = self.members.problem, self.members.problem.sizes
+        weights = np.ones(len(own.tape.outputs))
+        problem = TapeProblem(
+            own.tape.in_units(np.zeros(len(sizes)), sizes, weights),
+            _region(own) / sizes[:, None],
+            names=(*own.domain.names, *own.parameters.names),
+        )
+        rng = np.random.default_rng(SEED)
+        points = problem.seeds(rng, STARTS, self.deadline).points
+        for point, jacobian in zip(points, problem.jacobians(points), strict=True):
+            if _is_held(jacobian):
+                inverse = np.linalg.pinv(jacobian, rcond=float(is_null.threshold))
+                value = float(point[-1] * sizes[-1])
+                lever = float(sizes[-1] * np.linalg.norm(inverse[-1]))
+                error = ROUNDING * (abs(value) + lever)
+                # lengths that are rounding beside others of 0 have a map of their own
+                self._from_motion(0.0 if abs(value) <= error else value, error)
+
+    def _from_motion(self, value: float, error: float) -> None:
+        """Map the member at a value at which alone there may be a motion."""
+        low, high = self.range
+        known = [*self.at, *(one.value for one in self.changes)]
+        if any(is_same_point(abs(value - other), high - low) for other in known):
+            return
+        atlas = self.at[value] = self._map(value)
+        beside = sorted(self.shapes, key=lambda one: abs(one - value))[:2]
+        if _shape_or_none(atlas) not in [self.shapes[one] for one in beside]:
+            self._add(MapChange(value, error, ChangeKind.MOTION, None))
+
     def _add(self, change: MapChange) -> None:
         low, high = self.range
         for k, one in enumerate(self.changes):
@@ -364,6 +405,27 @@ def _explain(search: _SpecialSearch, first: float, last: float, halvings: int) -
     search.look_at(middle)
     _explain(search, first, middle, halvings - 1)
     _explain(search, middle, last, halvings - 1)
+
+
+def _region(problem: ParametrisedProblem) -> np.ndarray:
+    """From where to where unknowns and parameters (n + q, 2) are drawn."""
+    half = 0.5 * problem.domain.periods
+    bounds = np.where(
+        np.isfinite(half)[:, None],
+        np.stack([-half, half], axis=1),
+        problem.domain.bounds,
+    )
+    return np.concatenate([bounds, problem.parameters.bounds])
+
+
+def _is_held(jacobian: np.ndarray) -> bool:
+    """Whether the last unknown stands still, to first order, while others move."""
+    ranks = []
+    for matrix in (jacobian[:, :-1], jacobian):
+        sigma = np.linalg.svd(matrix, compute_uv=False)
+        is_zero = [is_null(float(one), float(sigma[0])) for one in sigma]
+        ranks.append(is_zero.count(False))
+    return bool(ranks[1] == ranks[0] + 1 < jacobian.shape[1])
 
 
 def _kind_at(atlas: Atlas, u: np.ndarray | None) -> Kind | None:

@@ -40,8 +40,10 @@ from linkages.values import GeometryError
 JOINTS = 6
 ATTEMPTS = 3  # generic geometries from which the paths start
 ROTATION = np.exp(0.7j)  # of the generic lengths and offsets from attempt to attempt
-# Lengths (over the characteristic length), twists and offsets of the cuts.
+# Lengths (over the characteristic length), twists and offsets of the cuts; and the angles
+# before them, without which the axes would all be square to one direction.
 CUTS = ((0.618, 1.234, -0.377), (0.441, 0.873, 0.289))
+ANGLES = (0.754, 2.016)
 
 
 class PathEnd(IntEnum):
@@ -172,23 +174,22 @@ class _LongerLoop:
     """A loop of fewer joints with its last link cut by further axes.
 
     ``table`` (3, 6) of the longer loop, lengths over the characteristic length;
-    ``joints`` of the given loop; ``shift`` of the first angle; ``still`` (6 - n,): the
-    angles of the further joints at which it is the given loop.
+    ``joints`` of the given loop; ``zero`` (6,): the angles where those of the given loop
+    are 0 and the further joints stand still.
     """
 
     table: np.ndarray
     joints: int
-    shift: float
-    still: np.ndarray
+    zero: np.ndarray
 
     def configurations_of_given_loop(self, angles: np.ndarray) -> np.ndarray:
         """Those of the configurations (k, 6) in which the further joints stand still,
         as configurations (m, n) of the given loop, rad in (-pi, pi]."""
-        away = np.abs(_wrapped(angles[:, self.joints :] - self.still))
+        given = _wrapped(angles - self.zero)
+        away = np.abs(given[:, self.joints :])
         stands_still = is_same_end(away.max(axis=1, initial=0.0))
-        own = angles[stands_still, : self.joints].copy()
-        own[:, 0] -= self.shift
-        return _wrapped(own)
+        own: np.ndarray = given[stands_still, : self.joints]
+        return own
 
 
 def _with_six_joints(loop: Loop) -> _LongerLoop:
@@ -196,17 +197,17 @@ def _with_six_joints(loop: Loop) -> _LongerLoop:
     lengths, twists, offsets = loop.arrays
     size = loop.characteristic_length
     table = np.array([lengths / size, twists, offsets / size])
-    shift = 0.0
-    still: list[float] = []
-    for cut in CUTS[: JOINTS - loop.n]:
+    zero = [0.0] * loop.n
+    for cut, angle in list(zip(CUTS, ANGLES, strict=True))[: JOINTS - loop.n]:
         before = np.array(cut)
-        rest = np.linalg.inv(_link_matrix(before)) @ _link_matrix(table[:, -1])
+        rest = np.linalg.inv(_link_matrix(before, angle)) @ _link_matrix(table[:, -1])
         after = _link_between(rest)
         table = np.column_stack([table[:, :-1], before, after.link])
         table[2, 0] += after.slide
-        shift += after.turn
-        still.append(after.angle)
-    return _LongerLoop(table, loop.n, shift, np.array(still))
+        zero[0] += after.turn
+        zero[-1] += angle
+        zero.append(after.angle)
+    return _LongerLoop(table, loop.n, np.array(zero))
 
 
 class _LinkBetween(NamedTuple):

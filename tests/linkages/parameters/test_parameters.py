@@ -11,10 +11,12 @@ from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
 from linkages.catalogue import catalogue, entry
 from linkages.closure.system import ClosureSystem
+from linkages.loop import Loop
 from linkages.mapping import map_linkage
 from linkages.parameters.followed import follow_points
 from linkages.parameters.members import Members, range_of_members
 from linkages.parameters.special import ChangeKind, special_values
+from linkages.parameters.table_family import family_of_table
 from linkages.values import GeometryError
 from tests.samples import one_in
 
@@ -219,6 +221,26 @@ def test_a_form_in_which_two_joints_come_to_rest_is_the_known_one():
     gamma = 2 * np.arctan(np.tan(beta / 2) * np.tan(delta / 2) / np.tan(alpha / 2))
     name = "Form II (constructive 6R)"
     assert found == pytest.approx({(name, 3): gamma, (name, 6): gamma}, abs=1e-14)
+
+
+ZEROS = (0.0,) * 4
+TABLES = {
+    "bennett a12": (Loop((1, 0.5, 1, 0.5), np.radians([90, 30, 90, 30]), ZEROS), 1.0),
+    "planar R1": (Loop((1.0, 1.7, 1.3, 1.2), ZEROS, ZEROS), 0.0),
+    "spherical a23": (Loop(ZEROS, (1.0, 0.8, 1.3, 1.1), ZEROS), 0.0),
+}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_table_that_moves_at_one_value_alone_is_found(name):
+    loop, value = TABLES[name]
+    family, free = family_of_table(loop), name.split()[1]
+    ranges = {free: (value - 0.3, value + 0.4)}
+    (change,) = special_values(Members(family, family.defaults, ranges), QUICK).changes
+    assert change.kind is ChangeKind.MOTION
+    assert change.what == "at this value alone there is a motion"
+    assert change.value == pytest.approx(value, abs=1e-14)
+    assert (change.before.forms, change.at.forms, change.after.forms) == (0, 1, 0)
 
 
 def test_nothing_is_special_where_nothing_changes():

@@ -55,6 +55,21 @@ def test_a_loop_from_axes_has_the_assembly_in_which_the_axes_were_given(n):
         assert min(gap(theta, other) for other in found.configurations) < 1e-8
 
 
+@pytest.mark.parametrize("n", (4, 5))
+def test_axes_that_meet_one_line_at_right_angles_are_an_assembly(n):
+    """All of them leave a force and a moment along the line alone."""
+    rng = np.random.default_rng(n)
+    points = rng.normal(size=(n, 1)) * [1.0, 0.0, 0.0]
+    angles = rng.uniform(0.0, np.pi, n)
+    directions = np.stack([0.0 * angles, np.cos(angles), np.sin(angles)], axis=1)
+    loop, theta = loop_from_axes(points, directions)
+    has_full_rank = n == 4
+    found = isolated_assemblies(loop)
+    assert found.complete
+    gaps = [gap(theta, other) for other in found.configurations]
+    assert (min(gaps, default=np.inf) < 1e-8) == has_full_rank
+
+
 @pytest.mark.parametrize(
     ("name", "count"),
     [
