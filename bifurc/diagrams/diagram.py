@@ -8,6 +8,7 @@ from enum import Enum
 import numpy as np
 
 from bifurc.singular.point import Kind
+from bifurc.tables import count_of
 
 
 class Stability(Enum):
@@ -122,7 +123,7 @@ class Diagram:
 
     def __repr__(self) -> str:
         kinds = [point.kind for point in self.points]
-        counts = {kind.plural: kinds.count(kind) for kind in Kind if kind.plural}
-        counts["branchings"] = len(self.branchings)
-        words = ", ".join(f"{count} {noun}" for noun, count in counts.items())
+        counts = [(kinds.count(kind), kind.value) for kind in Kind if kind.plural]
+        counts.append((len(self.branchings), "branching"))
+        words = ", ".join(count_of(*count) for count in counts)
         return f"<Diagram in {self.parameter or 'no parameter'!r}: {words}>"
