@@ -295,7 +295,9 @@ class Atlas:
             replace(form, name=name, labels=dict(label))
             for form, name, label in zip(self.forms, names, labels, strict=True)
         ]
-        return replace(self, forms=tuple(forms))
+        doubts = tuple(doubt.naming(names) for doubt in self.completeness.doubts)
+        completeness = replace(self.completeness, doubts=doubts)
+        return replace(self, forms=tuple(forms), completeness=completeness)
 
     # --- display ----------------------------------------------------------------------
 
@@ -433,9 +435,10 @@ def _members(atlas: Atlas, point: MeetingPoint) -> list[str]:
 def _covering(surface: Surface) -> str:
     """How much of a surface is known."""
     if surface.charts is None:
-        return f"{len(surface.samples)} samples"
+        return count_of(len(surface.samples), "sample")
     extent = "complete" if surface.complete else "incomplete"
-    return f"{len(surface.charts)} charts, area {surface.charts.area_words}, {extent}"
+    charts = count_of(len(surface.charts), "chart")
+    return f"{charts}, area {surface.charts.area_words}, {extent}"
 
 
 # --- what a notebook shows ------------------------------------------------------------

@@ -13,6 +13,7 @@ from bifurc._core import Curve
 from bifurc.checks import check_distance, check_finite, check_whole, floats_of
 from bifurc.decisions import hides_turning, jumps_at_turning
 from bifurc.errors import ProblemError
+from bifurc.tables import count_of
 from bifurc.torus import whole_turns
 
 SLIVER = 1e-3  # of its radius: so little of a piece is left to the next one
@@ -82,7 +83,7 @@ class Branch:
         return (
             f"<Branch in {self.n} unknowns, {self.outcome.value}\n"
             f" length {self.length:.6g}, winding ({winding})\n"
-            f" {len(self.pieces)} pieces, largest residual {self.max_residual:.2g}>"
+            f" {count_of(len(self.pieces), 'piece')}, largest residual {self.max_residual:.2g}>"
         )
 
     @property

@@ -7,8 +7,8 @@ which these are put at last. A program asks the records; the words are for peopl
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -76,16 +76,24 @@ class Claim(Statement):
 @dataclass(frozen=True)
 class Doubt(Statement):
     """What is open of a ``subject``, a form or a point by name, all where it is empty;
-    ``amount`` is the number on which that hangs, 0 where there is none."""
+    ``amount`` is the number on which that hangs, 0 where there is none, ``forms`` are the
+    numbers, from 0, of the forms that are the subject."""
 
     subject: str = ""
     amount: float = 0.0
+    forms: tuple[int, ...] = ()
 
     @property
     def text(self) -> str:
         """The doubt in English."""
         own = {"subject": self.subject, "amount": self.amount}
         return self.words.format(**own, **_shown(self.data))
+
+    def naming(self, names: Sequence[str]) -> Doubt:
+        """The same doubt, with forms of these ``names``."""
+        if not self.forms:
+            return self
+        return replace(self, subject=" and ".join(names[form] for form in self.forms))
 
 
 @dataclass(frozen=True)
@@ -114,6 +122,16 @@ class DoubtKind(StatementKind):
     def doubt(self, subject: str = "", amount: float = 0.0, **data: Any) -> Doubt:
         """A doubt of this kind."""
         return Doubt(self.name, self.words, data, subject, float(amount))
+
+    def of_forms(self, *forms: int, amount: float = 0.0, **data: Any) -> Doubt:
+        """A doubt of this kind about forms that have no names of their own yet."""
+        subject = " and ".join(numbered_form(form) for form in forms)
+        return Doubt(self.name, self.words, data, subject, float(amount), forms)
+
+
+def numbered_form(form: int) -> str:
+    """What a form is called by its number, from 0."""
+    return f"Form {form + 1}"
 
 
 class Kinds(Generic[Kind]):
@@ -237,5 +255,5 @@ def _places(intervals: list[tuple[float, float]]) -> str:
     places = f"between s = {low:.6g} and {high:.6g}"
     more = len(intervals) - 1
     if more:
-        places += f" and at {more} more places"
+        places += f" and at {count_of(more, 'more place')}"
     return places

@@ -33,7 +33,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 import numpy as np
 
 from bifurc.errors import PathError
-from bifurc.files.text_file import TextFileError, read_toml
+from bifurc.files.text_file import TextFileError, missing_file, read_toml
 from linkages.axes import Vectors, loop_from_axes
 from linkages.formats.table import TOML, format_of
 from linkages.loop import MAX_JOINTS, MIN_JOINTS, Loop
@@ -60,6 +60,7 @@ TABLE = ("lengths", "twists", "offsets")
 AXES = ("points", "directions")
 OF_MECHANISMS = ("joints", "bars", "arcs", "loops")
 KEYS = ("name", "angles", *TABLE, *AXES)
+ATLAS_ENDING = ".nc"  # how the name of a saved atlas ends
 FULL_TURN = 2 * math.pi
 
 
@@ -84,7 +85,7 @@ def _errors_about(path: Path) -> Iterator[None]:
     except GeometryError as error:
         raise LinkageFileError(path, str(error)) from None
     except FileNotFoundError:
-        raise LinkageFileError(path, "there is no such file") from None
+        raise LinkageFileError(path, missing_file(path)) from None
     except OSError as error:
         raise LinkageFileError(path, f"cannot be read: {error.strerror}") from None
 
@@ -93,6 +94,9 @@ def read_file(path: Path | str) -> Loop | Mechanism:
     """The loop or the mechanism that a file describes; without a name it is called
     after the file. Raises `LinkageFileError`."""
     path = Path(path)
+    if path.suffix == ATLAS_ENDING:
+        reason = "is a map that is made already; bifurc view and bifurc route take it"
+        raise LinkageFileError(path, reason)
     known = format_of(path)
     with _errors_about(path):
         if known is not None and known.read is not None:

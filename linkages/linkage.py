@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from bifurc.files.text_file import missing_file
 from linkages.catalogue import UnknownLinkageError, entry
 from linkages.entry import Linkage
-from linkages.file import LinkageFileError, read_file
+from linkages.file import ATLAS_ENDING, LinkageFileError, read_file
 from linkages.formats.table import ENDINGS
 from linkages.loop import Loop
 from linkages.networks.entries import NETWORKS
@@ -105,5 +106,11 @@ def _check_for_files(name: str, error: UnknownLinkageError) -> None:
     file = f"{name}.toml"
     if Path(file).is_file():
         raise UnknownLinkageError(name, (file, *error.nearest)) from None
-    if name and Path(name).is_dir():
-        raise LinkageFileError(name, "is a folder, and a linkage is a file") from None
+    path = Path(name)
+    if name and path.is_dir():
+        reason = "is a folder, and a linkage is a file"
+        for saved in sorted(path.glob(f"*{ATLAS_ENDING}"))[:1]:
+            reason += f"; the map in it is {saved}"
+        raise LinkageFileError(name, reason) from None
+    if path.suffix or path.name != name:
+        raise LinkageFileError(name, missing_file(path)) from None

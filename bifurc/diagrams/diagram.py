@@ -8,6 +8,7 @@ from enum import Enum
 import numpy as np
 
 from bifurc.singular.point import Kind
+from bifurc.tables import count_of
 
 
 class Stability(Enum):
@@ -27,8 +28,8 @@ class Stability(Enum):
 class DiagramPoint:
     """A fold, a Hopf point or an event at arclength ``s`` of a form, ``u`` (n,) there.
 
-    ``label`` is the name of the event; at a Hopf point what becomes of the pair along
-    the arclength, "becomes unstable" or "becomes stable"; empty at a fold. ``value`` is the second
+    ``label`` is the name of the event; at a Hopf point what becomes of the pair,
+    "becomes unstable as p grows" or "becomes stable as p grows"; empty at a fold. ``value`` is the second
     derivative of the parameter in the arclength at a fold, the angular frequency at a
     Hopf point, and the value that the function takes at an event. ``error`` is the
     arclength to either side within which rounding hides where it is, 0 where that is no
@@ -122,7 +123,7 @@ class Diagram:
 
     def __repr__(self) -> str:
         kinds = [point.kind for point in self.points]
-        counts = {kind.plural: kinds.count(kind) for kind in Kind if kind.plural}
-        counts["branchings"] = len(self.branchings)
-        words = ", ".join(f"{count} {noun}" for noun, count in counts.items())
+        counts = [(kinds.count(kind), kind.value) for kind in Kind if kind.plural]
+        counts.append((len(self.branchings), "branching"))
+        words = ", ".join(count_of(*count) for count in counts)
         return f"<Diagram in {self.parameter or 'no parameter'!r}: {words}>"

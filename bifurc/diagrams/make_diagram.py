@@ -76,7 +76,7 @@ def diagram_of(
     has_stability = is_flow and bool(atlas.forms) and has_square_rest(problem)
     along = _stability(problem, atlas, index, turnings.folds, has_stability)
     hopf_points = [
-        _hopf_point(atlas, form, place)
+        _hopf_point(atlas, index, form, place)
         for form, one in enumerate(along)
         for place in one.hopf_places
     ]
@@ -127,10 +127,12 @@ def _stability(
     return along
 
 
-def _hopf_point(atlas: Atlas, form: int, place: HopfPlace) -> DiagramPoint:
+def _hopf_point(atlas: Atlas, index: int, form: int, place: HopfPlace) -> DiagramPoint:
     branch = atlas.forms[form].branch
     s = place.s % branch.length if branch.closed else place.s
-    label = "becomes unstable" if place.is_unstable_after else "becomes stable"
+    grows = branch(s, 1)[index] >= 0.0
+    after = "unstable" if place.is_unstable_after == grows else "stable"
+    label = f"becomes {after} as {atlas.names[index]} grows"
     return DiagramPoint("", Kind.HOPF, form, s, branch(s), place.frequency, label)
 
 

@@ -18,6 +18,7 @@ from bifurc.equations.recorded import (
     unknowns_of,
 )
 from bifurc.equations.tape import LONGEST, Tape, TooLong
+from bifurc.tables import count_of
 
 SENTENCE = 160  # characters of a foreign error that are quoted
 SMALLEST = 1e-300  # difference that counts where the value is 0 and exact
@@ -34,7 +35,7 @@ class Recording:
     def __str__(self) -> str:
         if self.tape is None:
             return f"not recorded: {self.reason}"
-        return f"{self.reason or 'recorded'} ({self.tape.size} operations)"
+        return f"{self.reason or 'recorded'} ({count_of(self.tape.size, 'operation')})"
 
 
 def record(function: Callable[[np.ndarray], Any], points: np.ndarray) -> Recording:

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bifurc import _core
+from bifurc.tables import count_of
 
 LONGEST = 200_000  # operations of a tape
 LARGEST_POWER = 64  # whole exponent up to which a power is a chain of products
@@ -135,7 +136,8 @@ class Tape:
 
     def __repr__(self) -> str:
         return (
-            f"<Tape: {self.m} equations in {self.n} unknowns, {self.size} operations>"
+            f"<Tape: {count_of(self.m, 'equation')} in {count_of(self.n, 'unknown')}, "
+            f"{count_of(self.size, 'operation')}>"
         )
 
     @property

@@ -201,8 +201,9 @@ def _names(atlas: Atlas, selection: Selection) -> list[str]:
 
 
 def shows_transitions(atlas: Atlas, selection: Selection) -> bool:
-    """Whether the graph has more than one box."""
-    return len(_names(atlas, selection)) > 1
+    """Whether the graph joins two boxes."""
+    joined = transition_graph(atlas).subgraph(_names(atlas, selection))
+    return any(one != other for one, other in joined.edges())
 
 
 def _fitted(spots: np.ndarray, width: float | None) -> np.ndarray:

@@ -38,6 +38,7 @@ SAME_SPOT = 0.01  # of the frame: points that are closer share a name
 
 # What a name costs in a place, over one point of a curve that it covers.
 OVERLAP_COST = 100  # for each other name or mark
+MISLEADING_COST = 30  # for each other mark that is as near to it as its own
 OUTSIDE_COST = 20  # for each point of length that it sticks out of the frame
 ORDER_COST = 0.1  # for each place that is tried before
 
@@ -54,15 +55,25 @@ class _Box(NamedTuple):
         gap = np.abs(other.middle - self.middle)
         return bool(np.all(gap < self.half + other.half))
 
+    def distances(self, marks: np.ndarray) -> np.ndarray:
+        """How far (m,) marks (m, 2) are from it."""
+        gaps = np.maximum(np.abs(marks - self.middle) - self.half, 0.0)
+        return np.asarray(np.linalg.norm(gaps, axis=1))
+
 
 @dataclass
 class _Page:
     """What is drawn already: ``corners`` (2, 2) of the frame, points (k, 2) on the
-    ``curves``, and the ``boxes`` of marks and names, all in points on the page."""
+    ``curves``, ``marks`` (m, 2), and the ``boxes`` of marks and names, all in points on
+    the page."""
 
     corners: np.ndarray
     curves: np.ndarray
-    boxes: list[_Box] = field(default_factory=list)
+    marks: np.ndarray
+    boxes: list[_Box] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.boxes = [_Box(mark, MARK_HALF) for mark in self.marks]
 
     def place(self, mark: np.ndarray, half: np.ndarray) -> _Box:
         """The best box for a name beside a mark (2,), which is then occupied."""
@@ -74,21 +85,27 @@ class _Page:
                 offset = (REACH * factor - 4) * direction + half * side
                 candidates.append(_Box(mark + offset, half))
         costs = [
-            self._cost(box) + ORDER_COST * order for order, box in enumerate(candidates)
+            self._cost(box, mark) + ORDER_COST * order
+            for order, box in enumerate(candidates)
         ]
         best = candidates[int(np.argmin(costs))]
         self.boxes.append(best)
         return best
 
-    def _cost(self, box: _Box) -> float:
-        """What a name covers there, and how far it sticks out of the frame."""
+    def _cost(self, box: _Box, mark: np.ndarray) -> float:
+        """What the name of a mark (2,) covers there, how far it sticks out of the frame,
+        and whether it seems to be that of another mark."""
         covers = np.all(np.abs(self.curves - box.middle) < box.half, axis=1)
         overlaps = sum(box.overlaps(other) for other in self.boxes)
+        is_other = np.any(np.abs(self.marks - mark) > MARK_HALF, axis=1)
+        own = box.distances(mark[None])
+        misleads = is_other & (box.distances(self.marks) <= own)
         low_overhang = np.maximum(self.corners[0] - (box.middle - box.half), 0).sum()
         high_overhang = np.maximum(box.middle + box.half - self.corners[1], 0).sum()
         return float(
             np.count_nonzero(covers)
             + OVERLAP_COST * overlaps
+            + MISLEADING_COST * np.count_nonzero(misleads)
             + OUTSIDE_COST * (low_overhang + high_overhang)
         )
 
@@ -190,9 +207,7 @@ class _Placement(Artist):
         axes = self._axes
         figure = figure_of(axes)
         scale = 72.0 / figure.dpi
-        page = _page(axes, scale)
-        for spot in self._marks:
-            page.boxes.append(_Box(_on_page(axes, spot, scale), MARK_HALF))
+        page = _page(axes, self._marks, scale)
         for text in self._texts:
             spot = np.array(text.xy, dtype=float)
             mark = _on_page(axes, spot, scale)
@@ -202,8 +217,8 @@ class _Placement(Artist):
             text.set_position(tuple((box.middle - mark).tolist()))
 
 
-def _page(axes: Axes, scale: float) -> _Page:
-    """The frame and the curves that are drawn."""
+def _page(axes: Axes, spots: Sequence[np.ndarray], scale: float) -> _Page:
+    """The frame and the curves that are drawn, and marks on spots of the plane."""
     frame = axes.get_window_extent()
     corners = np.array([[frame.x0, frame.y0], [frame.x1, frame.y1]]) * scale
     curves = [np.empty((0, 2))]
@@ -213,7 +228,8 @@ def _page(axes: Axes, scale: float) -> _Page:
             line.get_linestyle() != "None"
         )  # else it is marks, with nothing between
         curves.append(_filled(rows) if is_drawn else rows)
-    return _Page(corners, np.concatenate(curves))
+    marks = _on_page(axes, np.reshape(spots, (-1, 2)), scale)
+    return _Page(corners, np.concatenate(curves), marks)
 
 
 def _on_page(axes: Axes, spots: np.ndarray, scale: float) -> np.ndarray:

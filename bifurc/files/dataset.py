@@ -356,7 +356,10 @@ def _read_completeness(text: str) -> Completeness:
         claims.append(
             Claim(**{**claim, "scope": Scope(claim["scope"]), "level": level})
         )
-    doubts = tuple(Doubt(**doubt) for doubt in values["doubts"])
+    doubts = tuple(
+        Doubt(**{**doubt, "forms": tuple(doubt.get("forms", ()))})
+        for doubt in values["doubts"]
+    )
     missed = float(values["missed_probability"])
     return Completeness(tuple(claims), doubts, missed)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import Any
 
 from bifurc.errors import BifurcError
 
+NEAREST = 3  # names that are shown where there is no file of a name
 ENCODING = "utf-8-sig"  # editors of Windows begin a file with a mark, which is no text
 
 
@@ -22,6 +24,17 @@ class TextFileError(BifurcError, ValueError):
         super().__init__(f"{path}: {reason}")
 
 
+def missing_file(path: Path) -> str:
+    """That a file is not there, with the names of its folder that are most like its."""
+    try:
+        names = [other.name for other in path.parent.iterdir()]
+    except OSError:  # no folder, or one that cannot be listed
+        names = []
+    near = difflib.get_close_matches(path.name, names, NEAREST)
+    hint = f"; the nearest here: {', '.join(near)}" if near else ""
+    return f"there is no such file{hint}"
+
+
 def read_text(path: Path) -> str:
     """The text in a file; raises `TextFileError`."""
     if path.is_dir():
@@ -29,7 +42,7 @@ def read_text(path: Path) -> str:
     try:
         return path.read_text(encoding=ENCODING)
     except FileNotFoundError:
-        raise TextFileError(path, "there is no such file") from None
+        raise TextFileError(path, missing_file(path)) from None
     except OSError as error:
         raise TextFileError(path, f"cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:

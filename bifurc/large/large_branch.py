@@ -9,6 +9,7 @@ import numpy as np
 
 from bifurc.branch import Branch, Outcome
 from bifurc.singular.point import Kind
+from bifurc.tables import count_of
 from bifurc.units import Units
 
 KINDS = (
@@ -165,7 +166,7 @@ class LargeBranch:
         counts = [f"{kind.value}: {kinds.count(kind.value)}" for kind in KINDS]
         return (
             f"<LargeBranch in {self.branch.n} unknowns, {self.outcome.value}\n"
-            f" length {self.length:.6g}, {len(self.branch.pieces)} pieces; "
+            f" length {self.length:.6g}, {count_of(len(self.branch.pieces), 'piece')}; "
             f"{', '.join(counts)}>"
         )
 

@@ -25,6 +25,7 @@ from bifurc.routes.surface_legs import Crossing
 from bifurc.routes.ways import GOAL, START, Stage, WayGraph
 from bifurc.routes.wishes import NONE, Wishes
 from bifurc.surfaces.geodesic import place_at, spread
+from bifurc.tables import count_of
 from bifurc.torus import wrap
 
 NO_WAY = 1e-9  # length below which a leg is none
@@ -94,8 +95,8 @@ class Route:
 
     def __repr__(self) -> str:
         head = (
-            f"Route({len(self.legs)} legs, length {self.length:.6g}, "
-            f"{len(self.path)} configurations)"
+            f"Route({count_of(len(self.legs), 'leg')}, length {self.length:.6g}, "
+            f"{count_of(len(self.path), 'configuration')})"
         )
         return "\n".join([head, *(f"  {leg!r}" for leg in self.legs)])
 

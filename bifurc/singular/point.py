@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bifurc.decisions import leaves_to_other_side, leaves_to_same_side
+from bifurc.tables import count_of
 
 
 class Mark(NamedTuple):
@@ -188,5 +189,5 @@ class SingularPoint:
         return (
             f"SingularPoint({self.kind.value}, rank {self.rank}, "
             f"error {self.error:.1e}, {len(self.half_branches)} half-branches, "
-            f"{len(self.tangents)} tangents)"
+            f"{count_of(len(self.tangents), 'tangent')})"
         )

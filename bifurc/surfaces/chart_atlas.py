@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from bifurc import torus
+from bifurc.tables import count_of
 
 if TYPE_CHECKING:
     # it takes longer to import than NumPy, and most maps have no surface
@@ -87,7 +88,7 @@ class ChartAtlas:
     def __repr__(self) -> str:
         euler = self.euler_characteristic
         return (
-            f"ChartAtlas({len(self)} charts, {self.outcome.name},\n"
+            f"ChartAtlas({count_of(len(self), 'chart')}, {self.outcome.name},\n"
             f"           area {self.area_words}, "
             f"Euler characteristic {'unknown' if euler is None else euler})"
         )

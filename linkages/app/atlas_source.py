@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
@@ -14,6 +15,7 @@ from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.options import AtlasOptions, SearchOptions
 from linkages.app.output import StatusLine
 from linkages.entry import Linkage
+from linkages.file import ATLAS_ENDING
 from linkages.labels import NoLinkageError
 from linkages.mapping import map_linkage
 from linkages.subject import Subject, as_subject, subject_at
@@ -62,11 +64,12 @@ def open_linkage_atlas(path: str) -> Atlas:
     """The atlas of a linkage in a file. Raises `bifurc.AtlasFileError` for a file that
     holds no atlas, and `CommandError` for one that holds another, or is not there."""
     from bifurc.files.dataset import load_atlas
+    from bifurc.files.text_file import missing_file
 
     try:
         atlas = load_atlas(path)
     except FileNotFoundError:
-        raise CommandError(f"{path}: there is no such file") from None
+        raise CommandError(f"{path}: {missing_file(Path(path))}") from None
     try:
         subject_at(atlas)
     except NoLinkageError as error:
@@ -74,13 +77,12 @@ def open_linkage_atlas(path: str) -> Atlas:
     return atlas
 
 
-ATLAS_FILE = ".nc"  # how the name of a saved atlas ends
 AS_SAVED = AtlasOptions()
 
 
 def is_atlas_file(source: str) -> bool:
     """Whether ``source`` names a saved atlas."""
-    return source.endswith(ATLAS_FILE)
+    return source.endswith(ATLAS_ENDING)
 
 
 def atlas_of(source: str, options: AtlasOptions) -> Atlas:

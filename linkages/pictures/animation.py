@@ -23,6 +23,7 @@ from linkages.viewing.start import clearest
 
 RATE = 25  # pictures a second
 RESOLUTION = 100  # dots per inch
+CORNER = (0.02, 0.98)  # where the name of a motion is, of the picture
 GIF, MP4 = ".gif", ".mp4"
 
 
@@ -66,7 +67,7 @@ def write_animation(
     body.
 
     It is seen from where the configuration is clear whose joints are farthest from one
-    line, and all of the motions are within the picture.
+    line, and all of the motions are within the picture. Of several each is named.
     """
     points = np.concatenate([motion.configurations for motion in motions])
     subject = subject_at(atlas)
@@ -75,6 +76,7 @@ def write_animation(
     traced = [traced_point(parts, text) for text in trace]
     painter = Painter(parts, first, points, traced)
     pictures = [painter.picture(point) for point in points]
+    names = [motion.name for motion in motions for _ in motion.configurations]
     corners = np.array([picture.corners for picture in pictures])
     frame = np.array([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)])
     with drawing_style():
@@ -82,7 +84,9 @@ def write_animation(
         ax = figure.add_axes((0, 0, 1, 1))
         writer = movie_writer(path)
         with writer.saving(figure, str(path), RESOLUTION):
-            for picture in pictures:
+            for picture, name in zip(pictures, names, strict=True):
                 ax.clear()
                 draw_picture(ax, picture, frame)
+                if len(motions) > 1:
+                    ax.text(*CORNER, name, va="top", transform=ax.transAxes)
                 writer.grab_frame()

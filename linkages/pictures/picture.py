@@ -101,9 +101,7 @@ class Painter:
             self._camera = _camera_of(parts.best_view(first))
         else:
             self._camera = _camera_above(normal)
-        seats = [symbol.place for symbol in self._seated(first)]
-        distances = np.linalg.norm(np.array(seats) - seats[0], axis=1)
-        self._size = float(distances.max(initial=0.0)) or parts.size
+        self._size = self._extent(first) or parts.size
         self._radius = RADIUS * self._size
         self._traced = traced
         paths = [self._seen(traced_path(parts, one, points)) for one in traced]
@@ -136,6 +134,16 @@ class Painter:
         """The poses (b, 4, 4) of all bodies seen from the one that is drawn at rest."""
         poses = self._parts.poses(point[None])[0]
         return np.asarray(np.linalg.inv(poses[self._parts.held]) @ poses)
+
+    def _extent(self, point: np.ndarray) -> float:
+        """How far what is drawn at a configuration (n,) reaches from the first joint:
+        the others, and the ends of rods and rails."""
+        places = [symbol.place for symbol in self._seated(point)]
+        for body, pose in enumerate(self._poses(point)):
+            ends = self._lines[body].reshape(-1, 3)
+            places.extend(ends @ pose[:3, :3].T + pose[:3, 3])
+        distances = np.linalg.norm(np.array(places) - places[0], axis=1)
+        return float(distances.max(initial=0.0))
 
     def _seated(self, point: np.ndarray) -> list[Symbol]:
         """The symbols of all joints, where they are at a configuration (n,)."""

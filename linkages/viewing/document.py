@@ -56,6 +56,7 @@ from bifurc.figures.style import (
     form_style,
     near_motion_style,
 )
+from bifurc.tables import count_of
 from bifurc.torus import difference
 from linkages.labels import FormLabels
 from linkages.mechanisms.mechanism import Lock
@@ -273,7 +274,7 @@ def title_of(atlas: Atlas) -> str:
     if not locks:
         return name
     if len(locks) > MOST_LOCKS:
-        return f"{name}, {len(locks)} variables locked"
+        return f"{name}, {count_of(len(locks), 'variable')} locked"
     return f"{name}, locked: {', '.join(map(_lock, locks))}"
 
 

@@ -5,7 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bifurc.completeness import Completeness
 from bifurc.errors import ProblemError, RouteError
+from bifurc.search.answer.completeness import SearchDoubt
 from bifurc.torus import wrap
 from tests.bifurc.drawn_atlas import draw, ring
 
@@ -38,6 +40,11 @@ def test_forms_keep_everything_but_their_names_when_renamed() -> None:
     assert [f.name for f in renamed.forms] == ["Form I", "Form II"]
     assert renamed.forms[0].labels["symmetry"] == "line"
     assert renamed.forms[0].branch is atlas.forms[0].branch
+    doubt = SearchDoubt.ONE_CURVE.of_forms(1, 0, point="B1")
+    doubtful = replace(atlas, completeness=Completeness((), (doubt,), 0.1))
+    assert "ends of Form 2 and Form 1 at B1" in doubtful.completeness.statement
+    named = doubtful.renamed(["a", "b"]).completeness
+    assert "ends of b and a at B1" in named.statement
     with pytest.raises(ProblemError, match="2 different names"):
         atlas.renamed(["same", "same"])
 

@@ -17,21 +17,29 @@ DATA = {
     "beside": 1e-5,
     "boxes": 12,
     "budget": 2.0,
+    "complex": 8,
     "count": 2,
     "ends": 1,
     "forms": 3,
+    "inside": 3,
     "left": 4,
+    "lost": 2,
     "missed": 0.02,
+    "paths": 9,
     "places": [[0.25, 0.5], [1.0, 1.5]],
     "point": "B2",
     "point_kind": "bifurcation",
     "points": ["B1", "B2"],
     "rank": 1,
     "reached": 30,
+    "real": 5,
     "reason": "sections disagree",
+    "reasons": "too long",
     "rough": 1,
     "rounding": 1e-9,
+    "singular": 1,
     "starts": 40,
+    "trace": 1e-9,
     "unknowns": ["x", "y"],
 }
 # what a program may ask of a text: nothing of those in which claims are put
@@ -81,7 +89,7 @@ def test_numbers_are_shown_with_their_nouns_and_places_by_the_first():
     assert two.text.startswith("2 near misses may be")
     places = SearchDoubt.UNCERTIFIED.doubt("form 2", places=DATA["places"])
     assert places.text == (
-        "form 2 is not certified between s = 0.25 and 0.5 and at 1 more places"
+        "form 2 is not certified between s = 0.25 and 0.5 and at 1 more place"
     )
 
 

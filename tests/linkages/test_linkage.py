@@ -48,6 +48,8 @@ def test_a_file_is_read_by_its_path_or_by_a_text(folder, source):
         ("", UnknownLinkageError, "no linkage is called ''"),
         ("mine", UnknownLinkageError, "'mine'; the nearest names are mine.toml"),
         ("more", LinkageFileError, "more: is a folder"),
+        ("mine.tmol", LinkageFileError, r"no such file; the nearest here: mine\.toml"),
+        ("out/mine", LinkageFileError, "no such file"),
         (Path("more"), LinkageFileError, "more: is a folder"),
         (Path("bennett"), LinkageFileError, "bennett: there is no such file"),
         ("nowhere.toml", LinkageFileError, r"nowhere\.toml: there is no such file"),

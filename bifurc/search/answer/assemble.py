@@ -18,6 +18,7 @@ from bifurc.atlas import (
     Surface,
 )
 from bifurc.branch import Branch, Outcome
+from bifurc.completeness import numbered_form
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.minima import stand_out
 from bifurc.curves.monitor import dead_points
@@ -130,7 +131,7 @@ def _forms(
         smallest = 0.0 if index in singular else _smallest_value(problem, branch)
         passes = [s for point in points for form, s in point.passes if form == index]
         form = Form(
-            name=f"Form {index + 1}",
+            name=numbered_form(index),
             branch=_with_known_ends(problem, branch.branch, passes),
             profile=branch.profile,
             min_singular_value=smallest,

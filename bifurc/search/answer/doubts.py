@@ -81,7 +81,7 @@ def doubts_of(
         kind, places = SearchDoubt.BLURRED, certificate.blurred
         if len(certificate.gaps):
             kind, places = SearchDoubt.UNCERTIFIED, certificate.gaps
-        yield kind.doubt(_name(index), places=places.tolist())
+        yield kind.of_forms(index, places=places.tolist())
     for point in points:
         yield from _doubts_of_point(problem, point)
         yield from _doubts_of_halves(traced, point)
@@ -226,14 +226,13 @@ def _doubts_of_form(
     """Whether a form is a curve, as far as doubles tell, and has no loose end."""
     apart = sheets_beside(problem, traced.branch, traced.profile.rank)
     if not is_multiple_curve(apart):
-        yield SearchDoubt.SEVERAL_CURVES.doubt(_name(index), apart)
+        yield SearchDoubt.SEVERAL_CURVES.of_forms(index, amount=apart)
     branch, profile = traced.branch, traced.profile
-    name = _name(index)
     is_regular = profile.rank == branch.n - 1
     if is_regular and not is_known_curve(traced.blur):
-        yield SearchDoubt.CURVE_OR_SURFACE.doubt(name, traced.blur)
+        yield SearchDoubt.CURVE_OR_SURFACE.of_forms(index, amount=traced.blur)
     if not traced.multiplicity:
-        yield SearchDoubt.MULTIPLICITY.doubt(name, rank=profile.rank)
+        yield SearchDoubt.MULTIPLICITY.of_forms(index, rank=profile.rank)
     rates = branch.largest_rates
     unit = unit_over_rounding(stands_still, change_by_blur(traced.blur))
     # larger than the rounding of an ordinary curve, and no larger than what this makes
@@ -241,15 +240,15 @@ def _doubts_of_form(
     hidden = np.flatnonzero(is_hidden)
     if len(hidden):
         numbers = [int(k) + 1 for k in hidden]
-        yield SearchDoubt.STILL_UNKNOWNS.doubt(name, unknowns=numbers)
+        yield SearchDoubt.STILL_UNKNOWNS.of_forms(index, unknowns=numbers)
     if traced.missing and traced.certificate is None:
         place = traced.missing[0]
-        yield SearchDoubt.UNLOCATED_POINT.doubt(name, place)
+        yield SearchDoubt.UNLOCATED_POINT.of_forms(index, amount=place)
     names = _ended_at_assumed_bounds(problem, branch)
     if names:
-        yield SearchDoubt.NO_BOUNDS.doubt(name, unknowns=names)
+        yield SearchDoubt.NO_BOUNDS.of_forms(index, unknowns=names)
     if branch.outcome in (Outcome.STEP_LIMIT, Outcome.TIME_LIMIT):
-        yield SearchDoubt.TOO_LONG.doubt(name)
+        yield SearchDoubt.TOO_LONG.of_forms(index)
     if branch.outcome is Outcome.STALLED:
         passes = [s for point in points for form, s in point.passes if form == index]
         loose = loose_ends(problem, branch, passes)
@@ -258,9 +257,9 @@ def _doubts_of_form(
             rough = sum(not _is_smooth_within(problem, end, reach) for end in loose)
             if rough:
                 kind = SearchDoubt.STALLED_AT_RIM
-                yield kind.doubt(name, ends=len(loose), rough=rough)
+                yield kind.of_forms(index, ends=len(loose), rough=rough)
             else:
-                yield SearchDoubt.STALLED.doubt(name, ends=len(loose))
+                yield SearchDoubt.STALLED.of_forms(index, ends=len(loose))
 
 
 def loose_ends(
@@ -288,11 +287,6 @@ def _is_smooth_within(problem: Problem, point: np.ndarray, reach: float) -> bool
         points = np.vstack([point, point + shifts, point - shifts])
         values, slopes = problem.residuals(points), problem.jacobians(points)
     return bool(np.isfinite(values).all() and np.isfinite(slopes).all())
-
-
-def _name(index: int) -> str:
-    """What a form is called before it has a name of its own."""
-    return f"form {index + 1}"
 
 
 def _are_at_bounds(problem: Problem, points: np.ndarray) -> np.ndarray:
@@ -327,10 +321,8 @@ def _doubts_of_halves(
     for (one, along), (other, back) in itertools.combinations(ends, 2):
         if not is_same_line(1.0 + float(along @ back)):
             continue
-        names = f"the ends of {_name(one)}"
-        if one != other:
-            names = f"forms {one + 1} and {other + 1}"
-        yield SearchDoubt.ONE_CURVE.doubt(names, point=point.name)
+        met = dict.fromkeys((one, other))
+        yield SearchDoubt.ONE_CURVE.of_forms(*met, point=point.name)
 
 
 def _doubts_of_point(problem: Problem, point: MeetingPoint) -> Iterator[Doubt]:

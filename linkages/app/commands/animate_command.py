@@ -29,7 +29,7 @@ FEWEST, MOST = 2, 5000
     multiple=True,
     metavar="FORM",
     help="A form, by its name or its number in the summary; of several one is shown "
-    "after another.  [default: the first]",
+    "after another.  [default: the form as drawn, or the first]",
 )
 @click.option(
     "--route",
@@ -77,6 +77,7 @@ def animate_command(
     from linkages.app.output import require_ending, require_writable, writing_to
     from linkages.app.texts.form_names import require_forms
     from linkages.pictures.animation import movie_writer, write_animation
+    from linkages.viewing.start import first_place
 
     if forms and route is not None:
         raise CommandError("--form: it does not go with --route")
@@ -86,8 +87,10 @@ def animate_command(
     atlas = atlas_of(source, choice)
     require_forms(atlas)
     routes = () if route is None else (route,)
-    motions = choose_motions(atlas, forms, routes, count)
-    shown = motions if forms else motions[:1]
+    if not forms and route is None:
+        place = first_place(atlas)
+        forms = (atlas.forms[place.form or 0].name,)
+    shown = choose_motions(atlas, forms, routes, count)
     with writing_to(out):
         replace_file(out, lambda part: write_animation(atlas, shown, size, part, trace))
     names = ", ".join(motion.name for motion in shown)

@@ -57,13 +57,16 @@ def follow_command(
     require_folder(out)
     members, refusals, atlas = _atlas_of(linkage, parameters)
     points = members.points(atlas)
+    if not points:
+        nothing = "no singular point there to follow, and no fold of a diagram"
+        raise CommandError(f"{linkage}: it has {nothing}")
     known = [point.name for point in points]
     for name in names:
         if name not in known:
-            there = ", ".join(known) or "none"
-            raise CommandError(f"--point {name}: the points are {there}")
-    if not points:
-        raise CommandError(f"{linkage}: it has no singular point there to follow")
+            allowed = f"one of those that are followed: {', '.join(known)}"
+            raise CommandError(
+                f"--point: {name!r} is not allowed; it must be {allowed}"
+            )
     chosen = [one for one in points if not names or one.name in names]
     followed = follow_points(members, chosen)
     text = describe_followed(members, refusals, followed)

@@ -99,6 +99,11 @@ def test_the_brusselator_loses_stability_where_b_is_1_plus_a_squared() -> None:
     (hopf,) = diagram.hopf_points
     assert hopf.u == pytest.approx([a, (1 + a**2) / a, 1 + a**2], abs=1e-13)
     assert hopf.value == pytest.approx(a, rel=1e-13)
+    # whichever way the form runs
+    assert hopf.label == "becomes unstable as b grows"
+    assert repr(diagram) == (
+        "<Diagram in 'b': 0 folds, 1 Hopf point, 0 events, 0 touches, 0 branchings>"
+    )
     assert sorted(one.unstable for one in diagram.stretches) == [0, 2]
 
 

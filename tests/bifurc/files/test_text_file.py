@@ -35,3 +35,6 @@ def test_a_folder_and_nothing_are_no_files(tmp_path):
         read_text(tmp_path)
     with pytest.raises(TextFileError, match="no such file"):
         read_text(tmp_path / "nothing")
+    (tmp_path / "printed.csv").touch()
+    with pytest.raises(TextFileError, match=r"file; the nearest here: printed\.csv$"):
+        read_text(tmp_path / "pirnted.csv")

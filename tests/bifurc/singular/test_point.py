@@ -61,3 +61,16 @@ def test_a_singular_point_is_shown_in_one_line() -> None:
     assert shown == (
         "SingularPoint(bifurcation, rank 4, error 2.5e-15, 4 half-branches, 2 tangents)"
     )
+
+
+def test_points_that_may_be_in_one_map_have_marks_of_their_own() -> None:
+    kinds = [
+        Kind.BIFURCATION,
+        Kind.RANK_DROP,
+        Kind.DIMENSION_CHANGE,
+        Kind.CUSP,
+        Kind.ISOLATED,
+        Kind.SURFACE,
+        Kind.UNDECIDED,
+    ]
+    assert len({kind.mark for kind in kinds}) == len(kinds)

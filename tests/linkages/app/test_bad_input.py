@@ -234,7 +234,7 @@ BAD = {
     "a folder for a linkage": (("map", "folder"), "folder"),
     "an empty file to identify": (("identify", "empty.toml"), "empty.toml"),
     "a binary file for tolerance": (("tolerance", "binary.toml"), "is not UTF-8"),
-    "a NetCDF file to map": (("map", "kite.nc"), "is not UTF-8 text"),
+    "a NetCDF file to map": (("map", "kite.nc"), "is a map that is made already"),
     # atlases
     "a missing atlas": (("route", "nowhere.nc", "a", "b"), "there is no such file"),
     "an empty atlas": (("route", "empty.nc", "a", "b"), "empty.nc"),

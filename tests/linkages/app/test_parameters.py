@@ -188,7 +188,7 @@ def test_where_nothing_is_special_it_says_so():
         (("special", "nothing", "--param", "d"), "no linkage is called"),
         (("follow", "four-bar", "--param", "d=1:2", "--param", "d"), "given twice"),
         (("follow", "bennett", "--param", "alpha"), "no singular point"),
-        (("follow", *BRICARD, "--point", "B9"), "the points are B1, B2"),
+        (("follow", *BRICARD, "--point", "B9"), "that are followed: B1, B2"),
         (("follow", "mine.toml", "--param", "d"), "there is no such file"),
     ],
 )

@@ -45,6 +45,34 @@ direction = [1, 0, 0]
 """
 
 
+RPRP = """
+[[joints]]
+name = "A"
+kind = "revolute"
+bodies = ["frame", "arm"]
+point = [0, 0, 0]
+direction = [0, 0, 1]
+[[joints]]
+name = "S"
+kind = "prismatic"
+bodies = ["arm", "block"]
+point = [0.5, 0, 0]
+direction = [1, 0.2, 0]
+[[joints]]
+name = "B"
+kind = "revolute"
+bodies = ["block", "carriage"]
+point = [1, 0.6, 0]
+direction = [0, 0, 1]
+[[joints]]
+name = "T"
+kind = "prismatic"
+bodies = ["frame", "carriage"]
+point = [1, 0.2, 0]
+direction = [0, 1, 0]
+"""
+
+
 @pytest.fixture(scope="module")
 def slider_crank(tmp_path_factory):
     path = tmp_path_factory.mktemp("pictures") / "slider_crank.toml"
@@ -82,6 +110,24 @@ def test_pins_and_sliders_on_the_frame_have_ground(slider_crank):
     assert len(lines) == 2 * 7
     assert sum(one.part is Part.JOINT for one in strokes) == 4
     assert not any(one.part is Part.AXIS for one in strokes)
+
+
+def test_symbols_are_as_large_as_rails_need_and_names_beside_their_own(tmp_path):
+    file = tmp_path / "rprp.toml"
+    file.write_text(RPRP)
+    atlas = map_of(load(str(file)))
+    figure = plot_linkage(atlas, 1)
+    picture = picture_of(atlas)
+    joints = [one.points for one in picture.strokes if one.part is Part.JOINT]
+    smallest = min(np.ptp(points, axis=0).max() for points in joints)
+    assert smallest > 0.02 * np.ptp(picture.corners, axis=0).max()
+    figure.draw_without_rendering()
+    (ax,) = figure.axes
+    spots = {name: ax.transData.transform(at) for name, at in picture.names}
+    for text in ax.texts:
+        middle = np.mean(text.get_window_extent().get_points(), axis=0)
+        distances = {k: np.linalg.norm(middle - spots[k]) for k in spots}
+        assert min(distances, key=distances.__getitem__) == text.get_text()
 
 
 def test_joints_in_space_show_their_axes_and_no_ground():

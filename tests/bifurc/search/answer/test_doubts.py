@@ -67,7 +67,7 @@ def test_a_form_known_less_well_than_points_are_told_apart_is_in_doubt():
     # the great circle is a solution whatever e is
     blurred = CirclesBesideSphere(1e-10)
     (doubt,) = doubts_of(blurred, [traced(blurred, branch)], [], [], [])
-    assert doubt.text.startswith("form 1 may be a curve or a part of a surface")
+    assert doubt.text.startswith("Form 1 may be a curve or a part of a surface")
 
 
 def test_a_form_that_stalls_at_nothing_known_is_in_doubt():
@@ -76,7 +76,7 @@ def test_a_form_that_stalls_at_nothing_known_is_in_doubt():
     assert not list(doubts_of(problem, [traced(problem, branch)], [], [], []))
     loose = replace(branch, outcome=Outcome.STALLED)
     (doubt,) = doubts_of(problem, [traced(problem, loose)], [], [], [])
-    assert doubt.text.startswith("form 1 stalls at 2 of its 2 ends")
+    assert doubt.text.startswith("Form 1 stalls at 2 of its 2 ends")
 
 
 @pytest.mark.parametrize("level", [Level.PROVED, Level.CERTIFIED])
@@ -161,8 +161,12 @@ def test_halves_of_a_curve_that_stall_at_a_bifurcation_are_in_doubt():
     forms = [traced(problem, branch) for branch in branches]
     (doubt,) = doubts_of(problem, forms, [], met, ())
     assert doubt.text == (
-        f"forms 1 and 2 stall at {met[0].name} in opposite directions and may be one "
-        "curve through it"
+        f"ends of Form 1 and Form 2 at {met[0].name}, where they stall in opposite "
+        "directions, may be of one curve through it"
+    )
+    assert doubt.naming(["Bennett form", "4R form", "Form I"]).text == (
+        f"ends of Bennett form and 4R form at {met[0].name}, where they stall in opposite "
+        "directions, may be of one curve through it"
     )
 
 
