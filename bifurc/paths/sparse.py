@@ -27,7 +27,7 @@ from bifurc.equations.tape import TapeWriter
 from bifurc.limits import Deadline
 from bifurc.paths.family import Family, complex_normal
 from bifurc.paths.follow import PathEnd, Paths, follow_paths
-from bifurc.paths.monodromy import GenericSolutions, solve_generic
+from bifurc.paths.monodromy import Fibre, GenericSolutions, solve_generic
 
 Exponents: TypeAlias = tuple[int, ...]
 
@@ -132,6 +132,26 @@ class SparseFamily:
         return solve_generic(
             self.family, start, parameters, rng, deadline, most, int(self.constants[0])
         )
+
+    def with_zeros_of(
+        self,
+        generic: GenericSolutions,
+        member: np.ndarray,
+        rng: np.random.Generator,
+        deadline: Deadline,
+    ) -> GenericSolutions:
+        """The solutions of a member with random coefficients, but zeros where those (q,)
+        of another one are zero; the ``generic`` ones where those are not all regular.
+
+        Fewer paths lead from there, and those that still go to infinity do so because
+        of what the coefficients are, and not which.
+        """
+        chosen = complex_normal(rng, len(member))
+        parameters = np.where(member == 0.0, 0.0, chosen)
+        paths = self.follow(generic, parameters, rng, deadline)
+        if not np.all(paths.is_regular | (paths.ends == PathEnd.AT_INFINITY)):
+            return generic
+        return replace(generic, fibre=Fibre(parameters, paths.regular))
 
     def follow(
         self,

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bifurc.completeness import Claim, Level, Scope
+from bifurc.decisions import is_plainly_at_infinity
 from bifurc.equations.polynomials import (
     PolynomialSystem,
     polynomial_system,
@@ -61,6 +62,8 @@ class IsolatedSolutions:
         if lost:
             reasons = ", ".join(self.paths.reasons())
             kind, more = SearchClaim.PATHS_LOST, {"lost": lost, "reasons": reasons}
+        elif far := self._are_far():
+            kind, more = SearchClaim.PATHS_FAR_AWAY, {"far": far}
         elif singular or self.has_curves:
             kind, more = SearchClaim.PATHS_TO_SINGULAR, {"singular": singular}
         elif self.has_curves is None:
@@ -69,6 +72,12 @@ class IsolatedSolutions:
             kind = SearchClaim.ALL_ISOLATED
             return kind.claim(Scope.ASSEMBLIES, Level.CERTIFIED, **data)
         return kind.claim(Scope.ASSEMBLIES, Level.ESTIMATED, **data, **more)
+
+    def _are_far(self) -> int:
+        """How many paths ended so far away that rounding may hide a solution there."""
+        is_far = self.paths.ends == PathEnd.AT_INFINITY
+        sizes = np.abs(self.paths.points[is_far]).max(axis=1, initial=1.0)
+        return int(np.count_nonzero(~is_plainly_at_infinity(1.0 / sizes)))
 
 
 def isolated_solutions(
@@ -86,7 +95,8 @@ def isolated_solutions(
     if not generic.are_all or generic.trace is None or generic.count > most:
         return None
     member = family.member(system.polynomials)
-    paths = family.follow(generic, member, rng, deadline)
+    starts = family.with_zeros_of(generic, member, rng, deadline)
+    paths = family.follow(starts, member, rng, deadline)
     has_curves = family.has_curves(generic, member, rng, deadline)
     if deadline.passed:
         return None

@@ -81,6 +81,7 @@ DIGITS = 40
 PLACES = np.linspace(0.05, 0.95, 9)  # shares of a form at which factors are evaluated
 TINY = 1e-300  # keeps a gradient of zero from being divided by
 REGULAR = 1e-6  # smallest regular singular value at an end that is where it belongs
+ROUNDING = 1e-14  # all that is left of a singular value that is zero along a curve
 OF_CURVES = 1e-4  # the same: at points of higher order where starts stop it is 2e-6
 # What a class may answer in its own way: in its own units only, or in any one unit.
 OF_EQUATIONS = (
@@ -583,7 +584,8 @@ def _closer_and_closer(problem: FunctionProblem) -> Iterator[UnitProblem]:
         own = _problem_on(problem, region, simplified)
         yield own
     own = _deflated(own)
-    if not np.array_equal(region, whole) and not _has_curves(own):
+    # what a residual leaves open about a multiple solution is smaller than any curve
+    if not np.array_equal(region, whole) and not _has_curves(own, ROUNDING):
         own = _deflated(_problem_on(problem, whole, simplified))
     yield own
 
@@ -760,9 +762,10 @@ def _flatness(own: UnitProblem) -> np.ndarray:
     return np.where(usual > 0.0, lengths / (usual + TINY), np.inf)
 
 
-def _has_curves(own: UnitProblem) -> bool:
+def _has_curves(own: UnitProblem, zero: float = OF_CURVES) -> bool:
     """Whether the solutions that random starts reach lie on curves of full rank, as a
-    rule; where there are fewer equations, on components of their full rank."""
+    rule; where there are fewer equations, on components of their full rank. A singular
+    value over the smallest regular one is ``zero`` below that."""
     seeds = random_seeds(own, np.random.default_rng(1), STARTS, own.region)
     if len(seeds.points) < FEWEST:
         return False
@@ -771,7 +774,7 @@ def _has_curves(own: UnitProblem) -> bool:
     rank = min(values.shape[1], own.n - 1)
     regular = np.median(values[:, rank - 1])
     left = np.median(values[:, rank]) if values.shape[1] > rank else 0.0
-    return bool(regular > OF_CURVES and left < OF_CURVES * regular)
+    return bool(regular > OF_CURVES and left < zero * regular)
 
 
 def _problem_on(

@@ -77,6 +77,46 @@ def test_what_is_not_known_to_be_all_is_not_certified(name):
     assert atlas.completeness.level is Level.ESTIMATED
 
 
+FAR_AWAY = {
+    "one solution": lambda x: [
+        980 * x[0] + 3200 * x[1] * x[2] ** 2 + 5.7e-5 * x[1] * x[2],
+        9.5e-4 * x[0] * x[1] - 5.6e6,
+        -7e-4 * x[1] * x[2] + 8.9e7 * x[2] + 1.3e7,
+    ],
+    "four solutions": lambda x: [
+        7e-3 - 1.1e-4 * x[0] ** 2 * x[1] ** 2,
+        (4e7 * x[0] ** 2 + 8.6e4 * x[0]) * x[1] ** 3
+        - 3.6e6 * x[1]
+        - 5.6e-7 * x[0] ** 3,
+        x[2],
+    ],
+}
+
+
+@pytest.mark.parametrize("name", FAR_AWAY)
+def test_solutions_too_far_away_to_be_told_from_infinity_are_not_denied(name):
+    atlas = explored(FAR_AWAY[name], [(-40, 40)] * 3)
+    assert not claims_of(atlas, SearchClaim.ALL_ISOLATED)
+    (claim,) = claims_of(atlas, SearchClaim.PATHS_FAR_AWAY)
+    assert claim.data["far"] > 0
+    assert atlas.completeness.level is Level.ESTIMATED
+
+
+DOUBLE = {
+    "a tangent": lambda x: [x[0] ** 2 + x[1] ** 2 - 1, x[0] - 1],
+    "a steep one": lambda x: [x[1] - 3 * x[0] ** 2 + 2, 30 * (x[1] + 2)],
+}
+
+
+@pytest.mark.parametrize("name", DOUBLE)
+def test_a_double_solution_is_one_point_in_doubt(name):
+    atlas = explored(DOUBLE[name], [(-3, 3.1)] * 2)
+    (point,) = atlas.points
+    assert np.abs(DOUBLE[name](point.point.u)).max() < 1e-9
+    assert len(atlas.rigid) == len(atlas.forms) == 0
+    assert atlas.completeness.is_in_doubt
+
+
 @pytest.mark.parametrize("paths", [0, 4])
 def test_no_more_paths_are_followed_than_are_asked_for(paths):
     settings = SearchSettings(starts=5, near_motions=False, paths=paths)
