@@ -56,13 +56,9 @@ def turns_back(
     """Whether ``unknown`` times ``sign`` has its largest value on the surface next to
     a disk, and none outside the bound there: the surface comes up to it and turns
     back."""
-    rises = sign * _rises(problem, plane, radius)[:, unknown]
-    one, other = radius * RIM.T
-    terms = np.stack([one**2 / 2, one * other, other**2 / 2], axis=1)
-    a, b, c = np.linalg.lstsq(terms, rises, rcond=None)[0]
-    if not (a < 0.0 and a * c > b * b):
+    bend = sign * _bend(_rises(problem, plane, radius)[:, unknown], radius)
+    if np.linalg.eigvalsh(bend).max() >= 0.0:
         return False
-    bend = np.array([[a, b], [b, c]])
     y, step = np.zeros(2), -np.linalg.solve(bend, sign * plane.basis[unknown])
     for _ in range(STEPS):
         y += step
@@ -84,6 +80,15 @@ def _rises(problem: Problem, plane: TangentPlane, radius: float) -> np.ndarray:
     points, _ = correct_normal(problem, flat, planes)
     rises: np.ndarray = points - flat
     return rises
+
+
+def _bend(rises: np.ndarray, radius: float) -> np.ndarray:
+    """The second derivatives (2, 2) at the centre that ``rises`` (8,) on the rim
+    show."""
+    one, other = radius * RIM.T
+    terms = np.stack([one**2 / 2, one * other, other**2 / 2], axis=1)
+    a, b, c = np.linalg.lstsq(terms, rises, rcond=None)[0]
+    return np.array([[a, b], [b, c]])
 
 
 def _slope(
