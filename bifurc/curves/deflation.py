@@ -174,7 +174,8 @@ def deflated_singular_values(
         matrix[:, : problem.n] *= problem.domain.scale
         matrix[: len(matrix) // 2 - 1] /= problem.domain.scale  # F' itself
         sigma = values_of(matrix / problem.magnitude)
-        values[k] = sigma[2 * problem.n - 2]
+        # of fewer equations the last values are zero
+        values[k] = sigma[2 * problem.n - 2] if len(sigma) > 2 * problem.n - 2 else 0.0
     return values
 
 

@@ -180,7 +180,7 @@ class Components:
     def off_charts(self) -> int:
         """How many seeds of dimension 2 lie on none of the charts, nor are joined to
         any, although all surfaces on which charts fit are covered."""
-        if self.charts is None or not self.charts.complete:
+        if self.charts is None or not self.charts.is_finished:
             return 0
         return int(np.count_nonzero(self.part_of < 0))
 
@@ -194,7 +194,7 @@ class Components:
             samples = self.samples(points, dimension)
             if dimension == 2 and self.charts is not None:
                 surfaces += self._charted_surfaces(self.charts, samples)
-                samples = samples[(self.part_of < 0) & (not self.charts.complete)]
+                samples = samples[(self.part_of < 0) & (not self.charts.is_finished)]
             if len(samples):
                 is_shaky = dimension == 2 and self.deflated is not None
                 note = self._note_of_lower_rank(-1) if is_shaky else ""

@@ -304,7 +304,7 @@ class Search:
 
     def look_at_bounds(self) -> Starts:
         """Take solutions in single bounds for seeds, where nothing is known: of a curve
-        that only touches the region, as in a corner of it, random starts end outside."""
+        or a surface of which only a corner is in the region random starts end outside."""
         findings, problem = self.findings, self.problem
         if findings.components.seeds or self.run.is_over:
             return
@@ -313,6 +313,7 @@ class Search:
             points = points[~findings.are_on_branches(points)]
         if len(points):
             self._add_seeds(findings.book.seeds.with_constructed(points))
+            self._sort_seeds()
             yield []
 
     # --- what doubles mistake ---------------------------------------------------------

@@ -99,6 +99,11 @@ class ChartAtlas:
         return self.outcome in (Covering.COMPLETE, Covering.MISFIT)
 
     @property
+    def is_finished(self) -> bool:
+        """Whether it is complete but for isolated singular points."""
+        return self.complete or self.outcome is Covering.SINGULAR
+
+    @property
     def is_short_of_charts(self) -> bool:
         """Whether the charts ran out before the surface was covered."""
         return self.outcome is Covering.CHART_LIMIT
@@ -249,11 +254,13 @@ class ChartAtlas:
         """Numbers (k,) of the charts that may be next to a singular point (n,) about
         which there is none.
 
-        As at the tip of a cone: charts are the smaller the nearer they are to it.
+        As at the tip of a cone: charts are the smaller the nearer they are to it, and
+        the hole that they leave is no larger than the largest of them.
         """
         gaps = self.difference(point, self.centers)
         distance = np.linalg.norm(gaps, axis=1)
-        by_radius = distance < NEXT_TO * self.radii
+        farthest = self.radii.max(initial=0.0)
+        by_radius = distance < np.minimum(NEXT_TO * self.radii, farthest)
         by_nearest = distance < NEAR_THE_NEAREST * distance.min(initial=np.inf)
         return np.flatnonzero(by_radius & by_nearest)
 

@@ -32,6 +32,7 @@ from bifurc.numerics.null_spaces import (
 )
 from bifurc.problem import Problem
 from bifurc.surfaces.area import Sizes, cell_sizes
+from bifurc.surfaces.beside_bounds import disk_beside_bounds, turns_back
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.complex import (
     Cells,
@@ -59,6 +60,8 @@ GROWTH = 1.4
 # Radius over the largest one below which no chart is made next to a singular point, and
 # how far from that, over this radius.
 SMALLEST, NEXT_TO = 1.0 / 64, 16.0
+# The same beside a bound that only just cuts the surface.
+SMALLEST_BESIDE_BOUNDS = 1.0 / 256
 # Radius over the scale below which no chart is made at all: the size of a neck.
 TINIEST = 1e-8
 # Radius of a chart that is too large among others, over what it was, how often that is
@@ -113,7 +116,7 @@ def cover_surface(
         cover.add_all(atlas)
     unit = np.ones(problem.n) if metric is None else metric
     covering = _covering(cover, lambda: cover.finish(seeds, charts, deadline), unit)
-    if covering.complete and has_uncovered_crossing(problem, covering, AGREE):
+    if covering.is_finished and has_uncovered_crossing(problem, covering, AGREE):
         return replace(covering, outcome=Covering.UNFIT)
     return covering
 
@@ -442,9 +445,12 @@ class _Cover:
             return Placement.COVERED
         # without equations across it there is no other sheet
         normal = right[0, -3] if self.problem.n > 2 else np.zeros(self.problem.n)
-        disk = self._disk(TangentPlane(center, plane, normal), radius)
+        tangent_plane = TangentPlane(center, plane, normal)
+        disk = self._disk(tangent_plane, radius)
         if disk is None:
             return Placement.UNFIT
+        smallest = min(disk.radius, SMALLEST_BESIDE_BOUNDS * self._largest)
+        disk = disk_beside_bounds(self.problem, tangent_plane, disk, smallest)
         self.add(center, plane, disk)
         return Placement.MADE
 
@@ -479,7 +485,8 @@ class _Cover:
     def add(self, center: np.ndarray, basis: np.ndarray, disk: Disk) -> None:
         """Add a chart and cut its polygon and those of all charts that overlap it."""
         number, radius = len(self._radii), disk.radius
-        polygon = self._cut_by_bounds(octagon(radius), center, basis)
+        plane = TangentPlane(center, basis, np.zeros(self.problem.n))
+        polygon = self._cut_by_bounds(octagon(radius), plane, radius)
         near = self._near_charts(center, basis, radius)
         overlaps = self._on_sheet(center, basis, disk.is_clear, near)
         for i, x, height in zip(*overlaps, strict=True):
@@ -495,18 +502,20 @@ class _Cover:
         self._open.append(number)
 
     def _cut_by_bounds(
-        self, polygon: Polygon, center: np.ndarray, basis: np.ndarray
+        self, polygon: Polygon, plane: TangentPlane, radius: float
     ) -> Polygon:
-        """The part of a polygon about ``center`` (n,) inside the bounds. What lies
-        outside by rounding is not cut off: a surface may run in a bound."""
-        domain = self.problem.domain
+        """The part of a polygon inside the bounds. What lies outside by rounding is not
+        cut off: a surface may run in a bound, or touch it."""
+        domain, center, basis = self.problem.domain, plane.center, plane.basis
         low, high = domain.bounds.T
         for side, rooms in enumerate((center - low, high - center)):
             sign = 2.0 * side - 1.0
             for k in np.flatnonzero(np.isfinite(rooms)):
                 normal, room = sign * basis[k], max(rooms[k], 0.0)
                 farthest = (polygon.vertices @ normal).max(initial=0.0)
-                if farthest > room + domain.slack:
+                if farthest > room + domain.slack and not turns_back(
+                    self.problem, plane, radius, int(k), sign
+                ):
                     label = BORDER - 2 * int(k) - side
                     polygon = polygon.clip(normal, room, label)
         return polygon

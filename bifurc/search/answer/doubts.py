@@ -46,6 +46,7 @@ RIM = 1e-4  # scales from a rim at which starts end where F vanishes slowly towa
 COVERING_DOUBTS = {
     Covering.UNDECIDED: SearchDoubt.SHEETS_TOGETHER,
     Covering.UNFIT: SearchDoubt.HOLES,
+    Covering.MISFIT: SearchDoubt.MISFIT,
 }
 MOST_SAMPLES = 200  # of a surface at which it is seen what it misses
 

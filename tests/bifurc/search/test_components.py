@@ -1,6 +1,9 @@
 """Components of dimension 2 and more in a search: surfaces with their charts, and the
 singular points at which forms meet them."""
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -11,7 +14,8 @@ from bifurc.search.explore import explore
 from bifurc.seeds import Seeds
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
-from bifurc.surfaces.chart_atlas import Covering
+from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
+from bifurc.surfaces.covering import cover_surface
 from tests.bifurc.known_surfaces import (
     CONE,
     SPHERE,
@@ -99,6 +103,30 @@ def test_seeds_between_the_charts_of_complete_surfaces_belong_to_these() -> None
         samples = sum(len(surface.samples) for surface in atlas.surfaces)
         assert samples == atlas.provenance.settings.starts
         assert "no charted surface" not in atlas.completeness.statement
+
+
+def test_a_corner_of_a_surface_that_random_starts_miss_is_a_surface() -> None:
+    bounds = [(-1.5, 1.5), (-1.5, 1.6), (0.999, 2.0)]
+    cap = FunctionProblem(lambda u: np.array([u @ u - 1.0]), bounds)
+    (surface,) = explore(cap, settings=SearchSettings(starts=20)).surfaces
+    assert surface.charts is not None
+    assert surface.charts.euler_characteristic == 1
+    assert surface.charts.area == pytest.approx(2e-3 * np.pi, rel=1e-6)
+
+
+def test_charts_that_do_not_fit_together_are_a_doubt(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def ill_fitting(*args: Any, **options: Any) -> ChartAtlas:
+        charts = cover_surface(*args, **options)
+        return replace(charts, outcome=Covering.MISFIT)
+
+    plane = FunctionProblem(lambda u: u[2:], [(-1.0, 1.0)] * 3)
+    settings = SearchSettings(starts=5)
+    assert not explore(plane, settings=settings).completeness.is_in_doubt
+    monkeypatch.setattr("bifurc.search.components.cover_surface", ill_fitting)
+    atlas = explore(plane, settings=settings)
+    assert "do not fit together everywhere" in atlas.completeness.statement
 
 
 def test_seeds_that_come_to_no_chart_are_no_surface_but_a_doubt(

@@ -37,6 +37,7 @@ def test_about_the_tip_of_a_cone_there_is_no_chart_but_next_to_it() -> None:
     assert not len(charts.charts_about(tip))
     near = charts.charts_next_to(tip)
     assert len(near) > 2
+    assert not len(charts.charts_next_to(np.array([-1.0, 0.0, 0.0])))
     nearest = int(charts.nearest_charts(tip[None])[0])
     assert nearest in near
 

@@ -78,6 +78,28 @@ def test_a_surface_that_runs_in_a_bound_is_whole(start: float) -> None:
     assert charts.area == pytest.approx(4.0, rel=1e-9)
 
 
+def sphere_between(low: float, high: float) -> Problem:
+    """The part of the unit sphere with z from ``low`` to ``high``."""
+    bounds = [(-1.5, 1.5), (-1.5, 1.6), (low, high)]
+    return FunctionProblem(lambda u: np.array([u @ u - 1.0]), bounds)
+
+
+@pytest.mark.parametrize("height", [1e-2, 1e-4])
+def test_a_corner_of_a_surface_much_smaller_than_charts_is_whole(height: float) -> None:
+    problem = sphere_between(1.0 - height, 2.0)
+    start = np.array([np.sqrt(1.0 - (1.0 - height) ** 2), 0.0, 1.0 - height])
+    charts = cover_surface(problem, start[None])
+    assert charts.euler_characteristic == 1
+    assert charts.area == pytest.approx(2 * np.pi * height, rel=1e-6)
+
+
+def test_a_surface_that_touches_a_bound_is_not_cut_there() -> None:
+    start = np.array([[0.3, 0.4, np.sqrt(0.75)]])
+    charts = cover_surface(sphere_between(-1.5, 1.0), start)
+    assert charts.euler_characteristic == 2
+    assert charts.area == pytest.approx(4 * np.pi, rel=1e-7)
+
+
 def test_a_surface_that_leaves_the_bounds_has_a_border_and_its_area_inside() -> None:
     problem = Level(
         lambda x, y, z: z - 0.5 * x,
