@@ -37,7 +37,6 @@ from linkages.entry import Entry
 from linkages.errata.misprints import printed_tables
 from linkages.identification.corrections import (
     EXCESS,
-    MOST_JOINTS,
     Change,
     Correction,
     corrections_of,
@@ -68,6 +67,7 @@ NAMES = (
     "bricard-plane-symmetric",
     "bricard-trihedral",
 )
+MOST_JOINTS = 5  # of the tables that are printed with two wrong numbers
 MORE = np.radians(30.0)
 TRIES = 200  # of random parameters, and of misprints
 HEADS = ("linkage", "printed", "map", "member", "named", "s")
@@ -232,7 +232,7 @@ def judge(printed: Printed) -> tuple[Verdict, Correction | None]:
     if identification.matches:  # rounding leaves some linkages what they are
         best = [Correction(identification.matches[0])]
     else:
-        best = best_corrections(corrections_of(identification))
+        best = best_corrections(corrections_of(identification).found)
     right = next((one for one in best if is_right(printed, one)), None)
     wrong = places_off(printed)
     is_named = any(places(one.changes) == wrong for one in best)
@@ -281,7 +281,9 @@ def of_sources() -> Iterator[tuple[str, ...]]:
     for one in printed_tables():
         start = time.perf_counter()
         found = identify(one.loop, locking=False)
-        best = best_corrections(corrections_of(found)) if not found.matches else []
+        best = (
+            best_corrections(corrections_of(found).found) if not found.matches else []
+        )
         named = " or ".join(words(each, one.loop.n) for each in best) or "nothing"
         seconds = f"{time.perf_counter() - start:.1f}"
         place = f"{one.source} {one.equation}"

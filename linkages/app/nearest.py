@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +11,11 @@ from linkages.app.output import StatusLine
 from linkages.app.reports.corrections import describe_corrections, exact_toml
 from linkages.app.reports.entry_parameters import member_text
 from linkages.entry import Linkage
-from linkages.identification.corrections import Correction, corrections_of
+from linkages.identification.corrections import (
+    Correction,
+    Corrections,
+    corrections_of,
+)
 from linkages.identification.equivalence import as_loop, table
 from linkages.identification.identify import Identification, identify
 from linkages.identification.match import Match
@@ -20,19 +23,19 @@ from linkages.loop import Loop
 
 
 def exact_linkage(
-    option: str, identification: Identification, corrections: Sequence[Correction]
+    option: str, identification: Identification, corrections: Corrections
 ) -> Correction:
     """The linkage that a table is, or else the first that it is meant to be; raises
     `CommandError` about an ``option`` where nothing is known of it."""
     if identification.matches:
         return Correction(identification.matches[0])
-    if not corrections:
+    if not corrections.found:
         raise CommandError(
             f"{option}: no linkage of the catalogue is near {identification.loop.name}, "
-            "and none has all its numbers but one",
+            "and none has all its numbers but one or two",
             ExitCode.NOT_IN_CATALOGUE,
         )
-    return corrections[0]
+    return corrections.found[0]
 
 
 @dataclass(frozen=True)
@@ -49,13 +52,13 @@ def nearest_linkage(loop: Loop) -> NearestLinkage:
     """The exact linkage that the table of a loop is meant to be; raises
     `CommandError`."""
     identification = identify(loop, locking=False)
-    corrections: tuple[Correction, ...] = ()
+    corrections = Corrections(())
     if not identification.matches:
         with StatusLine() as status:
             corrections = corrections_of(identification, status)
     correction = exact_linkage("--nearest", identification, corrections)
     words = f"--nearest: this is the map of {member_text(correction.match)}"
-    if corrections:
+    if corrections.found:
         words += "\n" + describe_corrections(corrections, loop.n)
     linkage = _linkage(correction.match, loop.name)
     return NearestLinkage(linkage, words, exact_toml(loop, correction))

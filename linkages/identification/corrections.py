@@ -3,17 +3,19 @@
 A printed table is rounded, and some number of it is wrong: it has another sign, is the
 supplement of the right one, or another number altogether; two rows are exchanged; a
 column is shifted by a row, as between the two conventions of Denavit and Hartenberg;
-twists are in the other unit; in tables of up to five joints two numbers are wrong that
-have nothing to do with each other, and are not both twists. A family makes a table of
-fewer parameters than it has numbers, so that the numbers that are right tell the wrong
-one: it is left out, and the member is fitted to the others. Where parameters are read
-off at the number that is left out, they are tried at values all over their range.
+twists are in the other unit; two numbers are wrong that have nothing to do with each
+other, and are not both twists. A family makes a table of fewer parameters than it has
+numbers, so that the numbers that are right tell the wrong one: it is left out, and the
+member is fitted to the others. Where parameters are read off at the number that is left
+out, they are tried at values all over their range. Kinds of mistakes are gone through,
+simple ones first, until one leaves nothing but rounding.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -59,7 +61,7 @@ MOST_DECIMALS = 12  # of a printed number
 EXCESS = 3.0
 REACH = 1.0  # from a trial to the member, all numbers together
 SPARSE = 3  # so much fewer values are tried where other angles are scanned for each
-MOST_JOINTS = 5  # of a table in which two numbers are looked for: six take minutes
+PATIENCE = 5.0  # s of processor time, for two numbers; six joints take some 3
 NUDGE = 0.003  # of a number, by which it is seen whether guesses read it
 
 
@@ -104,17 +106,33 @@ class Correction:
         return min(len(self.changes), 2)
 
 
+@dataclass(frozen=True)
+class Corrections:
+    """What a table may be meant to be, the best first, and the names of the families
+    that were ``left`` out of a search for two wrong numbers: their guesses are scanned
+    for, which takes minutes, or the time was up."""
+
+    found: tuple[Correction, ...]
+    left: tuple[str, ...] = ()
+
+
 Progress: TypeAlias = Callable[[str, int], None]
 
 
 def corrections_of(
-    identification: Identification, progress: Progress | None = None
-) -> tuple[Correction, ...]:
+    identification: Identification,
+    progress: Progress | None = None,
+    patience: float = PATIENCE,
+) -> Corrections:
     """What a table is meant to be that is no linkage of the catalogue: those that it is
     to rounding, or else what `find_corrections` finds, or else those nearest."""
     near = _nearest(identification)
     rounded = tuple(one for one in near if one.is_rounding)
-    return rounded or find_corrections(identification.loop, progress=progress) or near
+    if rounded:
+        return Corrections(rounded)
+    loop = identification.loop
+    mended = find_corrections(loop, progress=progress, patience=patience)
+    return replace(mended, found=mended.found or near)
 
 
 def roundings_of(identification: Identification) -> tuple[Correction, ...]:
@@ -139,37 +157,81 @@ def find_corrections(
     loop: Loop,
     entries: Iterable[Entry] | None = None,
     progress: Progress | None = None,
-) -> tuple[Correction, ...]:
-    """What the table of ``loop`` may be meant to be: with one number wrong, or else by
-    another mistake, or else, of at most `MOST_JOINTS` joints, with two numbers wrong;
-    those first that leave the least to rounding. ``progress`` is called with what was
-    looked at and how many."""
-    printed = table(loop)
-    unit = loop.characteristic_length
+    patience: float = PATIENCE,
+) -> Corrections:
+    """What the table of ``loop`` may be meant to be: with one number wrong, by another
+    mistake, or with two numbers wrong, each of which is looked for unless one before it
+    leaves nothing but rounding. Two numbers are looked for during ``patience`` s of
+    processor time. ``progress`` is called with what was looked at and how many."""
     known = distinct_entries() if entries is None else entries
     families = [entry for entry in known if joints_of(entry) == loop.n]
-    corrections: list[Correction] = []
     with np.errstate(all="ignore"):
-        # a scan takes long, and what is scanned is more general than the others
-        for entry in sorted(families, key=lambda entry: bool(entry.scan)):
-            if not (entry.scan and corrections):
-                corrections += _without(entry, printed, _single_numbers(printed), unit)
-            if progress:
-                progress("families", families.index(entry))
-        if not corrections:
-            for entry in families:
-                corrections += _without(entry, printed, _like_numbers(printed), unit)
-            rows = _rows_in_place(printed)
-            corrections += _rearranged(families, printed, rows, unit)
-        if not corrections:
-            columns = _columns_in_place(printed)
-            corrections += _rearranged(families, printed, columns, unit)
-        if not corrections and loop.n <= MOST_JOINTS:
-            for entry in families:
-                if not entry.scan:
-                    pairs = _pairs_of_numbers(printed)
-                    corrections += _without(entry, printed, pairs, unit)
-    return tuple(sorted(corrections, key=_order))
+        found = _by_single_number(families, loop, progress)
+        if not _has_rounding(found):
+            found = [*found, *_by_rearranging(families, loop)]
+        left: list[str] = []
+        if not _has_rounding(found):
+            pairs, left = _by_two_numbers(families, loop, patience)
+            found = [*found, *pairs]
+    return Corrections(tuple(sorted(found, key=_order)), tuple(left))
+
+
+def _has_rounding(corrections: Iterable[Correction]) -> bool:
+    """Whether any leaves nothing but rounding."""
+    return any(one.is_rounding for one in corrections)
+
+
+def _by_single_number(
+    families: Sequence[Entry], loop: Loop, progress: Progress | None
+) -> list[Correction]:
+    """The members that the table of a loop is but for one number."""
+    printed, unit = table(loop), loop.characteristic_length
+    corrections: list[Correction] = []
+    # a scan takes long, and what is scanned is more general than the others
+    for entry in sorted(families, key=lambda entry: bool(entry.scan)):
+        if not (entry.scan and corrections):
+            corrections += _without(entry, printed, _single_numbers(printed), unit)
+        if progress:
+            progress("families", families.index(entry))
+    return corrections
+
+
+def _by_rearranging(families: Sequence[Entry], loop: Loop) -> list[Correction]:
+    """The members that the table of a loop is but for numbers that are alike, rows or
+    columns in another place, or else two numbers of a column."""
+    printed, unit = table(loop), loop.characteristic_length
+    corrections: list[Correction] = []
+    for entry in families:
+        corrections += _without(entry, printed, _like_numbers(printed), unit)
+    rows = _rows_in_place(printed)
+    corrections += _rearranged(families, printed, rows, unit)
+    if not _has_rounding(corrections):
+        columns = _columns_in_place(printed)
+        corrections += _rearranged(families, printed, columns, unit)
+    return corrections
+
+
+def _by_two_numbers(
+    families: Sequence[Entry], loop: Loop, patience: float
+) -> tuple[list[Correction], list[str]]:
+    """The members that the table of a loop is but for two numbers, and the names of the
+    families that were not looked at to the end."""
+    printed, unit = table(loop), loop.characteristic_length
+    corrections: list[Correction] = []
+    left = [entry.name for entry in families if entry.scan]
+    deadline = time.process_time() + patience
+
+    def is_time_left(_: object) -> bool:
+        return time.process_time() < deadline
+
+    for entry in families:
+        if entry.scan:
+            continue
+        pairs = itertools.takewhile(is_time_left, _pairs_of_numbers(printed))
+        corrections += _without(entry, printed, pairs, unit)
+        if not is_time_left(None):
+            left.append(entry.name)
+    return corrections, left
 
 
 def _rearranged(
@@ -187,8 +249,8 @@ def _rearranged(
                 yield found
 
 
-def _order(correction: Correction) -> tuple[int, int, int, int, int, int]:
-    """The simplest mistakes come first, then what rounding accounts for, the most special
+def _order(correction: Correction) -> tuple[bool, int, int, int, int, int, int]:
+    """What rounding accounts for comes first, then the simplest mistakes, the most special
     first, in the order of the catalogue. A length has no sign that is left out: it is a
     twist that has the wrong one, where either may."""
     match = correction.match
@@ -198,7 +260,8 @@ def _order(correction: Correction) -> tuple[int, int, int, int, int, int]:
     rounded = -100 if correction.is_rounding else decade
     position = list(catalogue()).index(match.entry.name)
     special = match.freedom, len(match.parameters)
-    return correction.depth, lengths, rounded, *special, position
+    is_doubtful = not correction.is_rounding
+    return is_doubtful, correction.depth, lengths, rounded, *special, position
 
 
 def _corrected(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +11,7 @@ from linkages.app import options
 from linkages.app.exit_codes import ExitCode, exit_code_table
 
 if TYPE_CHECKING:
-    from linkages.identification.corrections import Correction
+    from linkages.identification.corrections import Corrections
     from linkages.identification.identify import Identification
     from linkages.loop import Loop
 
@@ -71,7 +70,7 @@ def identify_command(
         make_identification_document,
     )
     from linkages.app.texts.next_steps import chosen_linkage
-    from linkages.identification.corrections import corrections_of
+    from linkages.identification.corrections import Corrections, corrections_of
     from linkages.identification.identify import identify
     from linkages.subject import as_subject
 
@@ -80,7 +79,7 @@ def identify_command(
         require_writable(out, "--write")
     loop = as_subject(choose_held(linkage, parameters, hold)).as_loop()
     identification = identify(loop, tolerance)
-    corrections: tuple[Correction, ...] = ()
+    corrections = Corrections(())
     if not identification.matches:
         with StatusLine() as status:
             corrections = corrections_of(identification, status)
@@ -92,7 +91,7 @@ def identify_command(
         write_exact(out, loop, identification, corrections)
     if not as_json:
         chosen = chosen_linkage(linkage, parameters, hold)
-        say_steps(chosen, identification, bool(corrections), out)
+        say_steps(chosen, identification, bool(corrections.found), out)
     if out is None and not (identification.matches or identification.locked):
         click.get_current_context().exit(ExitCode.NOT_IN_CATALOGUE)
 
@@ -101,7 +100,7 @@ def write_exact(
     out: Path,
     loop: Loop,
     identification: Identification,
-    corrections: Sequence[Correction],
+    corrections: Corrections,
 ) -> None:
     """Write the exact table of a loop."""
     from linkages.app.nearest import exact_linkage

@@ -12,16 +12,21 @@ import numpy as np
 
 from linkages.app.reports.entry_parameters import parameters_text
 from linkages.app.texts.numbers import in_degrees
-from linkages.identification.corrections import ROUNDED, Change, Correction
+from linkages.identification.corrections import (
+    PATIENCE,
+    ROUNDED,
+    Change,
+    Correction,
+    Corrections,
+)
 from linkages.identification.recovery import Row
 from linkages.loop import Loop
 
-SHOWN = 3  # ways to mend a table that are shown
 SAME = 1e-9  # a number of the exact table and the printed one, relative, rad
 DIGITS = 15  # of the numbers in the file
 NO_CORRECTION = (
-    "None has all its numbers but one either, nor all of them with two rows, two numbers "
-    "of a column, or a column in another place."
+    "None has all its numbers but one or two either, nor all of them with two rows, two "
+    "numbers of a column, or a column in another place."
 )
 TITLES = {Row.LENGTHS: "lengths", Row.TWISTS: "twists", Row.OFFSETS: "offsets"}
 
@@ -29,33 +34,67 @@ TITLES = {Row.LENGTHS: "lengths", Row.TWISTS: "twists", Row.OFFSETS: "offsets"}
 # --- text -----------------------------------------------------------------------------
 
 
-def describe_corrections(corrections: Sequence[Correction], n: int) -> str:
-    """What a table of n joints is meant to be, by one or more corrections: the ways to
-    mend it by the simplest mistake, each with the most special of its linkages."""
-    best = best_corrections(corrections)
+def describe_corrections(corrections: Corrections, n: int) -> str:
+    """What a table of n joints is meant to be: every way to mend it by the simplest
+    mistake, each with the most special of its linkages; and what was not looked for."""
+    if not corrections.found:
+        return " ".join([NO_CORRECTION, *_not_looked_for(corrections)])
+    best = best_corrections(corrections.found)
     if not best[0].changes:
         match = best[0].match
         word = "a rounding of" if best[0].is_rounding else "near"
-        return (
-            f"It is {word} {match.entry.name}: {match.entry.title}\n"
-            f"  {parameters_text(match)}\n"
-            f"  off by {match.distance:.1e}, all numbers together."
-        )
+        lines = [
+            f"It is {word} {match.entry.name}: {match.entry.title}",
+            f"  {parameters_text(match)}",
+            f"  off by {match.distance:.1e}, all numbers together.",
+        ]
+        return "\n".join([*lines, *_not_looked_for(corrections)])
     wrong = {change.name(n): None for one in best for change in one.changes}
     head = f"A misprint, probably; suspicious: {', '.join(wrong)}."
-    return "\n".join([head, *(_correction(one, n) for one in best[:SHOWN])])
+    if not all(one.is_rounding for one in best):
+        head = f"A misprint, but in doubt which; suspicious: {', '.join(wrong)}."
+    elif len(best) > 1:
+        head += f" {len(best)} ways to mend the table; it cannot tell which is right."
+    ways = [_correction(one, n) for one in best]
+    return "\n".join([head, *ways, *_not_looked_for(corrections)])
 
 
 def best_corrections(corrections: Sequence[Correction]) -> list[Correction]:
-    """Those by as simple a mistake as the first, and as near, one for each way to mend
-    the table."""
-    ways: dict[tuple[object, ...], Correction] = {}
+    """Those than which none is simpler and as near, nor nearer and as simple, one for
+    each way to mend the table."""
+    ways: list[Correction] = []
     for one in corrections:
-        places = tuple((change.row, change.column) for change in one.changes)
-        is_alike = one.is_rounding == corrections[0].is_rounding
-        if is_alike and one.depth == corrections[0].depth:
-            ways.setdefault((one.mistake, *places), one)
-    return list(ways.values())
+        is_beaten = any(_beats(other, one) for other in corrections)
+        if not is_beaten and not any(_is_same_way(one, other) for other in ways):
+            ways.append(one)
+    return ways
+
+
+def _beats(one: Correction, other: Correction) -> bool:
+    """Whether a mistake is simpler than another one and leaves no more, or is as simple
+    and leaves nothing but rounding where the other leaves more."""
+    own, others = one.is_rounding, other.is_rounding
+    is_simpler, is_nearer = one.depth < other.depth, own and not others
+    return (is_simpler and own >= others) or (is_nearer and one.depth <= other.depth)
+
+
+def _is_same_way(one: Correction, other: Correction) -> bool:
+    """Whether two corrections mend the same numbers alike."""
+    if one.mistake != other.mistake or len(one.changes) != len(other.changes):
+        return False
+    pairs = zip(one.changes, other.changes, strict=True)
+    return all(
+        (a.row, a.column) == (b.row, b.column) and _is_near(a.meant, b.meant)
+        for a, b in pairs
+    )
+
+
+def _not_looked_for(corrections: Corrections) -> list[str]:
+    """The families that were left out of the search for two numbers, in a sentence."""
+    if not corrections.left:
+        return []
+    names = ", ".join(corrections.left)
+    return [f"Two wrong numbers not looked for ({PATIENCE:g} s at most): {names}."]
 
 
 def _correction(correction: Correction, n: int) -> str:
@@ -68,7 +107,8 @@ def _correction(correction: Correction, n: int) -> str:
         lines.append(f"    {correction.mistake}")
     else:
         lines += [f"    {_change(change, n)}" for change in correction.changes]
-    lines.append(f"    off by {match.distance:.1e} then")
+    remark = "" if correction.is_rounding else ", more than rounding makes: in doubt"
+    lines.append(f"    off by {match.distance:.1e} then{remark}")
     return "\n".join(lines)
 
 
@@ -120,6 +160,7 @@ def correction_documents(
             ],
             "table": one.match.member.tolist(),
             "distance": one.match.distance,
+            "is_rounding": one.is_rounding,
         }
         for one in corrections
     ]

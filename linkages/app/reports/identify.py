@@ -4,27 +4,26 @@ of, and with which parameters."""
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from bifurc.tables import count_of
 from linkages.app.reports.corrections import (
-    NO_CORRECTION,
     correction_documents,
     describe_corrections,
 )
 from linkages.app.reports.entry_parameters import parameters_text
 from linkages.app.texts.numbers import known_to
 from linkages.geometry_table import link_name
-from linkages.identification.corrections import Correction
+from linkages.identification.corrections import Corrections
 from linkages.identification.fitting import NEAR
 from linkages.identification.identify import Identification, LockedJoint
 from linkages.identification.match import Match
 
 NEAREST = 3  # linkages that are shown where none fits
 WORST = 4  # numbers of the table that are shown of each of them
+NO_CORRECTIONS = Corrections(())
 LENGTH_ROW, TWIST_ROW, OFFSET_ROW = range(3)  # of a table (3, n)
 
 
@@ -32,7 +31,7 @@ LENGTH_ROW, TWIST_ROW, OFFSET_ROW = range(3)  # of a table (3, n)
 
 
 def describe_identification(
-    identification: Identification, corrections: Sequence[Correction] = ()
+    identification: Identification, corrections: Corrections = NO_CORRECTIONS
 ) -> str:
     """The answer as text, with what a table may be meant to be that is none: lengths in
     the unit of the table, degrees, joints numbered from 1."""
@@ -46,10 +45,11 @@ def describe_identification(
         tolerance = f"{identification.tolerance:.1g}"
         sentence = f"No linkage of the catalogue has this geometry, to {tolerance}."
         parts = [_near(match) for match in identification.nearest[:NEAREST]]
-        if corrections:
-            parts = [describe_corrections(corrections, loop.n)]
+        words = describe_corrections(corrections, loop.n)
+        if corrections.found:
+            parts = [words]
         elif not parts:
-            parts = [f"None misses by less than {NEAR:g}. {NO_CORRECTION}"]
+            parts = [f"None misses by less than {NEAR:g}. {words}"]
     parts += [_locked(joint) for joint in identification.locked]
     if loop.rounding:
         parts.append(known_to(loop.rounding, loop.characteristic_length))
@@ -127,7 +127,7 @@ def _locked(locked: LockedJoint) -> str:
 
 
 def make_identification_document(
-    identification: Identification, corrections: Sequence[Correction] = ()
+    identification: Identification, corrections: Corrections = NO_CORRECTIONS
 ) -> dict[str, Any]:
     """The same as a JSON document, angles in radians. ``member`` and ``residuals``, which
     are given less member, have rows a, alpha, R."""
@@ -137,7 +137,8 @@ def make_identification_document(
         "matches": [_match_document(m) for m in identification.matches],
         "nearest": [_match_document(m) for m in identification.nearest[:NEAREST]],
         "locked": [_locked_document(joint) for joint in identification.locked],
-        "corrections": correction_documents(corrections, identification.loop.n),
+        "corrections": correction_documents(corrections.found, identification.loop.n),
+        "two_numbers_not_looked_for": list(corrections.left),
     }
 
 
