@@ -19,6 +19,7 @@ from tests.bifurc.known_surfaces import (
     torus,
     two_spheres,
 )
+from tests.samples import one_in
 
 
 @pytest.mark.parametrize(
@@ -121,7 +122,7 @@ def test_two_spheres_are_two_surfaces() -> None:
     assert areas == pytest.approx([np.pi, 1.44 * np.pi], rel=1e-9)
 
 
-@pytest.mark.parametrize("angle", [0.4, 1.1])
+@pytest.mark.parametrize("angle", one_in(2, [0.4, 1.1]))
 def test_a_sheet_that_crosses_is_found_or_said_to_be_missed(angle: float) -> None:
     # sphere of radius 0.5 about (-0.4, 0, 0), 0.6 about (0.4, 0, 0)
     direction = np.array([np.cos(angle), np.sin(angle), 0])
@@ -138,19 +139,27 @@ def test_a_sheet_that_crosses_is_found_or_said_to_be_missed(angle: float) -> Non
         assert charts.outcome is Covering.UNFIT
 
 
+# caps of spheres, and whole ones
+@pytest.mark.parametrize("floor", one_in(2, [0.9, -1.5]))
 @pytest.mark.parametrize("gap", [0.2, 1e-2])
-def test_concentric_spheres_are_two_surfaces_however_near(gap: float) -> None:
+def test_concentric_spheres_are_two_surfaces_however_near(
+    gap: float, floor: float
+) -> None:
     problem = spheres(np.zeros(3), 1.0, np.zeros(3), 1.0 + gap)
+    problem.domain = replace(
+        problem.domain, bounds=np.array([[-1.5, 1.5], [-1.5, 1.5], [floor, 1.5]])
+    )
     # the inner one has no seed: it is seen from the charts of the outer one
     start = np.array([[0.0, 0.0, 1.0 + gap]])
     parts = cover_surface(problem, start, radius=0.7).parts()
-    assert [part.euler_characteristic for part in parts] == [2, 2]
+    euler = 1 if floor > 0 else 2
+    assert [part.euler_characteristic for part in parts] == [euler] * 2
     areas = sorted(part.area for part in parts)
-    truth = [4 * np.pi, 4 * np.pi * (1 + gap) ** 2]
+    truth = [2 * np.pi * r * (r - max(floor, -r)) for r in (1.0, 1.0 + gap)]
     assert areas == pytest.approx(truth, rel=1e-6)
 
 
-@pytest.mark.parametrize("gap", [0.025, 1e-4])
+@pytest.mark.parametrize("gap", one_in(2, [1e-4, 0.025]))
 def test_spheres_side_by_side_are_two_surfaces(gap: float) -> None:
     shift = np.array([0.5 + gap / 2, 0.0, 0.0])
     problem = spheres(-shift, 0.5, shift, 0.5)

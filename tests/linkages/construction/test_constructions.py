@@ -374,8 +374,13 @@ def same_up_to_link_direction(one: Loop, other: Loop) -> bool:
         lengths, twists, _ = loop.arrays
         return np.sign(lengths) * np.stack([lengths, twists])
 
-    reads = [loop.relabelled(k) for loop in (one, one.reversed()) for k in range(one.n)]
-    return any(np.allclose(folded(r), folded(other), atol=1e-12) for r in reads)
+    turns = [
+        np.roll(read, k, axis=1)
+        for read in (folded(one), folded(one.reversed()))
+        for k in range(one.n)
+    ]
+    is_near = np.isclose(turns, folded(other), atol=1e-12)
+    return bool(is_near.all(axis=(1, 2)).any())
 
 
 def test_kinked_pair_has_the_plain_linkages_as_limits():

@@ -87,7 +87,7 @@ def test_the_count_of_complex_assemblies_is_that_of_the_literature(name):
     assert generic.count == count
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", one_in(5, range(10)))
 def test_the_assemblies_are_the_same_from_whatever_generic_member(seed, monkeypatch):
     bars = bars_of_prism()
     lengths = lengths_of(bars, np.exp(1j * np.arange(6) ** 2) + 0.1 * np.arange(6))
@@ -200,7 +200,7 @@ def test_the_answer_says_how_many_of_the_complex_assemblies_are_real():
     assert "24 of 24 complex assemblies are real, and all 24 were followed" in text
 
 
-@pytest.mark.parametrize("seed", one_in(10, range(100)))
+@pytest.mark.parametrize("seed", one_in(16, range(100)))
 def test_counts_of_random_frameworks_are_the_combinatorial_ones(seed):
     """By Capco, Gallet, Grasegger, Koutschan, Lubbes and Schicho (2018)."""
     lnumber = pytest.importorskip("lnumber")
