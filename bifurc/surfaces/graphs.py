@@ -7,7 +7,8 @@ import numpy as np
 from bifurc.numerics.corrector import normal_corrections
 from bifurc.problem import Problem
 from bifurc.surfaces.polygon import BORDER, FlatCharts
-from bifurc.surfaces.sheet import follow_along, graph_slopes
+from bifurc.surfaces.sheet import follow_along
+from bifurc.system import relative_jacobians
 
 # Relative residual above which a point is no solution.
 SOLVED = 1e-9
@@ -86,7 +87,10 @@ class Graphs:
     def slopes(self, points: np.ndarray) -> np.ndarray:
         """Derivatives (k, n, 2) of the graphs by the position, at their points (k,
         n)."""
-        return graph_slopes(self._problem, points, self._planes)
+        jacobians = relative_jacobians(self._problem, points)
+        matrices = np.concatenate([jacobians, np.swapaxes(self._planes, 1, 2)], axis=1)
+        slopes: np.ndarray = np.linalg.pinv(matrices)[:, :, -2:]
+        return slopes
 
     def onto_bounds(
         self, positions: np.ndarray, on_bound: np.ndarray

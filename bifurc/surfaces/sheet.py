@@ -67,29 +67,15 @@ def on_cubic(begin: Nodes, end: Nodes, t: np.ndarray) -> np.ndarray:
     return points
 
 
-def graph_slopes(
-    problem: Problem, points: np.ndarray, planes: np.ndarray
-) -> np.ndarray:
-    """Derivatives (k, n, 2), by the position in ``planes`` (k, n, 2), of sheets as
-    graphs above them, at solutions (k, n)."""
-    jacobians = relative_jacobians(problem, points)
-    matrices = np.concatenate([jacobians, np.swapaxes(planes, 1, 2)], axis=1)
-    # three times as fast as pseudo-inverses
-    orthogonal, triangular = np.linalg.qr(matrices)
-    across = np.swapaxes(orthogonal, 1, 2)[:, :, -2:]
-    try:
-        slopes: np.ndarray = np.linalg.solve(triangular, across)
-    except np.linalg.LinAlgError:  # some matrix is singular to the last bit
-        slopes = np.linalg.pinv(matrices)[:, :, -2:]
-    return slopes
-
-
 def slopes_at(
     problem: Problem, points: np.ndarray, planes: np.ndarray, positions: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Slopes (k, n) of sheets at solutions (k, n) along rays in ``planes`` (k, n, 2) to
     ``positions`` (k, 2), and whether they are not too steep (k,)."""
-    slopes = np.einsum("kij,kj->ki", graph_slopes(problem, points, planes), positions)
+    jacobians = relative_jacobians(problem, points)
+    matrices = np.concatenate([jacobians, np.swapaxes(planes, 1, 2)], axis=1)
+    inverses = np.linalg.pinv(matrices)
+    slopes = np.einsum("kij,kj->ki", inverses[:, :, -2:], positions)
     lengths = np.linalg.norm(positions, axis=1)
     are_flat = lengths >= STEEP * np.linalg.norm(slopes, axis=1)
     return slopes, are_flat
