@@ -93,7 +93,7 @@ def test_seven_joints_at_random_move_in_closed_curves_without_bifurcation():
 )
 def test_mobility_two_is_a_surface_and_not_a_heap_of_forms(loop):
     problem = Closure(loop)
-    atlas = explore(problem, settings=SearchSettings(starts=30))
+    atlas = explore(problem, settings=SearchSettings(starts=30, charts=300))
     assert not atlas.forms
     assert not len(atlas.rigid)
     assert atlas.surfaces
