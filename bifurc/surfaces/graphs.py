@@ -15,6 +15,7 @@ SOLVED = 1e-9
 # Rounds by which points of a graph are moved onto bounds, how far, over the radius, one
 # goes, and how far off, over the scale, the last may be.
 ROUNDS, FARTHEST, AT_BOUND = 12, 0.5, 1e-12
+FULL_RANK = 1e-6  # least entry on the diagonal of a triangular factor, over the largest
 
 
 class Graphs:
@@ -89,7 +90,14 @@ class Graphs:
         n)."""
         jacobians = relative_jacobians(self._problem, points)
         matrices = np.concatenate([jacobians, np.swapaxes(self._planes, 1, 2)], axis=1)
-        slopes: np.ndarray = np.linalg.pinv(matrices)[:, :, -2:]
+        q, r = np.linalg.qr(matrices)
+        diagonals = np.abs(np.diagonal(r, axis1=1, axis2=2))
+        is_plain = diagonals.min(axis=1) > FULL_RANK * diagonals.max(axis=1)
+        slopes = np.empty((*points.shape, 2))
+        right = np.swapaxes(q[is_plain, -2:], 1, 2)
+        slopes[is_plain] = np.linalg.solve(r[is_plain], right)
+        # F' may have a lower rank all over a surface
+        slopes[~is_plain] = np.linalg.pinv(matrices[~is_plain])[:, :, -2:]
         return slopes
 
     def onto_bounds(

@@ -70,11 +70,7 @@ def write_animation(
     line, and all of the motions are within the picture. Of several each is named.
     """
     points = np.concatenate([motion.configurations for motion in motions])
-    subject = subject_at(atlas)
-    parts = subject.flat_parts if trace else subject.parts
-    first = points[clearest(parts.breadths(points))]
-    traced = [traced_point(parts, text) for text in trace]
-    painter = Painter(parts, first, points, traced)
+    painter = _painter_of(atlas, points, trace)
     pictures = [painter.picture(point) for point in points]
     names = [motion.name for motion in motions for _ in motion.configurations]
     corners = np.array([picture.corners for picture in pictures])
@@ -90,3 +86,11 @@ def write_animation(
                 if len(motions) > 1:
                     ax.text(*CORNER, name, va="top", transform=ax.transAxes)
                 writer.grab_frame()
+
+
+def _painter_of(atlas: Atlas, points: np.ndarray, trace: Sequence[str]) -> Painter:
+    """What makes pictures at configurations (k, n)."""
+    subject = subject_at(atlas)
+    parts = subject.flat_parts if trace else subject.parts
+    first = points[clearest(parts.breadths(points))]
+    return Painter(parts, first, points, [traced_point(parts, text) for text in trace])
