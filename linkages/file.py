@@ -207,6 +207,7 @@ def _read_table(content: Content, name: str) -> Loop:
     if _angle_unit(content) is AngleUnit.DEGREES:
         for i, twist in enumerate(twists, start=1):
             check_angle(f"twists[{i}]", twist, in_degrees=True)
+        _warn_of_radians(twists)
         twists = [math.radians(twist) for twist in twists]
     else:
         _warn_of_degrees(twists)
@@ -242,6 +243,17 @@ def _warn_of_degrees(twists: list[float]) -> None:
                 i,
                 twist,
             )
+
+
+def _warn_of_radians(twists: list[float]) -> None:
+    """Degrees of a table are seldom all so small, and broken numbers as well."""
+    are_small = all(abs(twist) <= FULL_TURN for twist in twists)
+    if are_small and not all(twist.is_integer() for twist in twists):
+        log.warning(
+            'no twist is over %.3g with angles = "deg"; if they are in radians, write '
+            'angles = "rad"',
+            FULL_TURN,
+        )
 
 
 def _list(content: Content, key: str, items: str) -> list[object]:

@@ -40,8 +40,12 @@ def require_within(
         return
     shown, least, most = told_apart(number, low, high)
     is_end = number in (low, high)
-    allowed = f"between {least} and {most} {unit}" + (", not at an end" * is_end)
-    raise GeometryError(name, f"{shown} {unit}", allowed)
+    value_shown, range_shown = f"{shown} {unit}", f"{least} and {most} {unit}"
+    if unit == "rad":
+        value_shown += f" ({math.degrees(number):.6g} deg)"
+        range_shown += f" ({math.degrees(low):.6g} and {math.degrees(high):.6g} deg)"
+    allowed = f"between {range_shown}" + (", not at an end" * is_end)
+    raise GeometryError(name, value_shown, allowed)
 
 
 def require_twists(**twists: Number) -> None:

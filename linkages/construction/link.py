@@ -131,8 +131,9 @@ def _refuse_equal_twists(p: Number, q: Number) -> None:
     y = 2 * math.atan(other)
     if abs(math.sin((x - y) / 2)) > ROUNDING:
         return
-    allowed = f"different from {y:.6g} rad, the twist of its neighbour"
-    raise GeometryError("twist of a link", f"{x:.6g} rad", allowed)
+    shown, beside = (f"{z:.6g} rad ({math.degrees(z):.6g} deg)" for z in (x, y))
+    allowed = f"different from {beside}, the twist of its neighbour"
+    raise GeometryError("twist of a link", shown, allowed)
 
 
 def syncopated_link(base: Link, product: Number) -> Link:

@@ -51,7 +51,7 @@ def read_csv(text: str, name: str) -> Loop:
     rows = _rows(text)
     require(bool(rows), "table", "an empty file", "headings and a row for each joint")
     headings = [_heading(cell) for cell in rows[0]]
-    columns = _places_of_columns(headings)
+    columns = _places_of_columns(headings, rows[0])
     body = rows[1:]
     allowed = f"one for each joint, {MIN_JOINTS} to {MAX_JOINTS}"
     require(MIN_JOINTS <= len(body) <= MAX_JOINTS, "number of rows", len(body), allowed)
@@ -77,13 +77,17 @@ def _are_modified(headings: Sequence[_Heading]) -> bool:
     return any(one.is_modified for one in of_links)
 
 
-def _places_of_columns(headings: Sequence[_Heading]) -> dict[str, int]:
-    """Which column holds lengths, twists and offsets."""
+def _places_of_columns(
+    headings: Sequence[_Heading], cells: Sequence[str]
+) -> dict[str, int]:
+    """Which column holds lengths, twists and offsets, under headings in these cells."""
     columns = {}
     for meaning, words in HEADINGS.items():
         found = [k for k, one in enumerate(headings) if one.meaning == meaning]
-        allowed = f"one, of {', '.join(words[:3])}"
-        require(len(found) == 1, f"columns of {meaning}", len(found), allowed)
+        given = f"{len(found)} under the headings {'; '.join(cells)}"
+        called = ", ".join(words[:3])
+        allowed = f"one, called {called}, between commas, semicolons or tabs"
+        require(len(found) == 1, f"columns of {meaning}", given, allowed)
         columns[meaning] = found[0]
     return columns
 

@@ -203,6 +203,10 @@ BAD = {
         ("map", "bennett", "--param", "a=1e308"),
         "choose a unit",
     ),
+    "a twist beyond half a turn": (
+        ("map", "bennett", "--param", "alpha=270"),
+        "(270 deg) is not allowed; it must be between 0 and 3.14159 rad (0 and 180 deg)",
+    ),
     "lengths that vanish": (("map", "tiny.toml"), "choose a unit"),
     "a number beyond all doubles": (("map", "huge.toml"), "huge.toml"),
     "parameters for a file": (("map", "mine.toml", "--param", "a=1"), "--param"),

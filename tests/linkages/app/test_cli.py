@@ -373,6 +373,16 @@ def test_degrees_taken_for_radians_are_warned_of_on_standard_error(write):
     json.loads(result.stdout)
 
 
+@pytest.mark.parametrize(("twist", "is_warned"), [("1.5708", True), ("5", False)])
+def test_radians_taken_for_degrees_are_warned_of_on_standard_error(
+    write, twist, is_warned
+):
+    result = bifurc(
+        "identify", write(MINE.replace("twists = [0", f"twists = [{twist}"))
+    )
+    assert ('write angles = "rad"' in result.stderr) == is_warned
+
+
 def test_a_surface_is_a_form_of_dimension_2(write):
     text = 'angles = "deg"\nlengths = [1, 1, 1, 1, 1.2]\ntwists = [0, 0, 0, 0, 0]\noffsets = [0, 0, 0, 0, 0]'
     result = bifurc("map", write(text), "--json", "--starts", 30)

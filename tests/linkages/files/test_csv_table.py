@@ -79,7 +79,10 @@ def test_the_modified_convention_has_the_link_before_the_joint():
     ("text", "words"),
     [
         ("", "an empty file"),
-        (text_of(("a", "b", "d"), ROWS), "columns of twists: 0"),
+        (
+            text_of(("a", "b", "d"), ROWS),
+            "columns of twists: 0 under the headings a; b; d",
+        ),
         (text_of(("a", "alpha", "d", "a"), ROWS), "columns of lengths: 2"),
         (text_of(("a", "alpha", "d"), [(1, 2, 3)] * 3), "number of rows: 3"),
         (text_of(("a", "alpha", "d"), [(1, 2)] * 4), "a missing cell"),
