@@ -16,7 +16,7 @@ import numpy as np
 from bifurc import _core
 from bifurc.branch import Branch
 from bifurc.curves.monitor import NODES, Profile
-from bifurc.decisions import is_level, stands_out
+from bifurc.decisions import is_level, may_be_crossed, stands_out
 from bifurc.numerics.roots import bracketed_roots
 from bifurc.numerics.singular_values import singular_values
 from bifurc.system import System, relative_jacobians
@@ -25,6 +25,7 @@ FINE = 96  # intervals of a piece on which the interpolants are compared
 DIFFERENCE = 1e-5  # step, over the scale, of the central difference of F'
 # Rise of a singular value, relative and not, that is none.
 ROUNDING, ZERO = 1e-8, 1e-10
+WITHIN = 17  # places beside a singular point between which others are looked for
 LOCATED = 1e-12  # error of the place of a minimum, over the scale
 # Share by which a near miss must be below half of the largest value.
 TIE = 1e-6
@@ -52,20 +53,18 @@ def singular_value_minima(problem: System, branch: Branch, profile: Profile) -> 
     if not rank:
         return Minima(np.empty(0), np.empty(0))
     places = _places_to_look(branch, profile)
-    here = _values_and_slopes(problem, branch, rank, places)
-    before, after = _valleys(branch, here.slopes * problem.domain.scale)
-    if not len(before):
+    valleys = _look_into(problem, branch, rank, places)
+    is_crossed = may_be_crossed(
+        singular_values(problem, branch(valleys.bottoms))[..., rank - 1]
+    )
+    if np.any(is_crossed):
+        # next to one singular point there may be another one
+        low, high = valleys.low[is_crossed], valleys.high[is_crossed]
+        places = np.union1d(places, _about(branch, places, low, high))
+        valleys = _look_into(problem, branch, rank, places)
+    here, bottoms = valleys.here, valleys.bottoms
+    if not len(bottoms):
         return Minima(np.empty(0), np.empty(0))
-    low, high = places[before], places[after]
-    high[after < before] += branch.length  # once round a closed curve
-
-    def slope_of_square(s: np.ndarray) -> np.ndarray:
-        there = _values_and_slopes(problem, branch, rank, s)
-        return there.slopes_of_squares
-
-    at_ends = here.slopes_of_squares[before], here.slopes_of_squares[after]
-    tolerance = LOCATED * problem.domain.scale
-    bottoms = bracketed_roots(slope_of_square, low, high, tolerance, at_ends)
     samples = np.concatenate([profile.arclength.ravel(), places])
     heights = np.concatenate([profile.smallest.ravel(), here.values])
     cut = 0.0
@@ -82,6 +81,50 @@ def singular_value_minima(problem: System, branch: Branch, profile: Profile) -> 
         arclengths %= branch.length
     order = np.argsort(arclengths)
     return Minima(arclengths[order], values[order])
+
+
+def _about(
+    branch: Branch, places: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> np.ndarray:
+    """Arclengths (i,) from ``low`` (k,) to ``high`` (k,), two of the ``places``, and on to
+    the next ones on either side."""
+    row = places
+    if branch.closed:
+        row = np.concatenate([places - branch.length, places, places + branch.length])
+    first = row[np.maximum(np.searchsorted(row, low) - 1, 0)]
+    last = row[np.minimum(np.searchsorted(row, high) + 1, len(row) - 1)]
+    corners = np.array([first, low, high, last])
+    looks = np.linspace(corners[:-1], corners[1:], WITHIN).ravel()
+    return looks % branch.length if branch.closed else looks
+
+
+class _Look(NamedTuple):
+    """What is seen at places along a curve, ``here``, and between which of them the
+    slope turns to rising: from ``low`` (k,) to ``high`` (k,), about ``bottoms`` (k,)."""
+
+    here: _ValuesAndSlopes
+    low: np.ndarray
+    high: np.ndarray
+    bottoms: np.ndarray
+
+
+def _look_into(problem: System, branch: Branch, rank: int, places: np.ndarray) -> _Look:
+    """The minima between ``places`` (k,), arclengths in order."""
+    here = _values_and_slopes(problem, branch, rank, places)
+    before, after = _valleys(branch, here.slopes * problem.domain.scale)
+    low, high = places[before], places[after]
+    high[after < before] += branch.length  # once round a closed curve
+
+    def slope_of_square(s: np.ndarray) -> np.ndarray:
+        there = _values_and_slopes(problem, branch, rank, s)
+        return there.slopes_of_squares
+
+    bottoms = low
+    if len(low):
+        at_ends = here.slopes_of_squares[before], here.slopes_of_squares[after]
+        tolerance = LOCATED * problem.domain.scale
+        bottoms = bracketed_roots(slope_of_square, low, high, tolerance, at_ends)
+    return _Look(here, low, high, bottoms)
 
 
 def stand_out(

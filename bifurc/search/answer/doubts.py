@@ -19,6 +19,7 @@ from bifurc.decisions import (
     is_multiple_curve,
     is_same_line,
     is_same_point,
+    is_single_assembly,
     is_stub,
     may_be_null,
     misses_by_rounding,
@@ -32,6 +33,7 @@ from bifurc.numerics.blur import (
     rounding_unit,
 )
 from bifurc.numerics.null_spaces import null_spaces
+from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.answer.completeness import SearchDoubt
 from bifurc.search.findings import Findings
@@ -43,6 +45,8 @@ from bifurc.surfaces.chart_atlas import Covering
 from bifurc.system import relative_gaps
 
 RIM = 1e-4  # scales from a rim at which starts end where F vanishes slowly towards it
+ROUNDING = 1e-16  # over the magnitude and the scale, what F is known to at best
+TINY = 1e-300  # keeps a singular value of zero from being divided by
 COVERING_DOUBTS = {
     Covering.UNDECIDED: SearchDoubt.SHEETS_TOGETHER,
     Covering.UNFIT: SearchDoubt.HOLES,
@@ -150,8 +154,10 @@ def doubts_of_findings(
     knows_all = findings.audit is not None and findings.audit.has_all_isolated
     if (traces or findings.near_surfaces) and not knows_all:
         yield SearchDoubt.NEAR_ASSEMBLIES.doubt()
-    hidden = np.array([assembly.hidden for assembly in findings.rigid.values()])
-    hidden = hidden[~is_known_assembly(hidden, problem.domain.scale)]
+    assemblies = list(findings.rigid.values())
+    hidden = np.array([assembly.hidden for assembly in assemblies])
+    is_known = is_known_assembly(hidden, problem.domain.scale)
+    hidden = hidden[~(is_known & _are_single(problem, assemblies))]
     if len(hidden):
         reach = hidden.max() / problem.domain.scale
         yield SearchDoubt.HIDDEN_ASSEMBLIES.doubt(amount=reach, count=len(hidden))
@@ -171,6 +177,15 @@ def are_on_rim(problem: Problem, assemblies: Collection[RigidAssembly]) -> np.nd
     reach = RIM * problem.domain.scale
     rough = [not _is_smooth_within(problem, one.place, reach) for one in assemblies]
     return np.array(rough, dtype=bool)
+
+
+def _are_single(problem: Problem, assemblies: Sequence[RigidAssembly]) -> np.ndarray:
+    """Which assemblies (k,) are solutions, and one each, by what they miss and how weakly
+    they are held."""
+    places = np.array([one.place for one in assemblies]).reshape(-1, problem.n)
+    missed = relative_gaps(problem, places) / problem.domain.scale + ROUNDING
+    weakest = singular_values(problem, places)[:, problem.n - 1]
+    return is_single_assembly(missed / (weakest**2 + TINY))
 
 
 def _others(

@@ -292,3 +292,23 @@ def test_crossings_next_to_each_other_that_boxes_show_are_told_apart(seed):
     assert len(atlas.forms) == 4
     assert [len(p.point.half_branches) for p in atlas.points] == [4, 4]
     assert not any(point.note for point in atlas.points)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_three_crossings_in_a_small_triangle_are_found(seed):
+    rng = np.random.default_rng(seed)
+    x, y = rng.uniform(-0.5, 0.5, 2)
+    angles = np.sort(rng.uniform(0, np.pi, 3))
+    offsets = 3e-3 * rng.uniform(0.5, 1, 3) * [1, -1, 1]
+
+    def function(u):
+        value = (u[0] ** 2 + u[1] ** 2 - 2.2) * (u[1] - 0.2 * u[0] ** 2 - 1.3)
+        for angle, offset in zip(angles, offsets, strict=True):
+            along = np.cos(angle) * (u[0] - x) + np.sin(angle) * (u[1] - y)
+            value = value * (along - offset)
+        return [value]
+
+    problem = FunctionProblem(function, [(-2, 2.1), (-2.05, 2.15)])
+    atlas = explore(problem, settings=SearchSettings(near_motions=False))
+    beside = [np.hypot(*(p.point.u - [x, y])) < 0.06 for p in atlas.points]
+    assert sum(beside) == 3

@@ -117,6 +117,22 @@ def test_a_double_solution_is_one_point_in_doubt(name):
     assert atlas.completeness.is_in_doubt
 
 
+NEARLY_DOUBLE = {
+    "none": lambda x: [x[0] ** 2 + 3 * x[0] + 2.25 + 1e-12, x[1] - 2.6 * x[0]],
+    "none with others": lambda x: [
+        ((x[0] + 0.25) ** 2 + 1e-18) * (x[0] - 2.4),
+        x[1] ** 2 - x[0] - 0.6,
+    ],
+}
+
+
+@pytest.mark.parametrize("name", NEARLY_DOUBLE)
+def test_places_where_equations_are_nearly_zero_are_in_doubt(name):
+    atlas = explored(NEARLY_DOUBLE[name], [(-5, 5.1)] * 2)
+    assert atlas.completeness.is_in_doubt
+    assert atlas.completeness.level is Level.ESTIMATED
+
+
 @pytest.mark.parametrize("paths", [0, 4])
 def test_no_more_paths_are_followed_than_are_asked_for(paths):
     settings = SearchSettings(starts=5, near_motions=False, paths=paths)
