@@ -51,6 +51,7 @@ def test_a_study_writes_to_no_path_without_a_name(name, tmp_path, monkeypatch):
         ("work_precision", ["--case", "UNKNOWN"]),
         ("curve_bank", ["--names", "UNKNOWN"]),
         ("curve_bank", ["--changes", "UNKNOWN"]),
+        ("surface_bank", ["--names", "UNKNOWN"]),
         ("textbook_problems", ["--names", "UNKNOWN"]),
         ("textbook_problems", ["--collections", "UNKNOWN"]),
         ("textbook_times", ["--names", "UNKNOWN"]),
