@@ -32,7 +32,7 @@ def exact_linkage(
     if not corrections.found:
         raise CommandError(
             f"{option}: no linkage of the catalogue is near {identification.loop.name}, "
-            "and none has all its numbers but one or two",
+            "and none has all its numbers but one, or two that are not both twists",
             ExitCode.NOT_IN_CATALOGUE,
         )
     return corrections.found[0]

@@ -25,8 +25,8 @@ from linkages.loop import Loop
 SAME = 1e-9  # a number of the exact table and the printed one, relative, rad
 DIGITS = 15  # of the numbers in the file
 NO_CORRECTION = (
-    "None has all its numbers but one or two either, nor all of them with two rows, two "
-    "numbers of a column, or a column in another place."
+    "None has all its numbers but one either, or but two that are not both twists, nor all "
+    "of them with two rows, two numbers of a column, or a column in another place."
 )
 TITLES = {Row.LENGTHS: "lengths", Row.TWISTS: "twists", Row.OFFSETS: "offsets"}
 

@@ -1,4 +1,4 @@
-"""Routes that avoid, pass and count something, against all chains of arcs."""
+"""Routes that avoid, pass and count something, within limits, against all chains of arcs."""
 
 from __future__ import annotations
 
@@ -13,23 +13,38 @@ from bifurc.errors import RouteError
 from bifurc.graphs import arc_graph
 from bifurc.routes.route import Route, find_route, find_routes
 from bifurc.routes.wishes import Cost, Wishes
-from tests.bifurc.drawn_atlas import draw, ring
+from tests.bifurc.drawn_atlas import draw, polygon, ring
 
 STEPS = 300  # of the fine graph, on every arc
 
 
+MEETINGS = {
+    "B1": [("a", 0.5), ("b", 0.7)],
+    "B2": [("a", 3.0), ("b", 2.9)],
+    "B3": [("b", 4.0), ("c", 1.0)],
+    "B4": [("b", 5.5), ("c", 3.3)],
+    "B5": [("a", 4.4), ("c", 5.1)],
+}
+
+
 def three_rings() -> Atlas:
-    """Three rings, each two of which meet twice."""
-    return draw(
-        {"a": ring(0.0), "b": ring(1.0), "c": ring(2.0)},
-        {
-            "B1": [("a", 0.5), ("b", 0.7)],
-            "B2": [("a", 3.0), ("b", 2.9)],
-            "B3": [("b", 4.0), ("c", 1.0)],
-            "B4": [("b", 5.5), ("c", 3.3)],
-            "B5": [("a", 4.4), ("c", 5.1)],
-        },
-    )
+    """Three rings, each two of which meet."""
+    return draw({"a": ring(0.0), "b": ring(1.0), "c": ring(2.0)}, MEETINGS)
+
+
+def within_limits(low: float, high: float) -> Atlas:
+    """The three rings as far as x is within limits, and where they meet there."""
+    ends = {"a": 0.0, "b": 1.0, "c": 2.0}
+    cut = {
+        name: polygon((low, y), (low + 0.3, y), (high, y), closed=False)
+        for name, y in ends.items()
+    }
+    inside = {
+        name: [(form, x - low) for form, x in passes]
+        for name, passes in MEETINGS.items()
+        if all(low < x < high for _, x in passes)
+    }
+    return draw(cut, inside)
 
 
 def fine_graph(atlas: Atlas, avoid: tuple[str, ...]) -> nx.Graph:
@@ -90,6 +105,51 @@ def test_no_route_is_longer_than_the_shortest_on_a_fine_graph(start, goal, avoid
     spacing = 2 * max(form.branch.length for form in atlas.forms) / STEPS
     assert route.length < 1.001 * wanted + spacing
     assert not set(route.points) & set(avoid)
+
+
+@pytest.mark.parametrize("limits", [(0.3, 5.8), (0.6, 5.7), (0.4, 4.2), (2.0, 5.9)])
+@pytest.mark.parametrize("avoid", [(), ("B2", "B3")])
+@pytest.mark.parametrize(("start", "goal"), [("a", "b"), ("a", "c"), ("b", "c")])
+def test_within_limits_as_well_and_where_there_is_none_it_is_said(
+    start, goal, avoid, limits
+):
+    atlas = within_limits(*limits)
+    avoid = tuple({point.name for point in atlas.points} & set(avoid))
+    ends = [middle_of_the_longest_arc(atlas, name) for name in (start, goal)]
+    graph = fine_graph(atlas, avoid)
+    nodes = []
+    for name, place in zip((start, goal), ends, strict=True):
+        form = atlas.form(name)
+        length = atlas.forms[form].branch.length
+        nodes.append(nearest_node(graph, form, place, length))
+    places = [
+        atlas.forms[atlas.form(name)].branch(place)
+        for name, place in zip((start, goal), ends, strict=True)
+    ]
+    wishes = Wishes(avoid=avoid)
+    if not nx.has_path(graph, *nodes):
+        with pytest.raises(RouteError):
+            find_route(atlas, *places, wishes=wishes)
+        return
+    route = find_route(atlas, *places, wishes=wishes)
+    wanted = nx.shortest_path_length(graph, *nodes, weight="weight")
+    spacing = 2 * max(form.branch.length for form in atlas.forms) / STEPS
+    assert abs(route.length - wanted) < 0.001 * wanted + spacing
+    assert not set(route.points) & set(avoid)
+    width = limits[1] - limits[0]
+    for leg in route.legs:  # none goes round
+        assert min(leg.start, leg.end) >= -1e-9
+        assert max(leg.start, leg.end) <= width + 1e-9
+
+
+def middle_of_the_longest_arc(atlas: Atlas, name: str) -> float:
+    arcs = [
+        arc
+        for _, _, arc in arc_graph(atlas).edges(data=True)
+        if arc["form"] == atlas.form(name)
+    ]
+    longest = max(arcs, key=lambda arc: arc["end"] - arc["start"])
+    return 0.5 * (longest["start"] + longest["end"])
 
 
 def all_routes(atlas: Atlas, start: str, goal: str) -> list[Route]:
