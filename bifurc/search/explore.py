@@ -94,16 +94,7 @@ def explore(
     quiet = np.errstate(all="ignore")
     with one_thread(problem.n), quiet, interrupt:
         with until(Deadline(settings.budget, interrupt=interrupt)):
-            index = -1 if parameter is None else names.index(parameter)
-            if seeds is None and index >= 0 and has_many_unknowns(problem, index):
-                atlas = _explored_along(problem, request, index, events, is_flow)
-            else:
-                atlas = _explored_in_any_units(problem, request)
-                if parameter is not None or events:
-                    diagram = _diagram_in_time(
-                        problem, atlas, parameter, events, is_flow
-                    )
-                    atlas = replace(atlas, diagram=diagram)
+            atlas = _with_diagram(problem, request, parameter, events, is_flow)
         if interrupt.was_pressed:
             provenance = replace(atlas.provenance, interrupted=True, out_of_time=False)
             atlas = replace(atlas, provenance=provenance)
@@ -152,6 +143,25 @@ class _Request(NamedTuple):
     seed: int
     seeds: Seeds | None
     progress: Callable[[str, int], None] | None
+
+
+def _with_diagram(
+    problem: Problem,
+    request: _Request,
+    parameter: UnknownName | None,
+    events: EventRequests | None,
+    is_flow: bool,
+) -> Atlas:
+    """The atlas, with a diagram where there is a parameter, by its name, or an event."""
+    if parameter is not None and request.seeds is None:
+        index = problem.domain.names.index(str(parameter))
+        if has_many_unknowns(problem, index):
+            return _explored_along(problem, request, index, events, is_flow)
+    atlas = _explored_in_any_units(problem, request)
+    if parameter is None and not events:
+        return atlas
+    diagram = _diagram_in_time(problem, atlas, parameter, events, is_flow)
+    return replace(atlas, diagram=diagram)
 
 
 def _explored_along(

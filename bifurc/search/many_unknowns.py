@@ -130,16 +130,9 @@ class OrderedProblem:
         """Unknowns in quarters of their bounds, the parameter as it is. Rates are those
         of these unknowns; other equations are counted by their rows of F'."""
         domain = problem.domain
-        widths = 0.25 * np.diff(domain.bounds)[:, 0]
-        assumed = np.broadcast_to(domain.has_assumed_bounds, domain.bounds.shape)
-        sizes = np.where(assumed.any(axis=1), domain.scale, widths)
-        sizes[index] = 1.0
-        sizes = 2.0 ** np.round(np.log2(sizes))
         order = np.append(np.delete(np.arange(problem.n), index), index)
-        weights = 1.0 / sizes[order[:-1]]
-        units = Units(np.zeros(problem.n), sizes, weights)
-        if not is_flow:
-            units = replace(units, weights=_weights_of_rows(problem, sizes))
+        units = _units(problem, order, is_flow)
+        sizes = units.sizes
         back = np.argsort(order)
 
         def function(point: np.ndarray) -> np.ndarray:
@@ -180,6 +173,21 @@ class OrderedProblem:
         return restated_branch(
             replace(branch.branch, pieces=pieces), units, branch.branch.periods
         )
+
+
+def _units(problem: Problem, order: np.ndarray, is_flow: bool) -> Units:
+    """Those of the unknowns, the last of the ``order`` (n,) as it is, and of the
+    equations."""
+    domain = problem.domain
+    widths = 0.25 * np.diff(domain.bounds)[:, 0]
+    assumed = np.broadcast_to(domain.has_assumed_bounds, domain.bounds.shape)
+    sizes = np.where(assumed.any(axis=1), domain.scale, widths)
+    sizes[order[-1]] = 1.0
+    sizes = 2.0 ** np.round(np.log2(sizes))
+    weights = 1.0 / sizes[order[:-1]]
+    if not is_flow:
+        weights = _weights_of_rows(problem, sizes)
+    return Units(np.zeros(problem.n), sizes, weights)
 
 
 def _weights_of_rows(problem: Problem, sizes: np.ndarray) -> np.ndarray:

@@ -141,14 +141,20 @@ def _meeting_point(found: Courses, number: int, point: LargePoint) -> MeetingPoi
         order=point.order,
         radius=0.0,
     )
+    kind, note = _kind_of(point, len(passes))
+    return MeetingPoint(f"B{number}", kind, singular, passes, tangents, note)
+
+
+def _kind_of(point: LargePoint, passes: int) -> tuple[Kind, str]:
+    """The kind of a singular point that curves pass so many times, and a note."""
     kind, note = Kind.BIFURCATION, ""
     if point.kind is Kind.RANK_DROP:
         kind = Kind.RANK_DROP
     elif point.kind is Kind.MULTIPLE:
         kind, note = Kind.UNDECIDED, "directions of other curves are not computed"
-    elif len(passes) < len(known):
-        note = f"of {len(known)} directions {len(passes)} are followed"
-    return MeetingPoint(f"B{number}", kind, singular, passes, tangents, note)
+    elif passes < len(point.directions):
+        note = f"of {len(point.directions)} directions {passes} are followed"
+    return kind, note
 
 
 def _passes(found: Courses, u: np.ndarray) -> Iterator[tuple[int, float]]:
