@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Provenance
-from bifurc.branch import Outcome
+from bifurc.branch import Branch, Outcome
 from bifurc.completeness import Claim, Completeness, Doubt, Level, Scope
 from bifurc.curves.monitor import Profile
 from bifurc.decisions import is_same_point
@@ -121,11 +121,9 @@ def _is_near(traced: LargeBranch, inner: np.ndarray, other: np.ndarray) -> bool:
 
 def _meeting_point(found: Courses, number: int, point: LargePoint) -> MeetingPoint:
     passes = tuple(_passes(found, point.u))
-    branches = [found.courses[form].branch for form, _ in passes]
     tangents = np.array(
-        [branch(s, 1) for branch, (_, s) in zip(branches, passes, strict=True)]
+        [_unit_tangent(found.courses[form].branch, s) for form, s in passes]
     ).reshape(-1, found.problem.n)
-    tangents /= np.linalg.norm(tangents, axis=1, keepdims=True)
     known = found.directions(point.directions.reshape(-1, found.problem.n))
     null = np.concatenate([point.null_vectors, point.directions[:1]])
     basis = np.linalg.qr(found.directions(null).T)[0]
@@ -143,6 +141,12 @@ def _meeting_point(found: Courses, number: int, point: LargePoint) -> MeetingPoi
     )
     kind, note = _kind_of(point, len(passes))
     return MeetingPoint(f"B{number}", kind, singular, passes, tangents, note)
+
+
+def _unit_tangent(branch: Branch, s: float) -> np.ndarray:
+    tangent = branch(s, 1)
+    unit: np.ndarray = tangent / np.linalg.norm(tangent)
+    return unit
 
 
 def _kind_of(point: LargePoint, passes: int) -> tuple[Kind, str]:
