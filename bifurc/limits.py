@@ -359,12 +359,13 @@ def one_thread(n: int) -> Iterator[None]:
     if n <= SMALL:
         yield
         return
-    with _controller().limit(limits=1, user_api="blas"):
+    # SciPy has a BLAS of its own, which a controller knows where it is loaded before
+    with _controller("scipy.linalg" in sys.modules).limit(limits=1, user_api="blas"):
         yield
 
 
 @cache
-def _controller() -> ThreadpoolController:
+def _controller(has_scipy: bool) -> ThreadpoolController:
     # of use to few searches only
     from threadpoolctl import ThreadpoolController
 

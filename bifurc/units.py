@@ -51,6 +51,9 @@ class Units:
         """F' (m, n) in these units, from that of the user, ``outer``, dense or sparse."""
         if isinstance(outer, np.ndarray):
             return self.weights[:, None] * outer * self.sizes
-        from scipy.sparse import diags_array
+        from scipy.sparse import csc_array
 
-        return diags_array(self.weights) @ outer @ diags_array(self.sizes)
+        inner = csc_array(outer, copy=True)
+        by_column = np.repeat(self.sizes, np.diff(inner.indptr))
+        inner.data = self.weights[inner.indices] * inner.data * by_column
+        return inner

@@ -70,7 +70,7 @@ def diagram_of(
     functions = events_of({} if events is None else events, names)
     found, remarks = events_along(problem, atlas, functions)
     if parameter is None:
-        return Diagram("", _named(problem, found), (), (), tuple(remarks))
+        return Diagram("", named_points(problem, found), (), (), tuple(remarks))
     index = index_of_unknown("parameter", parameter, names)
     turnings = turnings_of(problem, atlas, index)
     has_stability = is_flow and bool(atlas.forms) and has_square_rest(problem)
@@ -81,7 +81,7 @@ def diagram_of(
         for place in one.hopf_places
     ]
     stretches = tuple(stretch for one in along for stretch in one.stretches)
-    points = _named(problem, [*turnings.folds, *hopf_points, *found])
+    points = named_points(problem, [*turnings.folds, *hopf_points, *found])
     return Diagram(
         parameter=names[index],
         points=points,
@@ -146,7 +146,7 @@ def _double_hopf_points(atlas: Atlas, points: Sequence[DiagramPoint]) -> Iterato
             yield f"two pairs cross at one place, to 1e-6 of the form: {places}"
 
 
-def _named(
+def named_points(
     problem: Problem, points: Sequence[DiagramPoint]
 ) -> tuple[DiagramPoint, ...]:
     """The points with wrapped unknowns, numbered kind by kind, in the order of forms

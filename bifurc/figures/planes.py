@@ -17,6 +17,7 @@ from bifurc.checks import UnknownName, name_of
 from bifurc.errors import ProblemError
 from bifurc.figures.quantities import shown_unit
 
+MOST_COMPARED = 24  # unknowns of which any two are a plane that may be chosen
 SAMPLES = 72  # points on each form by which planes are compared
 PIECE_POINTS = 12  # points drawn on each piece of a branch, at least
 BRANCH_POINTS = 400  # points drawn on each branch, at least
@@ -259,7 +260,8 @@ def choose_plane(atlas: Atlas) -> tuple[int, int]:
     distance between the two forms that are closest, the extent of the smallest form
     (none should shrink to a dot), the opening of the narrowest form (none should be a
     line that goes there and back), the distance between the two bifurcations that are
-    closest, and how much of the frame the forms cover.
+    closest, and how much of the frame the forms cover. Of many unknowns some are looked
+    at, from the first to the last, and the parameter of the diagram.
     """
     n = len(atlas.names)
     branches = shown_branches(atlas)
@@ -275,7 +277,7 @@ def choose_plane(atlas: Atlas) -> tuple[int, int]:
     spots = points / size
     extents = np.minimum(np.ptp(samples, axis=1) / size, 1.0)  # (forms, n)
     merits = {}
-    for plane in combinations(range(n), 2):
+    for plane in combinations(compared_unknowns(atlas), 2):
         pick = list(plane)
         smallest_form = extents[:, pick].max(axis=1).min()
         form_distance = _closest_forms(curves[..., pick], periods[pick])
@@ -290,6 +292,16 @@ def choose_plane(atlas: Atlas) -> tuple[int, int]:
         )
     best = max(merits.values())
     return next(plane for plane, merit in merits.items() if merit > best - 1e-3)
+
+
+def compared_unknowns(atlas: Atlas) -> list[int]:
+    """The numbers, in order, of the unknowns of which planes are compared."""
+    n = len(atlas.names)
+    some = np.linspace(0, n - 1, min(n, MOST_COMPARED)).round().astype(int)
+    numbers = set(some.tolist())
+    if atlas.diagram is not None and atlas.diagram.parameter:
+        numbers.add(list(atlas.names).index(atlas.diagram.parameter))
+    return sorted(numbers)
 
 
 def _distances(a: np.ndarray, b: np.ndarray, periods: np.ndarray) -> np.ndarray:

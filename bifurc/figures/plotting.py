@@ -34,6 +34,7 @@ from bifurc.figures.labels import label_points
 from bifurc.figures.layout import Canvas, Margins, PanelPlan, figure_of, lay_out
 from bifurc.figures.planes import (
     choose_plane,
+    compared_unknowns,
     indices_of,
     plane_of,
     scale_of,
@@ -102,7 +103,7 @@ def plot_joint_angles(
     *,
     selection: Selection = EVERYTHING,
 ) -> Figure:
-    """Every unknown against the input one, in panels of their own, in a ``figure`` or a
+    """Every unknown, of many some, against the input one, in panels of their own, in a ``figure`` or a
     part of one, or in a new one.
 
     ``input_joint`` is a name or a number from 1. Raises `ProblemError` where there is
@@ -115,7 +116,7 @@ def plot_joint_angles(
     ['θ₁ (deg)', 'θ₃ (deg)', 'θ₄ (deg)']
     """
     (first,) = indices_of(atlas, "input_joint", [input_joint], 1)
-    others = [i for i in range(len(atlas.names)) if i != first] or [first]
+    others = [i for i in compared_unknowns(atlas) if i != first] or [first]
     columns = min(len(others), 3 if len(others) <= 9 else 4)
     settings = PanelSettings(line_width=1.4, mark_size=3.5, selection=selection)
     with drawing_style():

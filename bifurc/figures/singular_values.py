@@ -115,7 +115,7 @@ def _limits(atlas: Atlas) -> _Range:
     """A decade below everything that is not zero, and five decades at least."""
     if not atlas.forms:
         return _Range(1e-5, 1.0)
-    high = max(float(form.profile.values.max()) for form in atlas.forms)
+    high = max(float(np.nanmax(form.profile.values)) for form in atlas.forms)
     small = [event.value for event in atlas.near_misses]
     small += [float(form.profile.smallest.min()) for form in atlas.forms]
     low = max(min(small) / 10, 1e-16 * high)
@@ -166,7 +166,8 @@ def _stops(atlas: Atlas, index: int) -> list[_Stop]:
 def _regular_values(form: Form) -> tuple[np.ndarray, np.ndarray]:
     """Arclengths (k,) along a form and its regular singular values (k, rank)."""
     s = form.profile.arclength.ravel()
-    return s, form.profile.values.reshape(len(s), -1)[:, : form.rank]
+    values = form.profile.values.reshape(len(s), -1)[:, : form.rank]
+    return s, values[:, ~np.isnan(values).all(axis=0)]  # of many only some are known
 
 
 def _draw_values(

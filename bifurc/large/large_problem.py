@@ -45,9 +45,10 @@ class LargeProblem:
     """n - 1 equations F(u) = 0 in n unknowns, the last of which is the parameter: of a
     discretised field, as a rule.
 
-    ``function``: (n,) -> (n - 1,). ``bounds`` (low, high) are those of the parameter;
-    ``size`` is the typical size of the other unknowns: lengths along a curve are root
-    mean squares of them over the size, and the parameter over a quarter of its bounds.
+    ``function``: (n,) -> (n - 1,). ``bounds`` (low, high) are those of the parameter, or
+    (n, 2) those of all unknowns, which may be infinite but for the parameter's; ``size``
+    is the typical size of the other unknowns: lengths along a curve are root mean squares
+    of them over the size, and the parameter over a quarter of its bounds.
 
     F' comes from ``jacobian``: (n,) -> (n - 1, n) or (n - 1, n - 1), sparse; from the
     ``pattern`` (n - 1, n) or (n - 1, n - 1) of its entries, by a complex step, or by
@@ -68,7 +69,7 @@ class LargeProblem:
         self,
         function: Function,
         n: int,
-        bounds: Sequence[float],
+        bounds: Sequence[float] | Sequence[Sequence[float]] | np.ndarray,
         *,
         jacobian: Callable[[np.ndarray], sparray] | None = None,
         pattern: sparray | None = None,
@@ -86,7 +87,8 @@ class LargeProblem:
             raise ProblemError("size", size, "positive and finite")
         self.function = function
         self.n = int(n)
-        self.bounds = _checked_bounds(bounds)
+        self.region = _checked_region(bounds, self.n)
+        self.bounds = self.region[-1]
         self.size = float(size)
         self.parameter = parameter
         self.solver = solver
@@ -310,13 +312,22 @@ def _relative_difference(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.linalg.norm(a - b) / size) if size > 0.0 else 0.0
 
 
-def _checked_bounds(bounds: Sequence[float]) -> np.ndarray:
-    """The bounds of the parameter as an array (2,)."""
-    checked = floats_of("bounds", bounds)
-    if checked.shape != (2,) or not -np.inf < checked[0] < checked[1] < np.inf:
-        allowed = "(low, high) of the parameter, finite, with low < high"
+def _checked_region(bounds: object, n: int) -> np.ndarray:
+    """The bounds (n, 2) of all unknowns, infinite where only the parameter has some."""
+    checked = floats_of("bounds", bounds)  # type: ignore[arg-type]
+    region = np.tile([-np.inf, np.inf], (n, 1))
+    allowed = "(low, high) of the parameter, finite, with low < high"
+    if checked.shape == (2,):
+        region[-1] = checked
+    elif checked.shape == (n, 2):
+        region = checked
+        allowed += f", or ({n}, 2) of all unknowns in their order"
+    else:
+        raise ProblemError("bounds", bounds, f"{allowed}, or ({n}, 2)")
+    low, high = region.T
+    if not np.all(low < high) or not np.all(np.isfinite(region[-1])):
         raise ProblemError("bounds", bounds, allowed)
-    return checked
+    return region
 
 
 def column_groups(pattern: csr_array) -> np.ndarray:

@@ -54,13 +54,11 @@ class ScaledProblem(NumericalProblem):
         sizes[-1] = 0.25 * np.diff(problem.bounds)[0]
         weight = 1.0 / np.sqrt(n - 1)
         self.own_units = Units(np.zeros(n), sizes, np.full(n - 1, weight))
-        bounds = np.tile([-np.inf, np.inf], (n, 1))
-        bounds[-1] = problem.bounds / sizes[-1]
         self.domain = Domain(
             names=("u",) * (n - 1) + (problem.parameter,),
             units=("",) * n,
             periods=np.full(n, np.inf),
-            bounds=bounds,
+            bounds=problem.region / sizes[:, None],
             has_crossings=False,  # bridges take dense matrices
         )
         self.accuracy = Accuracy(derivatives=problem.derivatives)

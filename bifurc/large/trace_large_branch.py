@@ -86,7 +86,7 @@ def trace_large_branch(
     misses and Hopf points located.
 
     It is followed to the side of ``direction`` (n,), which is that of a growing
-    parameter unless given, until it closes, leaves the bounds of the parameter, or is
+    parameter unless given, until it closes, leaves the bounds, or is
     as long as the settings allow. Trouble on the way is the `Outcome` of the branch. A
     typical size of the field that is far too large is replaced by the one that is seen. Raises `ProblemError` for
     a start, a direction, a value, a jacobian or a solution by the solver that has
@@ -108,6 +108,8 @@ def trace_large_branch(
     check_type("settings", settings, LargeSettings)
     checked = problem.check_start(start)
     along = _checked_direction(problem, direction)
+    import scipy.linalg  # noqa: F401  its BLAS is limited where it is loaded before
+
     # threads of BLAS share only a solver of the user's: vectors are too short for them
     threads = one_thread(problem.n) if problem.solver is None else nullcontext()
     with threads, np.errstate(over="ignore", invalid="ignore"):
@@ -256,7 +258,7 @@ def _traced(
     forward = follow_curve(scaled, Place(point, tangent), settings.tracing)
     if not len(forward.pieces):
         # corrected across the curve, the start may have left the bounds
-        point = _corrected_at_parameter(scaled, point)
+        point = solution_at_parameter(scaled, point)
         tangent = null_vector(scaled, point, along)
         forward = follow_curve(scaled, Place(point, tangent), settings.tracing)
     ends_here = forward.outcome in (Outcome.CLOSED, Outcome.OPEN)
@@ -268,7 +270,7 @@ def _traced(
     return joined_branch(backward.reversed(), forward)
 
 
-def _corrected_at_parameter(scaled: ScaledProblem, start: np.ndarray) -> np.ndarray:
+def solution_at_parameter(scaled: ScaledProblem, start: np.ndarray) -> np.ndarray:
     """The solution (n,) near ``start`` (n,) with the same parameter; ``start`` itself
     where Newton's method does not settle."""
     point: np.ndarray = start.copy()

@@ -19,7 +19,7 @@ from bifurc.checks import (
 )
 from bifurc.diagrams.diagram import Diagram
 from bifurc.diagrams.events import EventRequests, events_of
-from bifurc.diagrams.make_diagram import diagram_of
+from bifurc.diagrams.make_diagram import diagram_of, named_points
 from bifurc.errors import ProblemError
 from bifurc.limits import (
     CutOff,
@@ -32,6 +32,7 @@ from bifurc.limits import (
 )
 from bifurc.problem import Problem
 from bifurc.search.answer.assemble import assemble_atlas
+from bifurc.search.many_unknowns import explore_many_unknowns, has_many_unknowns
 from bifurc.search.own_units.restated import restated
 from bifurc.search.own_units.unit_problem import UnitProblem, in_one_size, in_own_units
 from bifurc.search.search import Search
@@ -93,10 +94,7 @@ def explore(
     quiet = np.errstate(all="ignore")
     with one_thread(problem.n), quiet, interrupt:
         with until(Deadline(settings.budget, interrupt=interrupt)):
-            atlas = _explored_in_any_units(problem, request)
-            if parameter is not None or events:
-                diagram = _diagram_in_time(problem, atlas, parameter, events, is_flow)
-                atlas = replace(atlas, diagram=diagram)
+            atlas = _with_diagram(problem, request, parameter, events, is_flow)
         if interrupt.was_pressed:
             provenance = replace(atlas.provenance, interrupted=True, out_of_time=False)
             atlas = replace(atlas, provenance=provenance)
@@ -145,6 +143,50 @@ class _Request(NamedTuple):
     seed: int
     seeds: Seeds | None
     progress: Callable[[str, int], None] | None
+
+
+def _with_diagram(
+    problem: Problem,
+    request: _Request,
+    parameter: UnknownName | None,
+    events: EventRequests | None,
+    is_flow: bool,
+) -> Atlas:
+    """The atlas, with a diagram where there is a parameter, by its name, or an event."""
+    if parameter is not None and request.seeds is None:
+        index = problem.domain.names.index(str(parameter))
+        if has_many_unknowns(problem, index):
+            return _explored_along(problem, request, index, events, is_flow)
+    atlas = _explored_in_any_units(problem, request)
+    if parameter is None and not events:
+        return atlas
+    diagram = _diagram_in_time(problem, atlas, parameter, events, is_flow)
+    return replace(atlas, diagram=diagram)
+
+
+def _explored_along(
+    problem: Problem,
+    request: _Request,
+    index: int,
+    events: EventRequests | None,
+    is_flow: bool,
+) -> Atlas:
+    """The atlas, with its diagram along unknown number ``index``, of a problem of many
+    unknowns."""
+    deadline = current_deadline()
+    provenance = _provenance(problem, request, False, deadline)
+    atlas = explore_many_unknowns(
+        problem, index, provenance, deadline, is_flow=is_flow, progress=request.progress
+    )
+    seconds = time.perf_counter() - deadline.began
+    atlas = replace(atlas, provenance=replace(atlas.provenance, seconds=seconds))
+    if not events or atlas.diagram is None:
+        return atlas
+    along = _diagram_in_time(problem, atlas, None, events, is_flow)
+    points = named_points(problem, [*atlas.diagram.points, *along.points])
+    remarks = (*atlas.diagram.remarks, *along.remarks)
+    diagram = replace(atlas.diagram, points=points, remarks=remarks)
+    return replace(atlas, diagram=diagram)
 
 
 def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
@@ -199,7 +241,15 @@ def _explored(
         interrupted = deadline.is_interrupted
     except KeyboardInterrupt:  # the second one, or that of the function of a user
         interrupted = True
-    provenance = Provenance(
+    provenance = _provenance(problem, request, interrupted, deadline)
+    return assemble_atlas(problem, search.findings, provenance, deadline)
+
+
+def _provenance(
+    problem: Problem, request: _Request, interrupted: bool, deadline: Deadline
+) -> Provenance:
+    """How the atlas of a problem comes about, as far as is known now."""
+    return Provenance(
         seed=request.seed,
         settings=request.settings,
         interrupted=interrupted,
@@ -208,4 +258,3 @@ def _explored(
         equations=problem.accuracy.equations,
         seconds=time.perf_counter() - deadline.began,
     )
-    return assemble_atlas(problem, search.findings, provenance, deadline)

@@ -16,6 +16,8 @@ from bifurc.systems.verdict import verdict_of
 from bifurc.tables import distinct_heads, section
 
 SHOWN = 40  # rows of a table; the others are counted
+FEW = 64  # unknowns of which all are columns of a table
+SOME = 6  # of more that are, from the first to the last
 NONE = "-"
 
 
@@ -42,7 +44,8 @@ def make_summary(atlas: Atlas) -> str:
 def _equations(atlas: Atlas) -> str:
     equations = atlas.subject.get("equations", {})
     rows = [(name, text) for name, text in equations.items()]
-    text = section("Equations", ("name", "equation"), rows)
+    most = None if len(atlas.names) <= FEW else SHOWN
+    text = section("Equations", ("name", "equation"), rows, most)
     values = atlas.subject.get("parameters", {})
     if values:
         shown = ", ".join(f"{name} = {value:.15g}" for name, value in values.items())
@@ -53,9 +56,26 @@ def _equations(atlas: Atlas) -> str:
 def _heads(atlas: Atlas, others: Sequence[str]) -> list[str]:
     """Names of the unknowns with their units, told apart from the ``others``, which are
     the program's."""
-    columns = zip(atlas.names, atlas.units, strict=True)
+    columns = [(atlas.names[k], atlas.units[k]) for k in _columns(atlas)]
     heads = [f"{name} ({unit})" if unit else name for name, unit in columns]
     return distinct_heads(heads, others)
+
+
+def _columns(atlas: Atlas) -> list[int]:
+    """The numbers of the unknowns that are columns of a table: all, or of many the
+    parameter and some."""
+    count = len(atlas.names)
+    if count <= FEW:
+        return list(range(count))
+    some = set(np.linspace(0, count - 1, SOME).round().astype(int).tolist())
+    if atlas.diagram is not None and atlas.diagram.parameter:
+        some.add(list(atlas.names).index(atlas.diagram.parameter))
+    return sorted(some)
+
+
+def _values(atlas: Atlas, point: np.ndarray) -> list[str]:
+    """The unknowns of a point (n,) that are columns, as `_numbers`."""
+    return _numbers(point[_columns(atlas)])
 
 
 def _numbers(point: np.ndarray, size: float = 1.0) -> list[str]:
@@ -128,7 +148,7 @@ def _points(atlas: Atlas) -> str:
     rows = []
     for number, point in enumerate(atlas.points):
         kind = kinds.get(number, point.kind.value)
-        row = [point.name, kind, *_numbers(point.point.u)]
+        row = [point.name, kind, *_values(atlas, point.point.u)]
         row += [f"{point.point.error:.0e}", _members(atlas, point), point.note]
         rows.append(row)
     before, after = ("name", "kind"), ("error", "forms", "remark")
@@ -151,7 +171,7 @@ def _diagram_points(atlas: Atlas, diagram: Diagram, kind: Kind) -> str:
             continue
         cells = {
             "event": [point.label],
-            "unknowns": _numbers(point.u),
+            "unknowns": _values(atlas, point.u),
             "frequency": [f"{point.value:.10g}"],
             "pair": [point.label],
             "error": [f"{point.error:.0e}"],
@@ -202,7 +222,7 @@ def _stretches(atlas: Atlas, diagram: Diagram) -> str:
 def _near_misses(atlas: Atlas) -> str:
     rows = []
     for miss in sorted(atlas.near_misses, key=lambda miss: miss.value):
-        row = [*_numbers(miss.u), f"{miss.value:.6g}", f"{miss.error:.0e}"]
+        row = [*_values(atlas, miss.u), f"{miss.value:.6g}", f"{miss.error:.0e}"]
         rows.append([*row, atlas.forms[miss.form].name])
     own = ("singular value", "error", "form")
     heads = [*_heads(atlas, own), *own]
@@ -210,5 +230,5 @@ def _near_misses(atlas: Atlas) -> str:
 
 
 def _isolated(atlas: Atlas) -> str:
-    rows = [_numbers(point) for point in atlas.rigid]
+    rows = [_values(atlas, point) for point in atlas.rigid]
     return section("Isolated solutions", _heads(atlas, ()), rows, SHOWN)

@@ -124,7 +124,7 @@ def _forms(
     problem: Problem, traced: Sequence[TracedBranch], points: Sequence[MeetingPoint]
 ) -> tuple[Form, ...]:
     """The branches as forms, numbered from 1."""
-    components = _component_numbers(len(traced), points)
+    components = component_numbers(len(traced), points)
     singular = {form for point in points for form, _ in point.passes}
     forms = []
     for index, (branch, component) in enumerate(zip(traced, components, strict=True)):
@@ -181,7 +181,7 @@ def _smallest_value(problem: Problem, traced: TracedBranch) -> float:
     return float(smallest)
 
 
-def _component_numbers(count: int, points: Sequence[MeetingPoint]) -> list[int]:
+def component_numbers(count: int, points: Sequence[MeetingPoint]) -> list[int]:
     """Number of the connected component of every form, counted from 0 in the order of
     the forms."""
     # networkx, which could do this, takes longer to import than the search

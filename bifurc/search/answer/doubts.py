@@ -260,7 +260,7 @@ def _doubts_of_form(
     if traced.missing and traced.certificate is None:
         place = traced.missing[0]
         yield SearchDoubt.UNLOCATED_POINT.of_forms(index, amount=place)
-    names = _ended_at_assumed_bounds(problem, branch)
+    names = ended_at_assumed_bounds(problem, branch)
     if names:
         yield SearchDoubt.NO_BOUNDS.of_forms(index, unknowns=names)
     if branch.outcome in (Outcome.STEP_LIMIT, Outcome.TIME_LIMIT):
@@ -312,7 +312,7 @@ def _are_at_bounds(problem: Problem, points: np.ndarray) -> np.ndarray:
     return at_bounds
 
 
-def _ended_at_assumed_bounds(problem: Problem, branch: Branch) -> list[str]:
+def ended_at_assumed_bounds(problem: Problem, branch: Branch) -> list[str]:
     """The unknowns without bounds of which a form reaches the ends of the region that
     was chosen instead."""
     if branch.outcome is not Outcome.LEFT_REGION:
