@@ -10,6 +10,7 @@ import pytest
 import linkages
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
+from bifurc.singular.sphere import section
 from bifurc.system import jacobian_at
 from linkages.app.texts.summary import certainty_in_short
 from linkages.closure.closure import Closure
@@ -524,3 +525,28 @@ def test_an_assignment_survives_mirroring_and_json(tmp_path):
     for crease in mechanism.mirrored().creases:
         (limits,) = mechanism.mirrored().joint(crease.joint).limits
         assert limits == pytest.approx(crease.limits)
+
+
+# Abel et al. 2016, theorem 4: from flat a vertex folds as assigned where three creases of
+# one letter, within no half plane, and one of the other letter are among its creases
+@pytest.mark.parametrize(
+    ("letters", "folds"),
+    [("VVMMVMVV", True), ("MMMMMVVM", True), ("VVVVVVVM", True), ("VVVVMMMM", False)],
+)
+def test_a_vertex_of_eight_creases_leaves_the_flat_state_where_it_can(
+    letters, folds, tmp_path
+):
+    rng = np.random.default_rng(8)
+    turns = 2 * np.pi * (np.arange(8) + rng.uniform(-0.2, 0.2, 8)) / 8
+    corners = np.transpose([np.cos(turns), np.sin(turns)]).tolist()
+    content = {
+        "vertices_coords": [[0.0, 0.0], *corners],
+        "faces_vertices": [[0, 1 + k, 1 + (k + 1) % 8] for k in range(8)],
+        "edges_vertices": [[0, 1 + k] for k in range(8)],
+        "edges_assignment": list(letters),
+    }
+    problem = Closure(read(tmp_path, content))
+    flat = problem.reference
+    null_space = np.linalg.svd(jacobian_at(problem, flat))[2][2:].T
+    cut = section(problem, flat, null_space, 0.02 * problem.domain.scale)
+    assert cut.dimension == 5 if folds else cut.dimension < 2
