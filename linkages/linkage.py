@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def load(source: str | Path, **parameters: float) -> Linkage | Mechanism:
     """The linkage or the network called ``source`` in the catalogue, or the linkage or
-    the mechanism read from a file: TOML, FOLD, MJCF, SDF, URDF or a CUIK
+    the mechanism read from a file: TOML, FOLD, CP, SVG, MJCF, SDF, URDF or a CUIK
     world.
 
     ``parameters`` are those of a family, angles in rad, the others at their defaults; a

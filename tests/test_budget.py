@@ -70,7 +70,7 @@ LONGER = {
         "bifurc.systems.equation_file.system",
         "linkages.app.sweep.plan.read_plan",
         "linkages.files.fold._edges",
-        "linkages.files.fold.read_fold",
+        "linkages.files.fold.mechanism_of_fold",
         "linkages.files.mechanism_file.limits",
         "linkages.formats.composites._joined",
         "linkages.formats.mechanism_of._coupled",

@@ -52,6 +52,9 @@ BESIDE = 1e3  # times the gap of points that are one: those are looked at as wel
 SOLVED, SOLVED_ROUNDING = 1e-8, 5e-15
 # Solutions of higher nullity on a sphere whose local dimension is looked at.
 MOST_TESTED = 40
+# How often solutions on a sphere are moved to within the bounds, and how far within, over
+# the radius.
+TIMES_LED, MARGINS = 30, np.array([0.3, 0.1, 0.03, 0.01])
 # Radius, over the scale, of the section that says whether a point is on a surface.
 SURFACE_RADIUS = 2e-2
 
@@ -327,16 +330,49 @@ def _sphere_section(
     """What Gauss-Newton reaches from starts spread over the sphere."""
     directions = _spread_directions(null_space.shape[1])
     starts = point + radius * directions @ null_space.T
+    ends = _on_sphere(problem, starts, point, radius)
+    if not len(ends):
+        return Section(np.empty((0, problem.n)), 0)
+    if not problem.domain.are_inside(ends).any():
+        inside = _led_inside(problem, ends, point, radius)
+        ends = np.concatenate([ends, inside])
+    cut = _separate_surfaces(problem, ends)
+    return replace(cut, points=_without_duplicates(cut.points, radius))
+
+
+def _on_sphere(
+    problem: Problem, starts: np.ndarray, point: np.ndarray, radius: float
+) -> np.ndarray:
+    """The solutions (h, n) on the sphere that are reached from starts (k, n)."""
     ends, gaps, last_steps = problem.project_to_sphere(starts, point, radius)
     # next to the point F is of order radius^2 whatever the direction: the residual must
     # be far below that
     limit = SOLVED * (radius / problem.domain.scale) ** 2 + SOLVED_ROUNDING
     missed = np.maximum(gaps / limit, last_steps / (SETTLED * radius))
-    is_solution = is_on_sphere(missed)
-    if not np.any(is_solution):
-        return Section(np.empty((0, problem.n)), 0)
-    cut = _separate_surfaces(problem, ends[is_solution])
-    return replace(cut, points=_without_duplicates(cut.points, radius))
+    reached: np.ndarray = ends[is_on_sphere(missed)]
+    return reached
+
+
+def _led_inside(
+    problem: Problem, ends: np.ndarray, point: np.ndarray, radius: float
+) -> np.ndarray:
+    """Solutions (h, n) on the sphere within the region, from those outside of it (k, n):
+    of many bounds that meet in the point what is within all may be a small part of the
+    sphere. Moved to within the bounds and onto the solutions in turn (von Neumann 1950),
+    each by a margin of its own."""
+    low, high = problem.domain.bounds.T
+    inside: np.ndarray = np.empty((0, problem.n))
+    for _ in range(TIMES_LED):
+        if not len(ends):
+            break
+        margins = radius * MARGINS[np.arange(len(ends)) % len(MARGINS), None]
+        beside = np.clip(ends, low + margins, high - margins)
+        ends = _on_sphere(problem, beside, point, radius)
+        is_inside = problem.domain.are_inside(ends)
+        inside = ends[is_inside]
+        if len(inside):
+            break
+    return inside
 
 
 def _spread_directions(k: int) -> np.ndarray:

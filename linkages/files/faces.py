@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -16,7 +16,8 @@ def faces_of_edges(
     """The faces that edges between vertices at ``points`` (v, 3) in the plane z = 0
     enclose, each by its vertices counterclockwise.
 
-    At the end of an edge a face goes on along the next one clockwise. Raises
+    At the end of an edge a face goes on along the next one clockwise. Edges inside of a
+    face that are joined to none of its sides make faces of their own. Raises
     `GeometryError` where points have heights, where there is no face, and for an edge
     that ends inside one.
     """
@@ -25,15 +26,16 @@ def faces_of_edges(
     require(is_flat, "faces_vertices", "a missing key", allowed)
     around = _neighbours(points, ends)
     faces = []
-    waiting = {(start, end) for pair in ends for start, end in (pair, pair[::-1])}
-    while waiting:
-        side = min(waiting)
+    sides = sorted({(start, end) for pair in ends for start, end in (pair, pair[::-1])})
+    waiting = set(sides)
+    for first in sides:
+        side = first
         face = []
         while side in waiting:
             waiting.remove(side)
             face.append(side[0])
             side = _next_side(around, side)
-        if _double_area(points[face]) > 0.0:
+        if face and _double_area(points[face]) > 0.0:
             faces.append(face)
     require(len(faces) > 0, "edges_vertices", "without a face", "those of a face")
     for face in faces:
@@ -42,6 +44,42 @@ def faces_of_edges(
                 allowed = "such that edges end at others on all sides of a face"
                 raise GeometryError("edges at vertex", vertex, allowed)
     return faces
+
+
+def check_joined(
+    points: np.ndarray,
+    edges: Collection[tuple[int, int]],
+    creases: Collection[tuple[int, int]],
+    faces: Sequence[list[int]],
+) -> None:
+    """Raises `GeometryError` for one of the ``edges`` that are ``creases`` where it
+    begins inside of a face: what is on its other side is not known."""
+    corners = {vertex for edge in edges for vertex in edge}
+    if len(corners) - len(edges) + len(faces) == 1 or not creases:
+        return  # by Euler's formula all edges hang together
+    starts = np.unique([start for start, _ in creases])
+    for number, face in enumerate(faces):
+        is_inside = _are_inside(points[starts], points[face]) & ~np.isin(starts, face)
+        if np.any(is_inside):
+            value = f"inside of face f{number}"
+            allowed = "joined to its sides, or without creases"
+            raise GeometryError(
+                f"vertex {starts[np.argmax(is_inside)]}", value, allowed
+            )
+
+
+def _are_inside(points: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """Whether points (k, 3) are inside of a polygon (c, 3): a ray from there along x
+    crosses an odd number of its sides."""
+    x, y = points[:, 0, None], points[:, 1, None]
+    following = np.roll(corners, -1, axis=0)
+    rise = following[:, 1] - corners[:, 1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        part = (y - corners[:, 1]) / rise
+        is_right = corners[:, 0] + part * (following[:, 0] - corners[:, 0]) > x
+    is_crossed = ((corners[:, 1] > y) != (following[:, 1] > y)) & is_right
+    is_inside: np.ndarray = np.count_nonzero(is_crossed, axis=1) % 2 == 1
+    return is_inside
 
 
 def _neighbours(

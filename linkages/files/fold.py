@@ -11,6 +11,7 @@ from __future__ import annotations
 import json
 import logging
 import math
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, TypeAlias
@@ -20,7 +21,7 @@ from networkx.utils import UnionFind
 
 from linkages.closure.system import ClosureSystem
 from linkages.decisions import is_parallel_axis, keeps_angle
-from linkages.files.faces import faces_of_edges
+from linkages.files.faces import check_joined, faces_of_edges
 from linkages.files.misfits import closed_near
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Crease, Mechanism, Panel
@@ -44,6 +45,7 @@ Side: TypeAlias = tuple[int, int]
 log = logging.getLogger(__name__)
 
 FOLDED = "foldedForm"
+ANGLES = "edges_foldAngle"
 # what the letters of edges_assignment make of a side between two faces
 HINGES = ("M", "V", "U")
 RIGID = ("F", "J")
@@ -81,6 +83,18 @@ class _Crease(NamedTuple):
 
 def read_fold(text: str, name: str) -> Mechanism:
     """The mechanism of a crease pattern or of a folded state; without a title it gets
+    this name. Raises `GeometryError` for what is no JSON, and as
+    `mechanism_of_fold`."""
+    try:
+        content = json.loads(text, parse_float=WrittenNumber)
+    except (json.JSONDecodeError, RecursionError) as error:
+        raise GeometryError("content", f"no JSON, {error},", "a FOLD file") from None
+    content = checked_table("content", content, "a table, as of a FOLD file")
+    return mechanism_of_fold(content, name)
+
+
+def mechanism_of_fold(content: Frame, name: str) -> Mechanism:
+    """The mechanism that the content of a FOLD file describes; without a title it gets
     this name.
 
     Every crease is called after its vertices, ``3-7``, every face ``f2``; a variable is
@@ -89,20 +103,17 @@ def read_fold(text: str, name: str) -> Mechanism:
     are moved to the nearest ones that close. Of thick panels the flat state is given.
     Raises `GeometryError` for anything wrong.
     """
-    try:
-        content = json.loads(text, parse_float=WrittenNumber)
-    except (json.JSONDecodeError, RecursionError) as error:
-        raise GeometryError("content", f"no JSON, {error},", "a FOLD file") from None
-    content = checked_table("content", content, "a table, as of a FOLD file")
     frame = _frame(content)
     title = content.get("file_title", content.get("frame_title", name))
     checked_text("file_title", title)
     points, near = _points(frame)
+    edges = _edges(frame, len(points))
     if "faces_vertices" in frame:
         faces = _faces(frame, len(points))
     else:
         faces = faces_of_edges(points, _ends(frame, len(points)))
-    edges = _edges(frame, len(points))
+        folded = [side for side, edge in edges.items() if edge.letter in HINGES]
+        check_joined(points, edges.keys(), folded, faces)
     creases = _creases(faces, edges)
     is_folded = FOLDED in frame.get("frame_classes", [])
     if THICKNESS in frame or HEIGHTS in frame:
@@ -187,7 +198,7 @@ def _folded_part(
     problem = ClosureSystem(replace(mechanism, with_flaps=True))
     start = np.array([angles[name] for name in problem.domain.names])
     far = "folded such that a gap of {:.3g} is left; near a closed state"
-    point = closed_near(problem, "edges_foldAngle", start, problem.domain.names, far)
+    point = closed_near(problem, ANGLES, start, problem.domain.names, far)
     poses = Poses(problem.structure).at(point[None])[0]
     folded = _posed(mechanism, dict(zip(mechanism.bodies, poses, strict=True)))
     return folded, dict(zip(problem.domain.names, point.tolist(), strict=True))
@@ -284,13 +295,13 @@ def _check_vertex(what: str, vertex: object, vertices: int) -> None:
 def _edges(frame: Frame, vertices: int) -> dict[Side, _Edge]:
     """What is said of edges, by their vertices in ascending order."""
     if "edges_vertices" not in frame:
-        for key in ("edges_assignment", "edges_foldAngle", THICKNESS, HEIGHTS):
+        for key in ("edges_assignment", ANGLES, THICKNESS, HEIGHTS):
             allowed = f"given together with {key}"
             require(key not in frame, "edges_vertices", "a missing key", allowed)
         return {}
     ends = _ends(frame, vertices)
     letters = _of_edges(frame, "edges_assignment", len(ends))
-    angles = _of_edges(frame, "edges_foldAngle", len(ends))
+    angles = _of_edges(frame, ANGLES, len(ends))
     heights = _of_edges(frame, HEIGHTS, len(ends))
     given = frame.get(THICKNESS, 0.0)
     thickness = checked_number(THICKNESS, given)
@@ -302,7 +313,7 @@ def _edges(frame: Frame, vertices: int) -> dict[Side, _Edge]:
         what = f"edges_assignment[{number}]"
         require(letter in LETTERS, what, quoted(letter), allowed)
         angle = angles[number] or 0.0
-        what = f"edges_foldAngle[{number}]"
+        what = f"{ANGLES}[{number}]"
         check_number(what, angle)
         allowed = "from -180 to 180, in degrees"
         require(abs(angle) <= STRAIGHT, what, angle, allowed)
@@ -384,14 +395,17 @@ def _hinges(
     """The hinges between bodies, those in one line once; of what ``is_folded`` in space
     the angles are seen there."""
     hinges: list[_Hinge] = []
+    between: defaultdict[frozenset[str], list[Joint]] = defaultdict(list)
     for crease in creases:
         if crease.edge.letter not in HINGES:
             continue
         left = _normal(points[faces[crease.left]])
         right = _normal(points[faces[crease.right]])
         joint = _joint(crease, points, bodies, left)
-        if any(_is_same_hinge(joint, other.joint) for other in hinges):
+        known = between[frozenset(joint.bodies)]
+        if any(_is_same_hinge(joint, other) for other in known):
             continue
+        known.append(joint)
         angle = math.radians(crease.edge.angle)
         if is_folded:
             angle = _dihedral(left, right, np.array(joint.direction))
@@ -467,9 +481,7 @@ def _joint(
 
 
 def _is_same_hinge(joint: Joint, other: Joint) -> bool:
-    """Whether two creases are parts of one line between the same two bodies."""
-    if set(joint.bodies) != set(other.bodies):
-        return False
+    """Whether two creases between the same two bodies are parts of one line."""
     along, beside = np.array(joint.direction), np.array(other.direction)
     gap = joint.place - other.place
     distance = float(np.linalg.norm(gap)) or 1.0

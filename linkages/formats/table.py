@@ -129,6 +129,22 @@ def _read_fold(path: Path) -> Mechanism:
     return read_fold(read_text(path), path.stem)
 
 
+def _read_cp(path: Path) -> Mechanism:
+    from linkages.files.cp import read_cp
+
+    return read_cp(read_text(path), path.stem)
+
+
+def _read_svg(path: Path) -> Mechanism:
+    from linkages.files.svg import read_svg
+    from linkages.formats.xml_tree import parse_xml
+
+    root = parse_xml(_content(path))
+    is_svg = root.tag.removeprefix("svg:") == "svg"
+    require(is_svg, f"first element, line {root.line}", f"<{root.tag}>", "<svg>")
+    return read_svg(root, path.stem)
+
+
 def _read_csv(path: Path) -> Loop:
     from linkages.files.csv_table import read_csv
 
@@ -165,6 +181,8 @@ FORMATS = (
     ),
     FileFormat((".world",), ".world (CUIK)", read=_read_world),
     FileFormat((".fold",), read=_read_fold),
+    FileFormat((".cp",), read=_read_cp),
+    FileFormat((".svg",), read=_read_svg),
     FileFormat((".csv",), read=_read_csv),
 )
 ENDINGS = tuple(ending for one in FORMATS for ending in one.endings)

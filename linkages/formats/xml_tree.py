@@ -101,8 +101,8 @@ class Element:
 def parse_xml(content: bytes) -> Element:
     """The first element of a document.
 
-    A document type is refused, and with it every entity that a file could define.
-    Raises `GeometryError` with the line.
+    A document type that declares anything is refused, and so is every entity that a
+    file could define. Raises `GeometryError` with the line.
     """
     parser = expat.ParserCreate()
     document = Element("", 0)
@@ -119,16 +119,10 @@ def parse_xml(content: bytes) -> Element:
     def add_text(text: str) -> None:
         open_elements[-1].text += text
 
-    def refuse_document_type(name: str, *others: object) -> None:
-        # entities may be large beyond measure, or files
-        what = f"line {parser.CurrentLineNumber}"
-        allowed = "left out; entities are not read"
-        raise GeometryError(what, f"<!DOCTYPE {name}>", allowed)
-
     parser.StartElementHandler = start
     parser.EndElementHandler = lambda tag: open_elements.pop()
     parser.CharacterDataHandler = add_text
-    parser.StartDoctypeDeclHandler = refuse_document_type
+    _refuse_entities(parser)
     parser.buffer_text = True
     try:
         parser.Parse(content, True)
@@ -141,3 +135,24 @@ def parse_xml(content: bytes) -> Element:
             raise
         raise GeometryError("encoding", error, "UTF-8") from None
     return document.children[0]
+
+
+def _refuse_entities(parser: expat.XMLParserType) -> None:
+    """Let a parser raise `GeometryError` for them: they may be large beyond measure, or
+    files."""
+
+    def refuse(value: str) -> NoReturn:
+        what = f"line {parser.CurrentLineNumber}"
+        raise GeometryError(what, value, "left out; entities are not read")
+
+    def check_document_type(
+        name: str, system: str | None, public: str | None, declares: bool
+    ) -> None:
+        if declares:
+            refuse(f"<!DOCTYPE {name}> with declarations")
+
+    def refuse_entity(name: str, is_parameter: bool) -> None:
+        refuse(f"&{name};")
+
+    parser.StartDoctypeDeclHandler = check_document_type
+    parser.SkippedEntityHandler = refuse_entity

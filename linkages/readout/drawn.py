@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bifurc.atlas import NEAR_DRAWN, Atlas
+from bifurc.singular.point import Kind
 from bifurc.torus import difference
 
 
@@ -30,8 +31,12 @@ def drawn_place(atlas: Atlas) -> Drawn | None:
         return None
     for meeting in atlas.points:
         gap = difference(meeting.point.u, point, atlas.periods)
-        if np.linalg.norm(gap) < NEAR_DRAWN and meeting.passes:
+        if not np.linalg.norm(gap) < NEAR_DRAWN:
+            continue
+        if meeting.passes:
             return Drawn(point, meeting.name, *meeting.passes[0])
+        if meeting.kind is Kind.ISOLATED:
+            return Drawn(point, meeting.name)
     for number, form in enumerate(atlas.forms):
         distance, s = form.branch.nearest(point[None])
         if distance[0] < NEAR_DRAWN:

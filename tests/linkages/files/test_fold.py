@@ -15,6 +15,7 @@ from linkages.app.texts.summary import certainty_in_short
 from linkages.closure.closure import Closure
 from linkages.file import LinkageFileError
 from linkages.mechanisms.subject import mechanism_from, mechanism_subject
+from linkages.readout.drawn import drawn_place
 from linkages.readout.poses import Poses
 from linkages.structure.single_loop import loop_geometry
 from linkages.structure.structure import Structure
@@ -524,3 +525,24 @@ def test_an_assignment_survives_mirroring_and_json(tmp_path):
     for crease in mechanism.mirrored().creases:
         (limits,) = mechanism.mirrored().joint(crease.joint).limits
         assert limits == pytest.approx(crease.limits)
+
+
+# Abel et al. 2016, theorem 4: from flat a vertex folds as assigned where three creases of
+# one letter, within no half plane, and one of the other letter are among its creases
+@pytest.mark.parametrize(
+    ("letters", "folds"),
+    [("VVMMVMVV", True), ("VVVVMMMM", False)],
+)
+def test_a_vertex_of_eight_creases_leaves_the_flat_state_where_it_can(
+    letters, folds, tmp_path
+):
+    turns = np.radians([0.0, 41.2, 81.3, 140.4, 190.1, 214.4, 272.4, 327.8])
+    corners = np.transpose([np.cos(turns), np.sin(turns)]).tolist()
+    content = {
+        "vertices_coords": [[0.0, 0.0], *corners],
+        "faces_vertices": [[0, 1 + k, 1 + (k + 1) % 8] for k in range(8)],
+        "edges_vertices": [[0, 1 + k] for k in range(8)],
+        "edges_assignment": list(letters),
+    }
+    drawn = drawn_place(map_of(read(tmp_path, content)))
+    assert drawn.name == ("surface 1" if folds else "S1")

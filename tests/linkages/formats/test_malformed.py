@@ -15,6 +15,7 @@ from linkages.formats.mjcf_writing import mechanism_mjcf
 from linkages.formats.sdf_writing import mechanism_sdf
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.values import GeometryError
+from tests.linkages.files.test_drawn_creases import CP, DRAWN, SVG
 from tests.linkages.formats.examples import EXAMPLES
 from tests.linkages.formats.robot_models import (
     MJCF,
@@ -71,6 +72,8 @@ def texts():
         + [lines_of(sdf_text(model)) for model in SDF.values()],
         "world": [world_text(case) for case in list(CASES.values())[:6]],
         "fold": [FOLD],
+        "cp": [CP],
+        "svg": [SVG.format(DRAWN)],
     }
 
 
@@ -99,7 +102,7 @@ def broken(text, rng):
     return "\n".join(lines)
 
 
-@pytest.mark.parametrize("ending", ["toml", "xml", "sdf", "world", "fold"])
+@pytest.mark.parametrize("ending", ["toml", "xml", "sdf", "world", "fold", "cp", "svg"])
 def test_a_broken_file_is_read_or_refused_in_one_line(ending, tmp_path):
     rng = random.Random(14)
     sound = texts()[ending]
