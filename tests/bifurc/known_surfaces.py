@@ -39,7 +39,8 @@ class Union(NumericalProblem):
         out = np.ones((count, 1))
         for functions in self.sets:
             values = functions(*points.T).T
-            out = (out[:, :, None] * values[:, None]).reshape(count, -1)
+            products = out[:, :, None] * values[:, None]
+            out = products.reshape(count, products.shape[1] * products.shape[2])
         return out
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:

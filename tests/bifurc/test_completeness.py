@@ -20,6 +20,7 @@ DATA = {
     "complex": 8,
     "count": 2,
     "ends": 1,
+    "far": 1,
     "forms": 3,
     "inside": 3,
     "left": 4,

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bifurc.equations.recording import record
+from bifurc.tables import count_of
 from tests.bifurc.known_curves import Bratu, double_watt
 from tests.bifurc.search.test_explore import COPIES, KNOWN
 from tests.bifurc.singular.test_degenerate_points import AT_THE_ORIGIN
@@ -128,7 +129,8 @@ def test_a_recording_is_equal_to_its_function_to_rounding(name):
     points = points_in(n)
     recording = record(function, points)
     assert recording.tape is not None, recording.reason
-    assert str(recording) == f"recorded ({recording.tape.size} operations)"
+    operations = count_of(recording.tape.size, "operation")
+    assert str(recording) == f"recorded ({operations})"
     recorded = recording.tape.compiled.residuals(points)
     expected = np.array([function(point) for point in points], dtype=float)
     # a few units in the last place of the largest term

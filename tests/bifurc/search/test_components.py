@@ -124,7 +124,7 @@ def test_charts_that_do_not_fit_together_are_a_doubt(
     plane = FunctionProblem(lambda u: u[2:], [(-1.0, 1.0)] * 3)
     settings = SearchSettings(starts=5)
     assert not explore(plane, settings=settings).completeness.is_in_doubt
-    monkeypatch.setattr("bifurc.search.components.cover_surface", ill_fitting)
+    monkeypatch.setattr("bifurc.surfaces.covering.cover_surface", ill_fitting)
     atlas = explore(plane, settings=settings)
     assert "do not fit together everywhere" in atlas.completeness.statement
 

@@ -124,7 +124,7 @@ MALFORMED = {
     four_bar("axis = 1\n"): r"key of joint D: 'axis' .* one of name, kind",
     four_bar(
         "", "lengths = [1]\n"
-    ): r"key: 'lengths' .* one of name, angles, planar, origin, rounding, joints",
+    ): r"key: 'lengths' .* one of name, angles, planar, origin, rounding, layers, joints",
     four_bar("", 'angles = "turns"\n'): r'angles: "turns" .* "deg"',
     four_bar("", "name = 3\n"): r"name: 3 .* text",
     four_bar("locked = [1, 2]\n"): r"locked of joint D: \[1, 2\] .* a number",
