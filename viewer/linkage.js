@@ -58,7 +58,7 @@ const SHAPES = {
   ball: () => new SphereGeometry(1.5, 20, 14).scale(1, 0.5 / JOINT_LENGTH, 1),
 };
 const DOT = 1.3; // the radius of a traced point, in that of a joint
-const LIFT = 15; // pixels: how far its name stands above it
+const LIFT = 20; // pixels: how far its name stands above it
 const UP = new Vector3(0, 1, 0); // the axis of a cylinder of three.js
 
 export class LinkageView {
