@@ -112,6 +112,11 @@ class Subject(ABC):
         layers where all move in a plane."""
         return self.parts
 
+    def parts_for(self, trace: Sequence[str]) -> Parts:
+        """The parts with which the points of a ``trace`` are drawn: these are of bodies
+        by the names of the file."""
+        return self.flat_parts if trace else self.parts
+
     @property
     def given_layers(self) -> Mapping[str, int]:
         """The layers of bodies that a file gives."""

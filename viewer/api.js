@@ -13,6 +13,7 @@ export function makeApi(viewer) {
     },
     state: () => stateOf(viewer),
     rods: () => rodsOf(viewer),
+    traced: () => viewer.view?.tracedPlaces,
     canvas: () => viewer.view?.canvasPlaces,
     play: () => viewer.player.play(),
     stop: () => viewer.stop(),

@@ -10,6 +10,7 @@ import {
   DoubleSide,
   HemisphereLight,
   InstancedMesh,
+  LineBasicMaterial,
   LineDashedMaterial,
   LineSegments,
   Matrix4,
@@ -26,9 +27,10 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
-import { compose, invert } from "./kinematics.js";
+import { compose, invert, moved } from "./kinematics.js";
 import { distance } from "./rods.js";
 import { element } from "./elements.js";
+import { isCurve } from "./tracks.js";
 
 const MOST_GHOSTS = 8;
 const FIELD_OF_VIEW = 26; // degrees
@@ -55,6 +57,8 @@ const SHAPES = {
   plate: () => new BoxGeometry(7, 0.25, 7),
   ball: () => new SphereGeometry(1.5, 20, 14).scale(1, 0.5 / JOINT_LENGTH, 1),
 };
+const DOT = 1.3; // the radius of a traced point, in that of a joint
+const LIFT = 20; // pixels: how far its name stands above it
 const UP = new Vector3(0, 1, 0); // the axis of a cylinder of three.js
 
 export class LinkageView {
@@ -65,8 +69,9 @@ export class LinkageView {
     this.figure = figure;
     this.fixed = figure.fixed; // the number of the frame that stands still
     this.hold = identity();
+    this.traced = scene.trace.map((point) => tracedPoint(point, figure));
     this.ghosts = [];
-    this.colors = { link: "#0072B2", fixed: "#888", joint: "#333", idle: "#999", axis: "#888" };
+    this.colors = { link: "#0072B2", fixed: "#888", joint: "#333", idle: "#999", axis: "#888", trace: "#c2185b" };
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     this.canvas = this.renderer.domElement;
@@ -103,6 +108,10 @@ export class LinkageView {
     this.axes = new LineSegments(lines, new LineDashedMaterial({ dashSize: 0.05, gapSize: 0.03 }));
     this.axes.frustumCulled = false;
     this.makePanels();
+    this.dots = instances(new SphereGeometry(1, 20, 14), this.traced.length);
+    this.paths = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
+    this.paths.frustumCulled = false;
+    this.scene.add(this.dots, this.paths);
     this.scene.add(this.rods, this.elbows, ...this.symbols.map(({ mesh }) => mesh), this.ghostRods, this.axes, this.panels);
   }
 
@@ -120,7 +129,7 @@ export class LinkageView {
 
   makeLabels() {
     this.numbers = [];
-    for (const name of this.figure.names) {
+    for (const name of [...this.figure.names, ...this.traced.map((point) => point.name)]) {
       const label = element("span", { class: "bv-joint-number" }, name);
       this.numbers.push(label);
       this.labels.append(label);
@@ -129,7 +138,7 @@ export class LinkageView {
     this.nameWidth = Math.max(LETTER * longest + 3, NAME_GAP);
   }
 
-  /** The colours of the picture: {link, fixed, joint, idle, axis}. */
+  /** The colours of the picture: {link, fixed, joint, idle, axis, trace}. */
   setColors(colors) {
     this.colors = colors;
     this.update();
@@ -141,7 +150,26 @@ export class LinkageView {
     this.fixed = frame;
     this.ghosts = [];
     this.fit(this.lookNow());
+    this.placePaths();
     this.update();
+  }
+
+  /** Draw the paths that traced points have along a track. */
+  follow(track) {
+    this.track = track;
+    this.placePaths();
+  }
+
+  /** Where the traced points are in frames of a configuration, as the picture has them. */
+  tracedIn(frames) {
+    return this.traced.map(({ frame, place }) => moved(this.poseOf(frames, frame), place));
+  }
+
+  /** The paths (a list of places each) of the traced points along the track; none along a list of configurations. */
+  pathsOfTrack() {
+    if (!this.traced.length || !isCurve(this.track)) return this.traced.map(() => []);
+    const rows = this.track.samples.map(({ theta }) => this.tracedIn(this.figure.frames(theta)));
+    return this.traced.map((_, k) => rows.map((row) => row[k]));
   }
 
   /** The frames of a configuration as the picture has them. */
@@ -161,7 +189,7 @@ export class LinkageView {
     for (let at = 0; at < frames.length; at += 12) {
       turned.set(compose(world, frames.slice(at, at + 12)), at);
     }
-    return { frames, parts: this.figure.parts(turned) };
+    return { frames, parts: this.figure.parts(turned), traced: this.tracedIn(frames) };
   }
 
   /** Show a configuration; `idle` are the unknowns (from 1) that stand still along its form. */
@@ -190,8 +218,8 @@ export class LinkageView {
     for (const { samples } of this.tracks) {
       const step = Math.max(1, Math.floor(samples.length / FRAMING_SAMPLES));
       for (let k = 0; k < samples.length; k += step) {
-        const { parts } = this.partsOf(samples[k].theta);
-        seats.push(...parts.seats);
+        const { parts, traced } = this.partsOf(samples[k].theta);
+        seats.push(...parts.seats, ...traced);
         for (const rod of parts.rods) points.push(rod.from, rod.to);
         for (const axis of parts.axes) points.push(...axis);
       }
@@ -247,12 +275,13 @@ export class LinkageView {
   /** See the linkage from where it is clearest again. */
   resetView(scene) {
     this.fit(lookOf(scene.view));
+    this.placePaths();
     this.update();
   }
 
   update() {
     if (!this.theta) return;
-    const { frames, parts } = this.partsOf(this.theta);
+    const { frames, parts, traced } = this.partsOf(this.theta);
     this.frames = frames;
     this.placeRods(this.rods, parts.rods, 0, this.rodRadius);
     this.rods.count = parts.rods.length;
@@ -264,7 +293,10 @@ export class LinkageView {
     this.placePanels(parts.panels);
     this.placeAxes(parts.axes);
     this.placeGhosts();
-    this.labelPlaces = parts.labels.map(({ place, lift }, i) => ({ place: this.scaled(place), seat: this.scaled(parts.seats[i]), lift }));
+    this.placeDots(traced);
+    const labels = [...parts.labels, ...traced.map((place) => ({ place, lift: LIFT }))];
+    const seats = [...parts.seats, ...traced];
+    this.labelPlaces = labels.map(({ place, lift }, i) => ({ place: this.scaled(place), seat: this.scaled(seats[i]), lift }));
     this.requestFrame();
   }
 
@@ -344,6 +376,23 @@ export class LinkageView {
     position.needsUpdate = true;
     this.axes.computeLineDistances();
     this.axes.material.color.set(this.colors.axis);
+  }
+
+  /** The paths of the traced points, each from place to place. */
+  placePaths() {
+    const ends = this.pathsOfTrack().flatMap((path) => path.slice(1).flatMap((place, k) => [path[k], place]));
+    this.paths.geometry.dispose();
+    this.paths.geometry = new BufferGeometry().setFromPoints(ends.map((place) => this.scaled(place)));
+  }
+
+  placeDots(traced) {
+    const size = new Vector3().setScalar(DOT * this.jointRadius);
+    traced.forEach((place, k) => {
+      this.dots.setMatrixAt(k, new Matrix4().compose(this.scaled(place), new Quaternion(), size));
+    });
+    this.dots.count = traced.length;
+    this.dots.instanceMatrix.needsUpdate = true;
+    for (const { material } of [this.dots, this.paths]) material.color.set(this.colors.trace);
   }
 
   placeGhosts() {
@@ -444,6 +493,14 @@ export class LinkageView {
     return { width, height, joints: spots.map(({ x, y }) => [x, y]) };
   }
 
+  /** The traced points as {name, place, path}, in the user's unit, seen from the body that stands still. */
+  get tracedPlaces() {
+    const { size } = this.figure;
+    const inUnit = (place) => place.map((x) => size * x);
+    const places = this.tracedIn(this.frames);
+    return this.pathsOfTrack().map((path, k) => ({ name: this.traced[k].name, place: inUnit(places[k]), path: path.map(inUnit) }));
+  }
+
   get drawCalls() {
     return this.renderer.info.render.calls;
   }
@@ -466,6 +523,12 @@ function trianglesOf(corners) {
   const flat = new Quaternion().setFromUnitVectors(normal.normalize(), new Vector3(0, 0, 1));
   const outline = places.map((place) => place.applyQuaternion(flat)).map(({ x, y }) => new Vector2(x, y));
   return ShapeUtils.triangulateShape(outline, []).flat();
+}
+
+/** A traced point of the document, with the number of the frame of its body, its place in characteristic lengths. */
+function tracedPoint({ name, body, place }, figure) {
+  const frame = figure.bodies.findIndex((_, candidate) => figure.bodyOf(candidate) === body);
+  return { name, frame, place: place.map((x) => x / figure.size) };
 }
 
 /** How thick the rods of a body are, over those of others: rods that lie in each other do not flicker. */

@@ -147,6 +147,7 @@ export class Viewer {
       joint: variable("--bv-joint"),
       idle: variable("--bv-idle"),
       axis: variable("--bv-axis"),
+      trace: variable("--bv-trace"),
     };
     for (const part of [this.formList, this.choice, this.strip, this.graph, this.map]) part.setColors(colorOf);
     this.view?.setColors({ ...this.surroundings, link: colorOf(this.position.track) });
@@ -163,6 +164,7 @@ export class Viewer {
       this.view.ghosts = [];
       this.view.colors = { ...this.surroundings, link: this.colorOf(track) };
     }
+    if (isNewTrack) this.view?.follow(track);
     this.view?.show(angles, track.form?.inactive_joints);
     this.leaveGhost();
     this.map.show(position);

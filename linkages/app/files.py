@@ -34,7 +34,8 @@ class FigureAxes:
     `bifurc.plot_diagram` takes it; the usual ones where nothing is said.
 
     ``window`` are the first and the last angle, degrees, ``overlay`` points of the
-    user's, as in `bifurc.figures.selection.Selection`.
+    user's, as in `bifurc.figures.selection.Selection`, ``trace`` points of bodies whose
+    paths are drawn with the linkage.
     """
 
     transition_map: tuple[int, ...] = ()
@@ -42,6 +43,7 @@ class FigureAxes:
     window: tuple[float, float] | None = None
     overlay: Mapping[str, Sequence[float]] = field(default_factory=dict)
     diagram: tuple[str, ...] = ()
+    trace: tuple[str, ...] = ()
 
 
 def figure_axes(
@@ -50,17 +52,20 @@ def figure_axes(
     against: Sequence[str] | None,
     window: tuple[float, float] | None,
     overlay: Path | None,
+    trace: tuple[str, ...] = (),
 ) -> FigureAxes:
     """What the figures of a linkage are drawn over, for the names or numbers of its
     joints; raises `CommandError` for one that it does not have, or that is named
-    twice, and for a file that holds no points."""
+    twice, and for a file that holds no points, and `GeometryError` for a point of a
+    ``trace`` that is of no body."""
     if window is not None and not 0 < window[1] - window[0] <= 360:
         raise CommandError(
             f"--range {window[0]:g}:{window[1]:g}: it must be a first and a larger last "
             "angle, degrees, at most a turn"
         )
+    require_points(linkage, trace)
     if axes is None and against is None and overlay is None:
-        return FigureAxes(window=window)
+        return FigureAxes(window=window, trace=trace)
     from linkages.subject import as_subject  # equations have no need of it
 
     names = as_subject(linkage).unknowns
@@ -70,7 +75,20 @@ def figure_axes(
         numbers[0] if numbers else None,
         window,
         read_points(overlay, names) if overlay else {},
+        trace=trace,
     )
+
+
+def require_points(linkage: Linkage | Mechanism, trace: Sequence[str]) -> None:
+    """Raise `GeometryError` for a point of a ``trace`` that no body has."""
+    if not trace:
+        return
+    from linkages.links.traced_points import traced_point
+    from linkages.subject import as_subject
+
+    parts = as_subject(linkage).parts_for(trace)
+    for text in trace:
+        traced_point(parts, text)
 
 
 def read_points(path: Path, names: Sequence[str]) -> dict[str, list[float]]:
@@ -179,7 +197,7 @@ def write_figures(
         from linkages.pictures.plot_linkage import plot_linkage
 
         form = selection.forms[0] if selection.forms else None
-        others["linkage"] = partial(plot_linkage, form=form)
+        others["linkage"] = partial(plot_linkage, form=form, trace=over.trace)
     size: dict[Any, Any] = {SIZE: options.size} if options.size else {}
     with rc_context(size):
         return replace_files(

@@ -232,7 +232,16 @@ def say_more() -> None:
         logging.getLogger(name).setLevel(logging.INFO)
 
 
-FIGURE_OPTIONS = ("axes", "against", "window", "overlay", "formats", "size", "forms")
+FIGURE_OPTIONS = (
+    "axes",
+    "against",
+    "window",
+    "overlay",
+    "formats",
+    "size",
+    "forms",
+    "trace",
+)
 
 
 def require_out(out: Path | None) -> None:

@@ -90,7 +90,6 @@ def write_animation(
 
 def _painter_of(atlas: Atlas, points: np.ndarray, trace: Sequence[str]) -> Painter:
     """What makes pictures at configurations (k, n)."""
-    subject = subject_at(atlas)
-    parts = subject.flat_parts if trace else subject.parts
+    parts = subject_at(atlas).parts_for(trace)
     first = points[clearest(parts.breadths(points))]
     return Painter(parts, first, points, [traced_point(parts, text) for text in trace])

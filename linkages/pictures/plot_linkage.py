@@ -97,9 +97,7 @@ def painter_of(atlas: Atlas, place: Place, trace: Sequence[str] = ()) -> Painter
     if place.form is not None:
         samples = FINE_SAMPLES if trace else SAMPLES
         points = atlas.forms[place.form].branch.sample(samples)
-    subject = subject_at(atlas)
-    # points are of bodies by the names of the file
-    parts = subject.flat_parts if trace else subject.parts
+    parts = subject_at(atlas).parts_for(trace)
     traced = [traced_point(parts, text) for text in trace]
     return Painter(parts, place.point, points, traced)
 

@@ -32,6 +32,8 @@ principal        the plane in which (cos theta, sin theta), 2 n numbers, spread 
                  cosine, and 0 for its sine
 view             where to look from at first, elevation and azimuth in degrees, and what
                  is up then
+trace            points whose paths are drawn: name, the number of the body, as in a
+                 mechanism, or of the link from 0; place, on it, in the user's unit
 drawn            the configuration in which a file gives the linkage: angles, its name on
                  the map, and its place [index of the form, s], null where no form passes
 """
@@ -39,6 +41,7 @@ drawn            the configuration in which a file gives the linkage: angles, it
 from __future__ import annotations
 
 import base64
+from collections.abc import Sequence
 from math import degrees
 from typing import Any, TypeAlias
 
@@ -59,6 +62,7 @@ from bifurc.figures.style import (
 from bifurc.tables import count_of
 from bifurc.torus import difference
 from linkages.labels import FormLabels
+from linkages.links.traced_points import TracedPoint, traced_point
 from linkages.mechanisms.mechanism import Lock
 from linkages.readout.dead_points import driven_dead_points
 from linkages.readout.drawn import drawn_place
@@ -72,13 +76,17 @@ MOST_LOCKS = 6  # that a title lists
 DIGITS = 6  # after the point, of places in the graph (inches)
 
 
-def make_view_document(atlas: Atlas, verdict: str = "") -> Document:
-    """The document of an atlas; ``verdict`` is a sentence on what the linkage is.
+def make_view_document(
+    atlas: Atlas, verdict: str = "", trace: Sequence[str] = ()
+) -> Document:
+    """The document of an atlas; ``verdict`` is a sentence on what the linkage is, and
+    ``trace`` names points whose paths are drawn, as `linkages.plot_linkage` has it.
 
-    Raises `linkages.NoLinkageError` where the atlas is not of a linkage.
+    Raises `linkages.NoLinkageError` where the atlas is not of a linkage, and
+    `linkages.GeometryError` for a point of no body.
     """
     check_type("atlas", atlas, Atlas)
-    parts = subject_at(atlas).parts
+    parts = subject_at(atlas).parts_for(trace)
     completeness = atlas.completeness
     forms = [
         {**_form(form, number), **parts.form_on_page(form, start_of(atlas, number))}
@@ -102,6 +110,7 @@ def make_view_document(atlas: Atlas, verdict: str = "") -> Document:
         "plane": choose_plane(atlas),
         "principal": _principal(atlas),
         "view": view._asdict(),
+        "trace": [_traced(traced_point(parts, text)) for text in trace],
         "drawn": _drawn(atlas),
     }
 
@@ -188,6 +197,10 @@ def _point(point: MeetingPoint) -> Document:
         "passes": [(form, float(s)) for form, s in point.passes],
         "surfaces": list(point.surfaces),
     }
+
+
+def _traced(point: TracedPoint) -> Document:
+    return {"name": point.name, "body": point.body, "place": point.place.tolist()}
 
 
 def _drawn(atlas: Atlas) -> Document | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
@@ -17,12 +18,14 @@ class NoWidgetError(BifurcError, ImportError):
     """The widget cannot be made, since anywidget is not installed."""
 
 
-def view(atlas: Atlas) -> LinkageWidget:
+def view(atlas: Atlas, *, trace: Sequence[str] = ()) -> LinkageWidget:
     """A widget that shows the linkage of an atlas in motion, beside its map.
 
     Its traits ``form`` and ``position`` (arclength, rad) follow what is seen, and lead
-    it. Raises `NoLinkageError` where the atlas is not of a linkage, and `ImportError`
-    without anywidget, which the extra ``jupyter`` installs.
+    it. The paths of points are drawn that ``trace`` names as "BODY:X,Y" or "BODY:X,Y,Z".
+    Raises `NoLinkageError` where the atlas is not of a linkage, `GeometryError` for a
+    point of no body, and `ImportError` without anywidget, which the extra ``jupyter``
+    installs.
 
     >>> import linkages
     >>> widget = linkages.view(linkages.map_linkage(linkages.load("bennett")))
@@ -30,7 +33,7 @@ def view(atlas: Atlas) -> LinkageWidget:
     'Bennett form'
     """
     check_type("atlas", atlas, Atlas)
-    document = make_view_document(atlas)
+    document = make_view_document(atlas, trace=trace)
     try:
         from linkages.viewing.widget import LinkageWidget
     except ImportError as error:

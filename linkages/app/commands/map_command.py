@@ -72,6 +72,7 @@ if TYPE_CHECKING:
         "for each of some joints, with their names in the first line; needs --out."
     ),
 )
+@options.trace_option
 @options.figure_options
 @options.atlas_options
 def map_command(
@@ -85,6 +86,7 @@ def map_command(
     against: tuple[str, ...] | None,
     window: tuple[float, float] | None,
     overlay: Path | None,
+    trace: tuple[str, ...],
     figures: options.FigureOptions,
     choice: options.AtlasOptions,
 ) -> None:
@@ -97,6 +99,7 @@ def map_command(
       bifurc map special-double-subtractive-goldberg --out out
       bifurc map bricard-line-symmetric --out out --axes 1,5 --against 1
       bifurc map bennett --out out --format pdf --size 3.4x2.6 --range 0:360
+      bifurc map four-bar --out out --trace 23:1,0.5
       bifurc map my_linkage.toml --json > map.json
       bifurc map printed_table.csv --nearest --out out
       bifurc map five_bar.toml --lock J1=40
@@ -114,7 +117,7 @@ def map_command(
     mechanism, exact = choose_mapped(linkage, choice, nearest)
     parts = mechanism.parts
     folders = folders_of(out, len(parts))
-    over = [figure_axes(part, axes, against, window, overlay) for part in parts]
+    over = [figure_axes(part, axes, against, window, overlay, trace) for part in parts]
     for folder in folders:
         require_folder(folder)
     # Ctrl-C ends the search, but not before what was found is shown and written
@@ -287,5 +290,5 @@ def write_pictures(
 
     with writing_to(out):
         figures = write_figures(atlas, out, over, look)
-        document = make_view_document(atlas, judge(atlas).sentence)
+        document = make_view_document(atlas, judge(atlas).sentence, over.trace)
         return [*figures, write_page(document, out / "map.html")]

@@ -21,11 +21,13 @@ PAGE = ".html"
     help="The page.  [default: NAME.html in this folder]",
 )
 @click.option("--no-open", is_flag=True, help="Write the page, but do not open it.")
+@options.trace_option
 @options.atlas_options
 def view_command(
     source: str,
     out: Path | None,
     no_open: bool,
+    trace: tuple[str, ...],
     choice: options.AtlasOptions,
 ) -> None:
     """Show a linkage in motion beside its transition map: one page, which a browser
@@ -37,6 +39,7 @@ def view_command(
       bifurc view my_linkage.toml --out my_linkage.html --no-open
       bifurc view out/atlas.nc
       bifurc view four-bennett-network --lock 2=40 --lock 6=-75
+      bifurc view four-bar --trace 23:1,0.5
     """
     from linkages.app.answer.verdict import exit_by, judge
     from linkages.app.atlas_source import atlas_of
@@ -53,7 +56,7 @@ def view_command(
     require_writable(path)
     atlas = atlas_of(source, choice)
     verdict = judge(atlas)
-    document = make_view_document(atlas, verdict.sentence)
+    document = make_view_document(atlas, verdict.sentence, trace)
     with writing_to(path):
         write_page(document, path)
     click.echo(f"wrote {path}", err=True)

@@ -189,11 +189,11 @@ def browser():
         chromium.close()
 
 
-def open_page(browser, name, folder, window=WINDOW, before="", **options):
+def open_page(browser, name, folder, window=WINDOW, before="", trace=(), **options):
     """The page of a linkage, opened from disk and ready to be used."""
     atlas = mapped(name)
     path = folder / "page.html"
-    write_page(make_view_document(atlas, judge(atlas).sentence), path)
+    write_page(make_view_document(atlas, judge(atlas).sentence, trace), path)
     context = browser.new_context(viewport=window, **options)
     if before:
         context.add_init_script(before)
