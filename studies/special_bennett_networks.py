@@ -126,7 +126,7 @@ def _read_kinks(text: str) -> tuple[float, float]:
 @click.argument("pairs", metavar="[KINK/KINK ...]", nargs=-1)
 @click.option("--alpha", type=float, default=35.0, show_default=True, help="Degrees.")
 @click.option("--gamma", type=float, default=81.0, show_default=True, help="Degrees.")
-@click.option("--budget", type=float, default=10.0, show_default=True, help="Seconds.")
+@click.option("--budget", type=float, default=60.0, show_default=True, help="Seconds.")
 def main(pairs: tuple[str, ...], alpha: float, gamma: float, budget: float) -> None:
     """Map the network under every pair of locks, and print the table."""
     twists = np.radians(alpha), np.radians(gamma)
