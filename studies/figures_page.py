@@ -40,6 +40,7 @@ KINDS = {
     Kind.NOTATION: "names of lengths and angles",
     Kind.TRANSLATOR: "Wohlhart's symmetric mechanism as a translator",
     Kind.TORI: "circles that make tori, and linkages on them",
+    Kind.TABLE: "a printed table of types: lengths and twists of their links in symbols",
 }
 
 AGREEMENTS = {
@@ -53,7 +54,7 @@ AGREEMENTS = {
 
 HEAD = """# Figures of the sources
 
-Every figure of the thesis and of four papers, drawn anew from the geometry:
+Every figure of the thesis and of four papers, and their tables of linkages, drawn anew from the geometry:
 
 ```sh
 bifurc figure --list

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from math import degrees, pi
 from typing import NamedTuple, TypeAlias
 
 from linkages.construction.conditions import decided
@@ -116,6 +117,12 @@ def _cosine_and_sine(kink: KinkAngle) -> tuple[Number, Number]:
     return cos(kink), sin(kink)
 
 
+def _in_degrees(kink: KinkAngle) -> str:
+    """A kink as errors show it, to 10 digits."""
+    angle = pi * kink.value if isinstance(kink, Kink) else float(kink)
+    return f"{degrees(angle):.10g} deg"
+
+
 def _is_parallel(sine: Number) -> bool:
     """Whether outer axes are parallel whose angle has a ``sine``."""
     size = decided(sine)
@@ -137,7 +144,8 @@ def _between_parallel_axes(
     reach = sqrt(first.length**2 + second.length**2 + offset**2)
     excess = decided(length - PARALLEL * reach)
     if excess is not None and excess <= 0:
-        raise GeometryError("kink", kink, "such that the outer axes are not the same")
+        allowed = "such that the outer axes are not the same"
+        raise GeometryError("kink", _in_degrees(kink), allowed)
     before = atan2(y, x)
     along = atan2(c1 * sk, ck)  # the second link, seen from the first one
     cosine = decided(c1 * cos(second.twist) - ck * s1 * sin(second.twist))

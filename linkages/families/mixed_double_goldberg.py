@@ -55,6 +55,11 @@ class Kind(Enum):
     GOLDBERG = _Joints(1, 1, "double-goldberg")
     SUBTRACTIVE = _Joints(-1, -1, "double-subtractive-goldberg")
 
+    @classmethod
+    def of_prefix(cls, prefix: str) -> Kind:
+        """The kind whose members' names begin so."""
+        return next(kind for kind in cls if kind.value.prefix == prefix)
+
 
 def double_goldberg_type(
     *parameters: Number,
@@ -75,9 +80,14 @@ def double_goldberg_type(
 def double_goldberg_chain(links: Mapping[str, Link], order: Order, kind: Kind) -> Loop:
     """The loop of Type ``order`` and ``kind`` of the basic links a, b, c, d, whatever
     their ratios; -c is allowed."""
+    return joined_chain(link_order(order, kind), links)
+
+
+def link_order(order: Order, kind: Kind) -> str:
+    """The links 12 to 61 as `joined_chain` reads them."""
     signs = {1: "+", -1: "-"}
     text = order.value.replace("+", signs[kind.value.second])
-    return joined_chain(text.replace("*", signs[kind.value.first]), links)
+    return text.replace("*", signs[kind.value.first])
 
 
 # --- first guesses

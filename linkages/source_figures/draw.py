@@ -14,6 +14,7 @@ from linkages.source_figures import (
     assembly_figure,
     curves_figure,
     notation_figure,
+    table_figure,
     tori_figure,
     transitions_figure,
     translator_figure,
@@ -30,6 +31,7 @@ DRAWINGS: dict[Kind, Callable[[SourceFigure], Figure]] = {
     Kind.NOTATION: notation_figure.draw,
     Kind.TRANSLATOR: translator_figure.draw,
     Kind.TORI: tori_figure.draw,
+    Kind.TABLE: table_figure.draw,
 }
 # sources write formulas, and no user's name stands in their figures
 OF_SOURCES = {"text.parse_math": True}

@@ -20,6 +20,7 @@ FILES = (
     "thesis_chapter_4",
     "thesis_chapter_5",
     "thesis_networks",
+    "thesis_tables",
     "paper_000",
     "paper_001",
     "paper_003",
@@ -50,6 +51,8 @@ class Kind(StrEnum):
     TRANSLATOR = "translator"
     # Circles that make tori, and the linkages on them.
     TORI = "tori"
+    # A printed table of types, with their links.
+    TABLE = "table"
 
 
 class Agreement(StrEnum):

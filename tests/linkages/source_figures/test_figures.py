@@ -38,6 +38,7 @@ DRAWN = (
     # once with names on each other
     "thesis-2.3.1", "thesis-2.4.1", "thesis-2.4.9", "thesis-3.4.10", "thesis-5.4.11",
     "thesis-5.4.14",
+    "thesis-table-3.3.1", "thesis-table-3.5.2", "000-table-3",
 )  # fmt: skip
 
 

@@ -21,6 +21,7 @@ THESIS = {
     "4.2": 5, "4.3": 4, "4.4": 7,
     "5.2": 7, "5.3": 19, "5.4": 14,
 }  # fmt: skip
+TABLES = {"thesis": ("3.3.1", "3.5.1", "3.5.2", "3.5.3"), "000": ("2", "3")}
 PAPERS = {"000": 17, "001": 5, "003": 4, "004": 13}
 
 
@@ -31,9 +32,11 @@ def test_every_figure_of_the_sources_is_in_the_table():
         for number in range(1, count + 1)
     ]
     assert len(expected) == 89
+    expected += [f"thesis-table-{number}" for number in TABLES["thesis"]]
     for paper, count in PAPERS.items():
         prefix = "001-5." if paper == "001" else f"{paper}-"
         expected += [f"{prefix}{number}" for number in range(1, count + 1)]
+        expected += [f"{paper}-table-{number}" for number in TABLES.get(paper, ())]
     assert list(source_figures()) == expected
 
 
