@@ -264,33 +264,38 @@ def near_misses_of(
     of the ``points`` as its place is open, or to where a form meets one of those that
     are ``met``, form by form."""
     events = []
+    located = np.array([point.u for point in points]).reshape(-1, problem.n)
+    errors = np.array([point.error for point in points])
     for form, branch in enumerate(traced):
         arclengths, values = branch.minima
         is_low = stand_out(problem, branch.branch, branch.profile, values)
-        is_near_miss = is_low & ~np.isin(arclengths, branch.located)
-        if not np.any(is_near_miss):
+        arclengths = arclengths[is_low & ~np.isin(arclengths, branch.located)]
+        if not len(arclengths):
             continue
-        arclengths = arclengths[is_near_miss]
-        rank = branch.profile.rank
         places = wrap(branch.branch(arclengths), periods)
+        passed, reach = _passes_of(form, met)
         for k in order_points(places, periods, problem.domain.scale):
             s = float(arclengths[k])
-            to_points = [problem.domain.difference(places[k], p.u) for p in points]
-            is_at_point = any(
-                np.linalg.norm(gap) <= point.error
-                for gap, point in zip(to_points, points, strict=True)
-            )
+            gaps = np.linalg.norm(problem.domain.difference(places[k], located), axis=1)
             # an end that stops short of a cusp is at it
-            is_at_pass = any(
-                number == form and abs(s - passed) <= meeting.point.error
-                for meeting in met
-                for number, passed in meeting.passes
-            )
-            if is_at_point or is_at_pass:
+            if np.any(gaps <= errors) or np.any(np.abs(s - passed) <= reach):
                 continue
-            size = near_miss_value(problem, branch.branch, rank, s)
+            size = near_miss_value(problem, branch.branch, branch.profile.rank, s)
             events.append(Event(form, s, places[k], *size))
     return tuple(events)
+
+
+def _passes_of(form: int, met: Sequence[MeetingPoint]) -> tuple[np.ndarray, np.ndarray]:
+    """Where a form, by index, passes points (k,), and how exactly these are known
+    (k,)."""
+    passes = [
+        (passed, meeting.point.error)
+        for meeting in met
+        for number, passed in meeting.passes
+        if number == form
+    ]
+    passed, reach = np.array(passes).reshape(-1, 2).T
+    return passed, reach
 
 
 def _dead_points(
