@@ -270,13 +270,13 @@ def judge(curve: Curve, atlas: Atlas) -> Verdict:
 
 
 class Run(NamedTuple):
-    """One curve in one change from one seed."""
+    """One curve, or what else has a known answer, in one change from one seed."""
 
-    curve: str
+    name: str
     change: Change
     seed: int
     verdict: Verdict
-    answer: Answer | str
+    answer: object
     seconds: float
 
 
@@ -302,14 +302,14 @@ def run_curve(curve: Curve, change: Change, seed: int, budget: float) -> Run:
 
 def _print_run(run: Run) -> None:
     """One line for an answer that is not right, or slow."""
-    where = f"{run.curve}, {run.change.name}, seed {run.seed}"
+    where = f"{run.name}, {run.change.name}, seed {run.seed}"
     if run.verdict is not Verdict.RIGHT:
         print(f"{run.verdict}: {where}: {run.answer}", flush=True)
     if run.seconds > SLOW:
         print(f"slow: {where}: {run.seconds:.1f} s", flush=True)
 
 
-def _print_table(runs: Sequence[Run]) -> None:
+def print_table(runs: Sequence[Run]) -> None:
     """Counts by kind of change."""
     print("| change | answers | right | in doubt | wrong | median s | most s |")
     print("|---|---|---|---|---|---|---|")
@@ -352,7 +352,7 @@ def main(
         run = run_curve(curve, change, seed, budget)
         _print_run(run)
         runs.append(run)
-    _print_table(runs)
+    print_table(runs)
 
 
 def _questions(

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import json
 import time
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,7 +26,15 @@ import numpy as np
 from scipy.special import elliprg
 
 from bifurc import Atlas, Level, SearchSettings, explore
-from studies.curve_bank import Answer, Change, Curve, Verdict, changes_of
+from studies.curve_bank import (
+    Answer,
+    Change,
+    Curve,
+    Run,
+    Verdict,
+    changes_of,
+    print_table,
+)
 from studies.study import Study, require_known
 
 BANK = Path(__file__).parent.parent / "data" / "surfaces.json"
@@ -251,17 +258,6 @@ def _judge_area(area: float, found: FoundSurface) -> Verdict:
     return Verdict.IN_DOUBT if abs(off) <= error else Verdict.WRONG
 
 
-class Run(NamedTuple):
-    """One surface in one change from one seed."""
-
-    surface: str
-    change: Change
-    seed: int
-    verdict: Verdict
-    found: Found | str
-    seconds: float
-
-
 def run_surface(known: KnownSurface, change: Change, seed: int, budget: float) -> Run:
     """The verdict on one answer, found within a ``budget`` of seconds."""
     began = time.process_time()
@@ -284,22 +280,8 @@ def _print_run(run: Run) -> None:
     """One line for an answer that is not right."""
     if run.verdict is Verdict.RIGHT:
         return
-    where = f"{run.surface}, {run.change.name}, seed {run.seed}"
-    print(f"{run.verdict}: {where}: {run.found} ({run.seconds:.1f} s)", flush=True)
-
-
-def _print_table(runs: Sequence[Run]) -> None:
-    """Counts by kind of change."""
-    print("| change | answers | right | in doubt | wrong | median s | most s |")
-    print("|---|---|---|---|---|---|---|")
-    kinds = list(dict.fromkeys(run.change.kind for run in runs))
-    for kind in [*kinds, "all"]:
-        group = [run for run in runs if kind in (run.change.kind, "all")]
-        counts = Counter(run.verdict for run in group)
-        seconds = [run.seconds for run in group]
-        cells = [kind, len(group), *(counts[verdict] for verdict in Verdict)]
-        cells += [f"{np.median(seconds):.2g}", f"{max(seconds):.2g}"]
-        print("| " + " | ".join(map(str, cells)) + " |")
+    where = f"{run.name}, {run.change.name}, seed {run.seed}"
+    print(f"{run.verdict}: {where}: {run.answer} ({run.seconds:.1f} s)", flush=True)
 
 
 @click.command(cls=Study, help=__doc__)
@@ -338,7 +320,7 @@ def main(
         run = run_surface(known, change, seed, budget)
         _print_run(run)
         runs.append(run)
-    _print_table(runs)
+    print_table(runs)
 
 
 if __name__ == "__main__":

@@ -31,13 +31,13 @@ def test_a_surface_of_the_bank_comes_out_right_in_any_units(name, change):
     known = SURFACES[name]
     (chosen,) = [c for c in changes_of(known.system) if c.name == change]
     run = run_surface(known, chosen, seed=0, budget=60.0)
-    assert run.verdict is Verdict.RIGHT, run.found
+    assert run.verdict is Verdict.RIGHT, run.answer
 
 
 def test_another_number_shape_or_area_without_a_doubt_is_wrong():
     known = SURFACES["plane"]
     plain = next(changes_of(known.system))
-    found = run_surface(known, plain, seed=0, budget=60.0).found
+    found = run_surface(known, plain, seed=0, budget=60.0).answer
     for pieces in ((), (Piece(2, 6.0),), (Piece(1, 6.001),), (Piece(1, 3.0),) * 2):
         other = replace(known, pieces=pieces)
         assert judge(other, found, 1.0) is Verdict.WRONG

@@ -52,7 +52,7 @@ def test_a_neck_joins_two_halves_to_one_surface(neck: float) -> None:
     charts = cover_surface(problem, np.array([[0.5, 0.0, np.sqrt(0.25 - neck**2)]]))
     assert charts.complete
     assert charts.euler_characteristic == 0
-    # of z^2 + 2 z^2 ... : the integral of 2 pi sqrt(2 z^2 + neck^2)
+    # of a surface of revolution: the integral of 2 pi sqrt(2 z^2 + neck^2)
     end = np.sqrt(2 + neck**2)
     area = 2 * np.pi * (end + neck**2 / np.sqrt(2) * np.arcsinh(np.sqrt(2) / neck))
     assert charts.area == pytest.approx(area, rel=1e-9)
@@ -139,9 +139,12 @@ def test_a_sheet_that_crosses_is_found_or_said_to_be_missed(angle: float) -> Non
         assert charts.outcome is Covering.UNFIT
 
 
+NEARER = [pytest.param(gap, marks=pytest.mark.exhaustive) for gap in (0.05, 1e-3, 1e-5)]
+
+
 # caps of spheres, and whole ones
 @pytest.mark.parametrize("floor", one_in(2, [0.9, -1.5]))
-@pytest.mark.parametrize("gap", [0.2, 1e-2])
+@pytest.mark.parametrize("gap", [0.2, 1e-2, *NEARER])
 def test_concentric_spheres_are_two_surfaces_however_near(
     gap: float, floor: float
 ) -> None:

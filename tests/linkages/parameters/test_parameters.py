@@ -163,6 +163,12 @@ def test_rank_drops_are_special_too_and_agree_with_the_map_there():
             shape.other_points for shape in (change.before, change.at, change.after)
         ]
         assert counts == [0, 1, 0]
+    # the same in maps made here
+    for away, number in ((-1e-4, 0), (0.0, 1), (1e-4, 0)):
+        member = chosen.load(np.array([changes[0].value + away]))
+        atlas = map_linkage(member, settings=QUICK)
+        kinds = [point.kind for point in atlas.points]
+        assert kinds.count(Kind.RANK_DROP) == number
 
 
 def test_a_bennett_linkage_bifurcates_where_its_links_are_alike():
