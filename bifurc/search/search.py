@@ -267,7 +267,7 @@ class Search:
         curve = singular_curve_through(
             self.problem, components, point, self.settings.tracing, deadline
         )
-        if curve is None:
+        if curve is None or not parts:
             if point.is_sample:
                 components.notes.unfollowed.append(parts)
             return
