@@ -7,15 +7,11 @@ import numpy as np
 from bifurc.numerics.corrector import normal_corrections
 from bifurc.problem import Problem
 from bifurc.surfaces.polygon import BORDER, FlatCharts
-from bifurc.surfaces.sheet import follow_along
-from bifurc.system import relative_jacobians
+from bifurc.surfaces.sheet import SOLVED, follow_along, slopes_above
 
-# Relative residual above which a point is no solution.
-SOLVED = 1e-9
 # Rounds by which points of a graph are moved onto bounds, how far, over the radius, one
 # goes, and how far off, over the scale, the last may be.
 ROUNDS, FARTHEST, AT_BOUND = 12, 0.5, 1e-12
-FULL_RANK = 1e-6  # least entry on the diagonal of a triangular factor, over the largest
 
 
 class Graphs:
@@ -28,7 +24,7 @@ class Graphs:
         self._problem = problem
         self._charts = charts
         every = np.arange(len(charts.radii)) if numbers is None else numbers
-        self._centers = charts.centers[every]
+        self.centers = charts.centers[every]
         self._planes = charts.bases[every]
         self._radii = charts.radii[every]
         self._are_clear = charts.are_clear[every]
@@ -39,14 +35,14 @@ class Graphs:
 
     def flat(self, positions: np.ndarray) -> np.ndarray:
         """Points (k, n) of the planes."""
-        flat: np.ndarray = self._centers + np.einsum(
+        flat: np.ndarray = self.centers + np.einsum(
             "kij,kj->ki", self._planes, positions
         )
         return flat
 
     def positions(self, points: np.ndarray) -> np.ndarray:
         """Positions (k, 2) of points (k, n) in the planes."""
-        offsets = self._problem.domain.difference(points, self._centers)
+        offsets = self._problem.domain.difference(points, self.centers)
         positions: np.ndarray = np.einsum("kij,ki->kj", self._planes, offsets)
         return positions
 
@@ -66,13 +62,13 @@ class Graphs:
         solutions straight above stand for them.
         """
         ways = np.einsum("kij,kj->ki", self._planes, positions)
-        flat = self._centers[:, None] + shares[:, None] * ways[:, None]
+        flat = self.centers[:, None] + shares[:, None] * ways[:, None]
         points, is_there = flat.copy(), np.zeros(flat.shape[:2], dtype=bool)
         beside = np.flatnonzero(~self._are_clear)
         if len(beside):
             points[beside], is_there[beside] = follow_along(
                 self._problem,
-                self._centers[beside],
+                self.centers[beside],
                 self._planes[beside],
                 positions[beside],
                 shares,
@@ -88,17 +84,7 @@ class Graphs:
     def slopes(self, points: np.ndarray) -> np.ndarray:
         """Derivatives (k, n, 2) of the graphs by the position, at their points (k,
         n)."""
-        jacobians = relative_jacobians(self._problem, points)
-        matrices = np.concatenate([jacobians, np.swapaxes(self._planes, 1, 2)], axis=1)
-        q, r = np.linalg.qr(matrices)
-        diagonals = np.abs(np.diagonal(r, axis1=1, axis2=2))
-        is_plain = diagonals.min(axis=1) > FULL_RANK * diagonals.max(axis=1)
-        slopes = np.empty((*points.shape, 2))
-        right = np.swapaxes(q[is_plain, -2:], 1, 2)
-        slopes[is_plain] = np.linalg.solve(r[is_plain], right)
-        # F' may have a lower rank all over a surface
-        slopes[~is_plain] = np.linalg.pinv(matrices[~is_plain])[:, :, -2:]
-        return slopes
+        return slopes_above(self._problem, points, self._planes)
 
     def onto_bounds(
         self, positions: np.ndarray, on_bound: np.ndarray
