@@ -32,9 +32,16 @@ from bifurc.limits import (
 )
 from bifurc.problem import Problem
 from bifurc.search.answer.assemble import assemble_atlas
+from bifurc.search.factor_by_factor import explored_by_factors
 from bifurc.search.many_unknowns import explore_many_unknowns, has_many_unknowns
 from bifurc.search.own_units.restated import restated
-from bifurc.search.own_units.unit_problem import UnitProblem, in_one_size, in_own_units
+from bifurc.search.own_units.unit_problem import (
+    UnitProblem,
+    has_no_own_answers,
+    in_one_size,
+    in_own_units,
+    is_of_equations,
+)
 from bifurc.search.search import Search
 from bifurc.seeds import Seeds
 from bifurc.settings import LOOSEST, SearchSettings
@@ -190,6 +197,19 @@ def _explored_along(
 
 
 def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
+    """The atlas, factor by factor or in units of the search's own where the problem lets
+    it."""
+    is_plain = is_of_equations(problem) and has_no_own_answers(problem)
+    if is_plain and request.seeds is None:
+        atlas = explored_by_factors(
+            problem, lambda part: _explored_in_own_units(part, request)
+        )
+        if atlas is not None:
+            return atlas
+    return _explored_in_own_units(problem, request)
+
+
+def _explored_in_own_units(problem: Problem, request: _Request) -> Atlas:
     """The atlas, found in units of the search's own where the problem lets it."""
     own = in_own_units(problem)
     if own is None:
