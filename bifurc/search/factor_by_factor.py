@@ -36,7 +36,7 @@ from bifurc.singular.point import Invariants, Kind, SingularPoint
 from bifurc.torus import wrap, wrapped_periods
 
 NEWTON_STEPS = 4  # to where two factors vanish
-ROUNDING = 64 * np.finfo(float).eps
+ROUNDING = 8 * np.finfo(float).eps
 IN_BOUNDS = 1e-6  # over the sizes: a crossing nearer to a bound may be of parts of curves
 LONGEST_RADIUS = 1e-3  # of a section about a crossing, over the sizes
 
