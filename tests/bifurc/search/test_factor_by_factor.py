@@ -127,11 +127,24 @@ def test_powers_of_factors_are_multiplicities():
 
 
 def test_factors_that_touch_are_explored_together():
-    curves = [circle(1.0, (0, 0)), line(np.pi / 2, (0, 1)), line(0.0, (0, 0))]
-    atlas = bifurc.explore(product_of(curves))
+    def values(u):
+        x, y = u
+        return [(x**2 + y**2 - 1) * (y - 1) * (2 * x - 1)]
+
+    atlas = bifurc.explore(bifurc.FunctionProblem(values, BOX))
     assert len(atlas.forms) == 3
-    contacts = sorted(point.point.invariants.contacts for point in atlas.bifurcations)
-    assert contacts == [(1,), (1, 1, 2)] or contacts == [(1, 1, 2), (1,)]
+    contacts = [point.point.invariants.contacts for point in atlas.bifurcations]
+    assert sorted(contacts) == [(1,), (1,), (1,), (2,)]
+
+
+def test_curves_that_two_factors_share_are_one():
+    def values(u):
+        x, y = u
+        return [(y - np.sin(x)) * (y**2 - np.sin(x) ** 2) * (x - 1)]
+
+    atlas = bifurc.explore(bifurc.FunctionProblem(values, [(-2.1, 2), (-2, 2)]))
+    assert len(atlas.forms) == 3
+    assert sorted(form.multiplicity for form in atlas.forms) == [1, 1, 2]
 
 
 def test_a_line_that_passes_a_cusp_is_explored_with_it():
