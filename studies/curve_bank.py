@@ -19,7 +19,7 @@ import json
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import partial
 from itertools import product
@@ -220,27 +220,62 @@ def changes_of(curve: Curve) -> Iterator[Change]:
     Turns are for closed curves that leave no bounds, and not for angles or a parameter;
     mixed equations are for those that are no rates, of which there are Hopf points.
     """
-    n, m = len(curve.unknowns), len(curve.equations)
-    one, still, same = np.eye(n), np.zeros(n), np.eye(m)
-    yield Change("plain", "plain", one, still, same)
+    plain = _unchanged(curve)
+    yield plain
     for scale in SCALES:
-        yield Change("unknowns", f"unknowns {scale:g}", scale * one, still, same)
-        last = np.diag([1.0] * (n - 1) + [scale])
-        yield Change("unknown", f"last unknown {scale:g}", last, still, same)
-        if curve.answer.hopf:
-            continue
-        weights = np.diag([scale] + [1.0] * (m - 1))
-        yield Change("equations", f"first equation {scale:g}", one, still, weights)
+        yield from _scaled(curve, plain, scale)
     rng = np.random.default_rng(0)
-    mixing = np.linalg.qr(rng.normal(size=(m, m)))[0] @ np.diag(np.geomspace(1, 5, m))
+    mixed = _mixed(plain, rng)
     if not curve.answer.hopf:
-        yield Change("mixed", "mixed equations", one, still, mixing)
-    yield Change("shift", "shifted", one, rng.normal(size=n), same)
-    is_plain = not np.any(np.isfinite(curve.periods)) and not curve.parameter
-    if is_plain and not curve.answer.open and np.all(np.isfinite(curve.bounds)):
-        for number in range(2):
-            turn = np.linalg.qr(rng.normal(size=(n, n)))[0]
-            yield Change("turned", f"turned {number + 1}", turn, still, same)
+        yield mixed
+    shift = rng.normal(size=len(curve.unknowns))
+    yield replace(plain, kind="shift", name="shifted", shift=shift)
+    if _can_be_turned(curve):
+        yield from _turned(plain, rng)
+
+
+def _unchanged(curve: Curve) -> Change:
+    """The curve as it stands."""
+    n, m = len(curve.unknowns), len(curve.equations)
+    return Change("plain", "plain", np.eye(n), np.zeros(n), np.eye(m))
+
+
+def _scaled(curve: Curve, plain: Change, scale: float) -> Iterator[Change]:
+    """The unknowns, the last one and the first equation in other units."""
+    n, m = len(curve.unknowns), len(curve.equations)
+    unknowns = scale * plain.matrix
+    last = np.diag([1.0] * (n - 1) + [scale])
+    first = np.diag([scale] + [1.0] * (m - 1))
+    text = f"{scale:g}"
+    yield replace(plain, kind="unknowns", name=f"unknowns {text}", matrix=unknowns)
+    yield replace(plain, kind="unknown", name=f"last unknown {text}", matrix=last)
+    if not curve.answer.hopf:
+        name = f"first equation {text}"
+        yield replace(plain, kind="equations", name=name, mixing=first)
+
+
+def _mixed(plain: Change, rng: np.random.Generator) -> Change:
+    """Combinations of the equations, of sizes from 1 to 5."""
+    m = len(plain.mixing)
+    turn = np.linalg.qr(rng.normal(size=(m, m)))[0]
+    mixing = turn @ np.diag(np.geomspace(1, 5, m))
+    return replace(plain, kind="mixed", name="mixed equations", mixing=mixing)
+
+
+def _can_be_turned(curve: Curve) -> bool:
+    """Whether all forms are closed, and no unknown is an angle or a parameter."""
+    has_angles = bool(np.any(np.isfinite(curve.periods)))
+    is_bounded = bool(np.all(np.isfinite(curve.bounds)))
+    is_closed = not curve.answer.open
+    return is_closed and is_bounded and not has_angles and not curve.parameter
+
+
+def _turned(plain: Change, rng: np.random.Generator) -> Iterator[Change]:
+    """Two turns of the unknowns."""
+    n = len(plain.shift)
+    for number in (1, 2):
+        turn = np.linalg.qr(rng.normal(size=(n, n)))[0]
+        yield replace(plain, kind="turned", name=f"turned {number}", matrix=turn)
 
 
 # --- verdicts -------------------------------------------------------------------------

@@ -54,6 +54,19 @@ class Factors:
         """Whether any factor has a power above one, or stands without a root."""
         return max(self.powers) > 1 or not self.are_plain
 
+    def product(self, numbers: Sequence[int]) -> Tape:
+        """The one equation that some of the factors, by their ``numbers``, make with
+        their powers."""
+        writer = TapeWriter(self.tape.n)
+        slots = self.tape.write_on(writer)
+        outputs = self.tape.outputs.tolist()
+        product = writer.constant(1.0)
+        for number in numbers:
+            power = writer.constant(float(self.powers[number]))
+            raised = writer.power(slots[outputs[number]], power)
+            product = writer.multiply(product, raised)
+        return writer.tape([product])
+
     def radical(self) -> Tape:
         """The m equations with every factor once."""
         writer = TapeWriter(self.tape.n)
@@ -106,6 +119,29 @@ def polynomial_factors(tape: Tape, rows: Sequence[int], region: np.ndarray) -> F
         if factors.are_simpler:
             return factors
     return factors
+
+
+def irreducible_factors(tape: Tape, region: np.ndarray) -> Factors | None:
+    """The factors of one equation of which none is a product any more, as far as it is
+    written so or a polynomial, over the rational numbers, shows it in a ``region`` (n, 2);
+    None where their product is not the equation."""
+    written = written_factors(tape)
+    if tape.m != 1 or not written.are_plain:
+        return None
+    writer = TapeWriter(tape.n)
+    slots = written.tape.write_on(writer)
+    origins = _origins(region)
+    polynomials = _Polynomials(writer, origins, simplest_ratio, is_split=True)
+    found: dict[int, int] = defaultdict(int)
+    for output, power in zip(
+        written.tape.outputs.tolist(), written.powers, strict=True
+    ):
+        parts = polynomials.powers_of(slots[output]) or {}
+        if sum(parts.values()) < 2:
+            parts = {slots[output]: 1}  # as it was written
+        for part, multiplicity in parts.items():
+            found[part] += power * multiplicity
+    return _factors(writer, [(0, slot, power) for slot, power in found.items()])
 
 
 def _factors_with(
@@ -216,14 +252,15 @@ def _origins(region: np.ndarray) -> list[float]:
 class _Polynomials:
     """Polynomials that stand on a tape while it is written, expanded in the unknowns less
     their ``origins`` (n,), with constants that are what a ``reading`` makes of
-    doubles."""
+    doubles. Their factors are square-free ones, or irreducible ones where these are ``is_split``."""
 
     writer: TapeWriter
     origins: Sequence[float]
     reading: Reading
+    is_split: bool = False
 
     def powers_of(self, output: int) -> dict[int, int] | None:
-        """The slots of the square-free factors of the polynomial in slot ``output``, newly
+        """The slots of the factors of the polynomial in slot ``output``, newly
         written, and the power of each; None where there is none."""
         writer = self.writer
         inner = polynomial_part(writer, output)
@@ -242,7 +279,7 @@ class _Polynomials:
         degrees = zip(generators, polynomial.degrees(), strict=True)
         if any(not degree and nodes[k].operation in PARTIAL for k, degree in degrees):
             return None  # log(x) - log(x) is zero for positive x only
-        _, factors = polynomial.factor_squarefree()
+        factors = self._factored(polynomial)
         shifted = [
             writer.add(slot, writer.constant(-shift)) if shift else slot
             for slot, shift in shifts.items()
@@ -250,6 +287,12 @@ class _Polynomials:
         return {
             _written(writer, factor, shifted): int(power) for factor, power in factors
         }
+
+    def _factored(self, polynomial: fmpq_mpoly) -> list[tuple[fmpq_mpoly, int]]:
+        """The factors of a polynomial, with the power of each."""
+        if self.is_split:
+            return list(polynomial.factor()[1])
+        return list(polynomial.factor_squarefree()[1])
 
     def parts_of(self, factors: Mapping[int, int]) -> dict[int, int]:
         """The same of each of the ``factors``, by their slots, with their powers; those

@@ -17,10 +17,12 @@ from bifurc.checks import (
     check_type,
     index_of_unknown,
 )
+from bifurc.completeness import Completeness, Level
 from bifurc.diagrams.diagram import Diagram
 from bifurc.diagrams.events import EventRequests, events_of
 from bifurc.diagrams.make_diagram import diagram_of, named_points
 from bifurc.errors import ProblemError
+from bifurc.function_problem import FunctionProblem
 from bifurc.limits import (
     CutOff,
     Deadline,
@@ -32,9 +34,18 @@ from bifurc.limits import (
 )
 from bifurc.problem import Problem
 from bifurc.search.answer.assemble import assemble_atlas
+from bifurc.search.answer.settled_in_boxes import listed_solutions, settled_in_boxes
+from bifurc.search.factor_by_factor import explored_by_factors
+from bifurc.search.isolated_boxes import IsolatedInBoxes, isolated_in_boxes
 from bifurc.search.many_unknowns import explore_many_unknowns, has_many_unknowns
 from bifurc.search.own_units.restated import restated
-from bifurc.search.own_units.unit_problem import UnitProblem, in_one_size, in_own_units
+from bifurc.search.own_units.unit_problem import (
+    UnitProblem,
+    has_no_own_answers,
+    in_one_size,
+    in_own_units,
+    is_of_equations,
+)
 from bifurc.search.search import Search
 from bifurc.seeds import Seeds
 from bifurc.settings import LOOSEST, SearchSettings
@@ -190,6 +201,76 @@ def _explored_along(
 
 
 def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
+    """The atlas, factor by factor or in units of the search's own where the problem lets
+    it."""
+    if not is_of_equations(problem) or not has_no_own_answers(problem):
+        return _explored_in_own_units(problem, request)
+    if request.seeds is None:
+        atlas = explored_by_factors(
+            problem, lambda part: _explored_in_own_units(part, request)
+        )
+        if atlas is not None:
+            return atlas
+    solutions = _solutions_of(problem, request)
+    if solutions is None:
+        return _explored_in_own_units(problem, request)
+    if solutions.is_complete and len(solutions.points):
+        return _atlas_of_solutions(problem, request, solutions)
+    atlas = _explored_in_own_units(problem, request)
+    return settled_in_boxes(atlas, solutions, problem.domain)
+
+
+def _atlas_of_solutions(
+    problem: FunctionProblem, request: _Request, solutions: IsolatedInBoxes
+) -> Atlas:
+    """The atlas of equations of which all solutions are known, and isolated."""
+    from bifurc.search.isolated import isolated_solutions  # few searches need it
+
+    deadline = current_deadline()
+    claims = [solutions.claim]
+    if request.settings.paths:
+        followed = isolated_solutions(problem, request.settings.paths, deadline)
+        inside = len(solutions.points)
+        counted = None if followed is None else followed.claim(inside)
+        if counted is not None and counted.level is Level.CERTIFIED:
+            claims.append(replace(counted, level=None))  # boxes show more
+    provenance = _provenance(problem, request, False, deadline)
+    provenance = replace(provenance, out_of_time=False)
+    domain = problem.domain
+    return Atlas(
+        names=domain.names,
+        units=domain.units,
+        periods=domain.periods,
+        forms=(),
+        points=(),
+        near_misses=(),
+        dead_points=(),
+        rigid=listed_solutions(solutions, domain),
+        surfaces=(),
+        completeness=Completeness(tuple(claims), (), 0.0),
+        provenance=provenance,
+    )
+
+
+def _solutions_of(
+    problem: FunctionProblem, request: _Request
+) -> IsolatedInBoxes | None:
+    """All isolated solutions of as many equations as unknowns, as far as boxes show
+    them; None of other equations, and where there are to be no boxes."""
+    tape, domain = problem.recording.tape, problem.domain
+    has_bounds = not np.any(domain.has_assumed_bounds)
+    if tape is None or not problem.accuracy.is_exact or not has_bounds:
+        return None
+    if not request.settings.boxes:
+        return None
+    try:
+        with cut_off_after(current_deadline()):
+            return isolated_in_boxes(tape, domain, request.settings.boxes)
+    except CutOff:
+        return None
+
+
+def _explored_in_own_units(problem: Problem, request: _Request) -> Atlas:
     """The atlas, found in units of the search's own where the problem lets it."""
     own = in_own_units(problem)
     if own is None:

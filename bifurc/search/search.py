@@ -52,6 +52,7 @@ from bifurc.search.solutions import (
     solutions_in_bounds,
     with_weak_solutions,
 )
+from bifurc.search.strands import missing_crossings
 from bifurc.search.subdivision import (
     Subdivision,
     audit_of,
@@ -406,6 +407,20 @@ class Search:
                 findings.replace_branches(one, other, examined.traced)
         yield []
 
+    def look_for_missing_crossings(self) -> Starts:
+        """Look for the crossings that must be next to singular points, by where the
+        branches enter and leave discs about these."""
+        findings = self.findings
+        if findings.components.seeds:
+            return
+        points = list(findings.points.values())
+        for missing in missing_crossings(self.problem, points, findings.branches):
+            if self.run.is_over:
+                return
+            sighting = self.points.near(missing.place, 2, BRANCH_REACH)
+            if sighting is not None and sighting.is_new:
+                yield half_branch_starts(sighting.point)
+
     def mend_at_germs(self) -> Starts:
         """Trace the branches again that do not follow the germs of singular points."""
         if self.findings.germs and not self.run.is_over:
@@ -538,6 +553,7 @@ STEPS: tuple[Callable[[Search], Starts], ...] = (
     Search.look_at_bounds,
     Search.cover_surfaces,
     Search.trace_singular_curves,
+    Search.look_for_missing_crossings,
     Search.separate_points,
     Search.join_branches,
     Search.mend_at_germs,

@@ -39,6 +39,7 @@ from bifurc.search.answer.completeness import SearchDoubt
 from bifurc.search.findings import Findings
 from bifurc.search.own_units.unit_problem import sheets_beside
 from bifurc.search.records import RigidAssembly, TracedBranch
+from bifurc.search.strands import missing_crossings
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.surfaces.chart_atlas import Covering
@@ -90,6 +91,7 @@ def doubts_of(
     for point in points:
         yield from _doubts_of_point(problem, point)
         yield from _doubts_of_halves(traced, point)
+    yield from _doubts_of_crossings(problem, traced, points, surfaces)
     double = [
         point.name
         for point in points
@@ -97,6 +99,25 @@ def doubts_of(
     ]
     if double:
         yield SearchDoubt.DOUBLE_SOLUTIONS.doubt(points=double)
+
+
+def _doubts_of_crossings(
+    problem: Problem,
+    traced: Sequence[TracedBranch],
+    points: Sequence[MeetingPoint],
+    surfaces: Sequence[Surface],
+) -> Iterator[Doubt]:
+    """Whether curves have to cross once more next to singular points."""
+    if surfaces:
+        return
+    located = [point.point for point in points]
+    branches = [one.branch for one in traced]
+    open_pairs: dict[tuple[int, ...], str] = {}
+    for missing in missing_crossings(problem, located, branches):
+        pair = tuple(sorted(set(missing.curves)))
+        open_pairs.setdefault(pair, points[missing.point].name)
+    for pair, name in open_pairs.items():
+        yield SearchDoubt.CROSSING_MISSING.of_forms(*pair, point=name)
 
 
 def _doubts_of_covering(surfaces: Sequence[Surface]) -> Iterator[Doubt]:

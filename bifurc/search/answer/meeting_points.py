@@ -39,6 +39,14 @@ def meeting_points(
     ``periods`` (n,) are those of the unknowns that were wrapped.
     """
     meeting = [_meeting_point(problem, p, branches, surfaces) for p in points]
+    return in_order(problem, meeting, periods)
+
+
+def in_order(
+    problem: Problem, meeting: Sequence[MeetingPoint], periods: np.ndarray
+) -> tuple[MeetingPoint, ...]:
+    """The points kind by kind, numbered from 1. ``periods`` (n,) are those of the
+    unknowns that were wrapped."""
     kinds = {point.kind for point in meeting}
     ordered: list[MeetingPoint] = []
     for kind in sorted(kinds, key=lambda kind: kind.value):

@@ -461,11 +461,10 @@ def in_own_units(problem: Problem) -> UnitProblem | None:
     """The equations of a function in units of their own; None for any other problem,
     and where they are in such units as they stand. What is not known of their solutions
     when the time is over does not count."""
-    if not _is_of_equations(problem) or problem.domain.rim is not None:
+    if not is_of_equations(problem) or problem.domain.rim is not None:
         return None
-    has_own_answers = any(_has_own(problem, name) for name in OF_ONE_UNIT)
     own = None
-    if not has_own_answers and problem.n <= LARGEST_DENSE:
+    if has_no_own_answers(problem) and problem.n <= LARGEST_DENSE:
         own = _in_units_of_solutions(problem)
     if own is None:
         own = _in_one_unit(problem, _unit_of(problem))
@@ -479,7 +478,7 @@ def sheets_beside(problem: Problem, branch: Branch, rank: int) -> float:
     """`UnitProblem.sheets_beside` of any problem; 0 where it is none of equations."""
     if isinstance(problem, UnitProblem):
         return problem.sheets_beside(branch, rank)
-    if not _is_of_equations(problem):
+    if not is_of_equations(problem):
         return 0.0
     return _in_one_unit(problem, 1.0).sheets_beside(branch, rank)
 
@@ -513,11 +512,16 @@ def _unseen(missed: np.ndarray, matrices: np.ndarray, orders: np.ndarray) -> flo
     return largest
 
 
-def _is_of_equations(problem: Problem) -> TypeGuard[FunctionProblem]:
+def is_of_equations(problem: Problem) -> TypeGuard[FunctionProblem]:
     """Whether a problem is the equations of a function, and nothing else."""
     return isinstance(problem, FunctionProblem) and not any(
         _has_own(problem, name) for name in OF_EQUATIONS
     )
+
+
+def has_no_own_answers(problem: FunctionProblem) -> bool:
+    """Whether a class of equations answers nothing about them in a way of its own."""
+    return not any(_has_own(problem, name) for name in OF_ONE_UNIT)
 
 
 def _in_one_unit(problem: FunctionProblem, unit: float) -> UnitProblem:

@@ -1,0 +1,493 @@
+"""Plane curves that are a product: each factor explored alone, and put together.
+
+Next to a place where k curves cross their product grows with the power k of the
+distance, so that doubles lose it farther away the more there are; each factor is regular
+there. So the curves of every factor are those of an atlas of its own, and where two of
+them cross is where one vanishes along the curves of the other, which bounds show. Only
+factors whose curves touch, or meet at a point that is singular on one of them, are
+explored together.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Provenance
+from bifurc.branch import Outcome
+from bifurc.completeness import Claim, Completeness, Doubt, Level, Scope, worst_level
+from bifurc.decisions import is_one_crossing, may_be_one_crossing
+from bifurc.equations.expression_problem import TapeProblem
+from bifurc.equations.factors import Factors, irreducible_factors
+from bifurc.equations.tape import Tape
+from bifurc.errors import ProblemError
+from bifurc.function_problem import FunctionProblem
+from bifurc.limits import is_time_over
+from bifurc.search.answer.assemble import component_numbers
+from bifurc.search.answer.completeness import SearchClaim, SearchDoubt
+from bifurc.search.answer.meeting_points import in_order
+from bifurc.search.canonical_order import order_branches
+from bifurc.search.crossings import crossings_with
+from bifurc.singular.point import Invariants, Kind, SingularPoint
+from bifurc.torus import wrap, wrapped_periods
+
+NEWTON_STEPS = 4  # to where two factors vanish
+ROUNDING = 8 * np.finfo(float).eps
+IN_BOUNDS = (
+    1e-6  # over the sizes: a crossing nearer to a bound may be of parts of curves
+)
+LONGEST_RADIUS = 1e-3  # of a section about a crossing, over the sizes
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """Some factors, by their ``numbers``, explored together: on a ``tape`` their
+    product, each of them once, and the ``atlas`` of that with their powers."""
+
+    numbers: tuple[int, ...]
+    tape: Tape
+    atlas: Atlas
+
+    @property
+    def forms(self) -> Sequence[Form]:
+        return self.atlas.forms
+
+    def vanishes_near(self, points: np.ndarray, reach: np.ndarray) -> np.ndarray:
+        """Whether the product may vanish up to so far, (k, n), from points (k, n)."""
+        low, high = self.tape.compiled.value_bounds(points - reach, points + reach)
+        return np.asarray((low[:, 0] <= 0.0) & (high[:, 0] >= 0.0))
+
+
+class _Pass(NamedTuple):
+    """Where a form, by its ``part`` and its ``number`` there, crosses the curves of
+    another part, at an arclength ``s`` and a ``place`` (n,) known to an ``error``."""
+
+    part: int
+    number: int
+    s: float
+    other: int
+    place: np.ndarray
+    error: float
+
+
+def explored_by_factors(
+    problem: FunctionProblem, explored: Callable[[FunctionProblem], Atlas]
+) -> Atlas | None:
+    """The atlas of a plane curve made of those of its factors, each ``explored`` alone as
+    far as no other touches it; None where there is only one factor, and where all have
+    to be explored together."""
+    factors = _factors_of(problem)
+    if factors is None:
+        return None
+    groups: list[tuple[int, ...]] = [(number,) for number in range(len(factors.powers))]
+    known: dict[tuple[int, ...], _Part] = {}
+    while len(groups) > 1 and not is_time_over():
+        for numbers in groups:
+            if numbers not in known and not is_time_over():
+                part = _part_of(problem, factors, numbers, explored)
+                if part is None:
+                    return None
+                known[numbers] = part
+        parts = [known[numbers] for numbers in groups if numbers in known]
+        union = _Union(problem, parts, len(groups) - len(parts))
+        passes, entangled = union.meetings()
+        if not entangled:
+            return union.atlas(passes)
+        groups = _joined(groups, entangled)
+    return None
+
+
+def _factors_of(problem: FunctionProblem) -> Factors | None:
+    """The factors of a plane curve; None where it is none, or there is only one."""
+    tape = problem.recording.tape
+    if tape is None or problem.n != 2 or tape.m != 1 or problem.accuracy.noise:
+        return None
+    if not np.all(np.isfinite(problem.domain.bounds)):
+        return None
+    factors = irreducible_factors(tape, problem.domain.bounds)
+    return None if factors is None or len(factors.powers) < 2 else factors
+
+
+def _part_of(
+    problem: FunctionProblem,
+    factors: Factors,
+    numbers: tuple[int, ...],
+    explored: Callable[[FunctionProblem], Atlas],
+) -> _Part | None:
+    """Some factors explored together; None where they are no problem of their own, or
+    have more than curves."""
+    domain = problem.domain
+    try:
+        own = TapeProblem(
+            factors.product(numbers),
+            domain.bounds.tolist(),
+            names=domain.names,
+            units=domain.units,
+            periods=domain.periods.tolist(),
+        )
+    except ProblemError:
+        return None  # half of an angle may have no period of its own
+    atlas = explored(own)
+    if atlas.surfaces or atlas.near_motions:
+        return None
+    once = replace(factors, powers=(1,) * len(factors.powers))
+    return _Part(numbers, once.product(numbers), atlas)
+
+
+def _joined(
+    groups: Sequence[tuple[int, ...]], pairs: Sequence[tuple[int, int]]
+) -> list[tuple[int, ...]]:
+    """The groups of factors, with each of the ``pairs``, by their numbers, in one."""
+    leader = list(range(len(groups)))
+    for one, other in pairs:
+        first, second = leader[one], leader[other]
+        leader = [first if number == second else number for number in leader]
+    members: dict[int, list[int]] = defaultdict(list)
+    for number, group in zip(leader, groups, strict=True):
+        members[number] += group
+    return [tuple(sorted(numbers)) for numbers in members.values()]
+
+
+class _Union:
+    """The atlases of ``parts`` of a ``problem`` put together; so many factors are
+    ``left`` that there was no time for."""
+
+    def __init__(self, problem: FunctionProblem, parts: Sequence[_Part], left: int):
+        self.problem = problem
+        self.parts = parts
+        self.left = left
+        self.sizes = np.diff(problem.domain.bounds, axis=1)[:, 0]
+        samples = [form.branch.sample(64) for part in parts for form in part.forms]
+        if samples:
+            seen = np.ptp(np.concatenate(samples), axis=0)
+            self.sizes = np.where(seen > 0.0, np.minimum(seen, self.sizes), self.sizes)
+
+    # --- where parts meet -------------------------------------------------------------
+
+    def meetings(self) -> tuple[list[_Pass], list[tuple[int, int]]]:
+        """All passes of forms at the curves of other parts, and the pairs of parts that
+        are not plain crossings of each other."""
+        passes: list[_Pass] = []
+        entangled: set[tuple[int, int]] = set()
+        for one in range(len(self.parts)):
+            found, unclear = self._passes_of(one)
+            passes += found
+            entangled |= unclear | self._met_at_points(one)
+        seen = {(each.part, each.other): 0 for each in passes}
+        for each in passes:
+            seen[each.part, each.other] += 1
+            domain = self.problem.domain
+            to_bounds = np.abs(each.place[:, None] - domain.bounds).min(axis=1)
+            if np.any(to_bounds < IN_BOUNDS * self.sizes):
+                entangled.add((each.part, each.other))
+        for (one, other), count in seen.items():
+            if seen.get((other, one), 0) != count:
+                entangled.add((one, other))
+        return passes, sorted(entangled)
+
+    def _passes_of(self, other: int) -> tuple[list[_Pass], set[tuple[int, int]]]:
+        """The passes at the curves of a part, by its number, and the pairs that it is
+        not plainly met by."""
+        owners = [
+            (part, number)
+            for part, each in enumerate(self.parts)
+            for number in range(len(each.forms))
+            if part != other
+        ]
+        branches = [self.parts[part].forms[number].branch for part, number in owners]
+        tape = self.parts[other].tape
+        crossings = crossings_with(tape, branches, self.sizes)
+        passes = []
+        for curve, s in crossings.zeros:
+            part, number = owners[curve]
+            place, error = self._settled(part, other, branches[curve](s))
+            passes.append(_Pass(part, number, s, other, place, error))
+        unclear = {(owners[curve][0], other) for curve in crossings.unclear}
+        return passes, unclear
+
+    def _settled(
+        self, one: int, other: int, place: np.ndarray
+    ) -> tuple[np.ndarray, float]:
+        """Where two parts vanish next to a place (n,), by Newton's method, and how
+        exactly that is known, over the sizes."""
+        tapes = [self.parts[number].tape.compiled for number in (one, other)]
+        smallest = 0.0
+        for _ in range(NEWTON_STEPS):
+            values = [tape.residuals(place[None])[0, 0] for tape in tapes]
+            rows = [tape.jacobians(place[None])[0, 0] for tape in tapes]
+            slopes = np.array(rows) * self.sizes
+            lengths = np.linalg.norm(slopes, axis=1)
+            if not np.all(lengths > 0.0):
+                return place, 1.0  # at a singular point of one of them
+            directions = slopes / lengths[:, None]
+            smallest = float(np.linalg.svd(directions)[1][-1])
+            step = np.linalg.lstsq(directions, np.array(values) / lengths, rcond=None)[
+                0
+            ]
+            place = place - self.sizes * step
+        size = 1.0 + float((np.abs(place) / self.sizes).max())
+        return place, ROUNDING * size / max(smallest, ROUNDING)
+
+    def _met_at_points(self, one: int) -> set[tuple[int, int]]:
+        """The pairs of a part, by its number, and others that may vanish at a singular
+        point or an isolated solution of it, or in what is left out about the end of a
+        form at one."""
+        atlas = self.parts[one].atlas
+        reaches = [(point.point.u, self._reach(atlas, point)) for point in atlas.points]
+        reaches += [(u, ROUNDING) for u in atlas.rigid]
+        if not reaches:
+            return set()
+        points = np.array([u for u, _ in reaches])
+        reach = np.array([size for _, size in reaches])[:, None] * self.sizes
+        return {
+            (one, other)
+            for other, part in enumerate(self.parts)
+            if other != one and np.any(part.vanishes_near(points, reach))
+        }
+
+    def _reach(self, atlas: Atlas, point: MeetingPoint) -> float:
+        """How far from a singular point the forms through it are not known, over the
+        sizes."""
+        gaps = [point.point.error / float(self.sizes.min()), ROUNDING]
+        for form, s in point.passes:
+            branch = atlas.forms[form].branch
+            if branch.outcome in (Outcome.STALLED, Outcome.ENDS_AT_A_POINT):
+                gap = self.problem.domain.difference(branch(s), point.point.u)
+                gaps.append(2.0 * float((np.abs(gap) / self.sizes).max()))
+        return max(gaps)
+
+    # --- the atlas --------------------------------------------------------------------
+
+    def atlas(self, passes: Sequence[_Pass]) -> Atlas:
+        """The atlas of all parts with these passes of forms at other parts."""
+        owned = [
+            (part, number)
+            for part, each in enumerate(self.parts)
+            for number in range(len(each.forms))
+        ]
+        listed = [self.parts[part].forms[number] for part, number in owned]
+        order = order_branches(self.problem, [form.branch for form in listed]).tolist()
+        numbers = {owned[k]: new for new, k in enumerate(order)}
+        clusters = self._clusters(passes)
+        points = self._points(clusters, numbers)
+        forms = _forms([listed[k] for k in order], points)
+        return replace(
+            self.parts[0].atlas,
+            forms=forms,
+            points=points,
+            near_misses=self._events("near_misses", numbers),
+            dead_points=self._events("dead_points", numbers),
+            rigid=np.concatenate([part.atlas.rigid for part in self.parts]),
+            completeness=self._completeness(clusters, numbers, points),
+            closure_gap=0.0 if forms else min(p.atlas.closure_gap for p in self.parts),
+            provenance=self._provenance(),
+        )
+
+    def _points(
+        self,
+        clusters: Sequence[Sequence[_Pass]],
+        numbers: Mapping[tuple[int, int], int],
+    ) -> tuple[MeetingPoint, ...]:
+        """The singular points of all parts, and where these cross."""
+        own = [
+            _renumbered(point, part, numbers)
+            for part, each in enumerate(self.parts)
+            for point in each.atlas.points
+        ]
+        domain = self.problem.domain
+        periods = wrapped_periods(domain.periods, domain.bounds)
+        met = self._crossings(clusters, numbers)
+        return in_order(self.problem, [*met, *own], periods)
+
+    def _provenance(self) -> Provenance:
+        """How the atlas came about."""
+        known = [part.atlas.provenance for part in self.parts]
+        return replace(
+            known[0],
+            interrupted=any(one.interrupted for one in known),
+            out_of_time=any(one.out_of_time for one in known) or self.left > 0,
+            equations=self.problem.accuracy.equations,
+            seconds=sum(one.seconds for one in known),
+        )
+
+    def _clusters(self, passes: Sequence[_Pass]) -> list[list[_Pass]]:
+        """The passes, those at one place together, the best known first."""
+        if not passes:
+            return []
+        from scipy.sparse.csgraph import connected_components
+
+        in_order = sorted(passes, key=lambda one: one.error)
+        apart, unit = self._apart(in_order)
+        _, numbers = connected_components(is_one_crossing(apart, unit), directed=False)
+        clusters: dict[int, list[_Pass]] = defaultdict(list)
+        for number, each in zip(numbers.tolist(), in_order, strict=True):
+            clusters[number].append(each)
+        return list(clusters.values())
+
+    def _apart(self, passes: Sequence[_Pass]) -> tuple[np.ndarray, np.ndarray]:
+        """How far passes are from each other (k, k), and how well that is known, over
+        the sizes."""
+        places = np.array([one.place for one in passes])
+        errors = np.array([one.error for one in passes])
+        gaps = self.problem.domain.difference(places[:, None], places[None])
+        return (np.abs(gaps) / self.sizes).max(axis=2), errors[:, None] + errors
+
+    def _crossings(
+        self,
+        clusters: Sequence[Sequence[_Pass]],
+        numbers: Mapping[tuple[int, int], int],
+    ) -> list[MeetingPoint]:
+        """The points at which the passes of clusters meet."""
+        if not clusters:
+            return []
+        apart, _ = self._apart([cluster[0] for cluster in clusters])
+        np.fill_diagonal(apart, np.inf)
+        radii = np.minimum(LONGEST_RADIUS, 0.25 * apart.min(axis=1))
+        return [
+            self._crossing(cluster, float(radius), numbers)
+            for cluster, radius in zip(clusters, radii, strict=True)
+        ]
+
+    def _crossing(
+        self,
+        cluster: Sequence[_Pass],
+        radius: float,
+        numbers: Mapping[tuple[int, int], int],
+    ) -> MeetingPoint:
+        """The point at which the passes of a cluster meet, ``radius`` sizes from
+        others."""
+        through: dict[tuple[int, int], float] = {}
+        for each in cluster:
+            through.setdefault((each.part, each.number), each.s)
+        tangents = self._tangents(through)
+        count = len(through)
+        pairs = count * (count - 1) // 2
+        domain = self.problem.domain
+        point = SingularPoint(
+            u=wrap(cluster[0].place, wrapped_periods(domain.periods, domain.bounds)),
+            rank=0,
+            null_space=np.eye(2),
+            error=max(one.error for one in cluster) * float(self.sizes.max()),
+            half_branches=np.concatenate([tangents, -tangents]),
+            tangents=tangents,
+            dimension=1,
+            order=2,
+            radius=radius * float(self.sizes.min()),
+            invariants=Invariants(count, count, pairs, (1,) * pairs),
+        )
+        passes = tuple((numbers[key], s) for key, s in through.items())
+        return MeetingPoint("", Kind.BIFURCATION, point, passes, tangents)
+
+    def _tangents(self, through: Mapping[tuple[int, int], float]) -> np.ndarray:
+        """Unit tangents (k, 2) of forms, by part and number, at arclengths."""
+        tangents = np.array(
+            [
+                self.parts[part].forms[number].branch(s, 1)
+                for (part, number), s in through.items()
+            ]
+        )
+        unit: np.ndarray = tangents / np.linalg.norm(tangents, axis=1, keepdims=True)
+        return unit
+
+    def _events(
+        self, kind: str, numbers: Mapping[tuple[int, int], int]
+    ) -> tuple[Event, ...]:
+        """The events of a kind on all forms, form by form."""
+        events = [
+            replace(event, form=numbers[part, event.form])
+            for part, each in enumerate(self.parts)
+            for event in getattr(each.atlas, kind)
+        ]
+        return tuple(sorted(events, key=lambda event: event.form))
+
+    # --- how sure it is ---------------------------------------------------------------
+
+    def _completeness(
+        self,
+        clusters: Sequence[Sequence[_Pass]],
+        numbers: Mapping[tuple[int, int], int],
+        points: Sequence[MeetingPoint],
+    ) -> Completeness:
+        """What is claimed and doubted of all parts together."""
+        known = [part.atlas.completeness for part in self.parts]
+        doubts = [*self._doubts(numbers, points), *self._doubts_of(clusters)]
+        missed = max(one.missed_probability for one in known)
+        return Completeness(tuple(self._claims(known)), tuple(doubts), missed)
+
+    def _claims(self, known: Sequence[Completeness]) -> Iterator[Claim]:
+        """What is claimed of the parts."""
+        levels = [worst_level(one.claims) or Level.ESTIMATED for one in known]
+        if self.left:
+            budget = float(self.parts[0].atlas.provenance.settings.budget)
+            late = SearchClaim.FACTORS_LEFT
+            yield late.claim(
+                Scope.SEARCH, Level.OUT_OF_TIME, budget=budget, left=self.left
+            )
+        order = list(Level)
+        worst = max(range(len(known)), key=lambda k: order.index(levels[k]))
+        yield SearchClaim.FACTORS.claim(
+            Scope.MOTIONS,
+            levels[worst],
+            factors=sum(len(part.numbers) for part in self.parts) + self.left,
+            least="; ".join(claim.text for claim in known[worst].claims),
+        )
+
+    def _doubts(
+        self,
+        numbers: Mapping[tuple[int, int], int],
+        points: Sequence[MeetingPoint],
+    ) -> Iterator[Doubt]:
+        """What is open about each part, with forms and points as they are called now."""
+        names = [f"Form {number + 1}" for number in range(len(numbers))]
+        for part, each in enumerate(self.parts):
+            called = {
+                point.name: _name_of(point.point, points) for point in each.atlas.points
+            }
+            for doubt in each.atlas.completeness.doubts:
+                forms = tuple(numbers[part, form] for form in doubt.forms)
+                subject = called.get(doubt.subject, doubt.subject)
+                moved = replace(doubt, forms=forms, subject=subject)
+                yield moved.naming(names)
+
+    def _doubts_of(self, clusters: Sequence[Sequence[_Pass]]) -> Iterator[Doubt]:
+        """Whether crossings are one."""
+        if not clusters:
+            return
+        apart, unit = self._apart([cluster[0] for cluster in clusters])
+        is_close = may_be_one_crossing(apart, unit)
+        close = (np.count_nonzero(is_close) - len(clusters)) // 2
+        if close:
+            yield SearchDoubt.CROSSINGS_TOGETHER.doubt(count=int(close))
+
+
+def _renumbered(
+    point: MeetingPoint, part: int, numbers: Mapping[tuple[int, int], int]
+) -> MeetingPoint:
+    """A point of a part, with the forms as they are numbered now."""
+    passes = tuple((numbers[part, form], s) for form, s in point.passes)
+    return replace(point, passes=passes)
+
+
+def _name_of(point: SingularPoint, points: Sequence[MeetingPoint]) -> str:
+    """What a singular point of a part is called now."""
+    (name,) = [one.name for one in points if one.point is point]
+    return name
+
+
+def _forms(forms: Sequence[Form], points: Sequence[MeetingPoint]) -> tuple[Form, ...]:
+    """The forms as they are numbered now, with their components."""
+    components = component_numbers(len(forms), points)
+    singular = {form for point in points for form, _ in point.passes}
+    return tuple(
+        replace(
+            form,
+            name=f"Form {index + 1}",
+            component=component,
+            min_singular_value=0.0 if index in singular else form.min_singular_value,
+        )
+        for index, (form, component) in enumerate(zip(forms, components, strict=True))
+    )
