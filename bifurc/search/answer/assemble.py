@@ -26,6 +26,7 @@ from bifurc.curves.near_miss import near_miss_value
 from bifurc.decisions import closes_to_rounding
 from bifurc.limits import Deadline
 from bifurc.numerics.blur import change_by_blur
+from bifurc.numerics.connected_parts import connected_parts
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.answer.completeness import judge_completeness
@@ -184,19 +185,15 @@ def _smallest_value(problem: Problem, traced: TracedBranch) -> float:
 def component_numbers(count: int, points: Sequence[MeetingPoint]) -> list[int]:
     """Number of the connected component of every form, counted from 0 in the order of
     the forms."""
-    # networkx, which could do this, takes longer to import than the search
-    component = {("form", form): form for form in range(count)}
-    for point in points:
-        meeting = [("form", form) for form, _ in point.passes]
-        meeting += [("surface", surface) for surface in point.surfaces]
-        for thing in meeting:
-            component.setdefault(thing, len(component))
-        joined = {component[thing] for thing in meeting}
-        for thing, number in component.items():
-            if number in joined:
-                component[thing] = min(joined)
-    first_forms = [component["form", form] for form in range(count)]
-    return [sorted(set(first_forms)).index(first) for first in first_forms]
+    surfaces = (
+        max((max(point.surfaces, default=-1) for point in points), default=-1) + 1
+    )
+    meeting = [
+        [form for form, _ in point.passes]
+        + [count + number for number in point.surfaces]
+        for point in points
+    ]
+    return connected_parts(count + surfaces, meeting)[:count]
 
 
 def _surfaces(
