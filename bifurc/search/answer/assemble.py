@@ -22,7 +22,7 @@ from bifurc.completeness import numbered_form
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.minima import stand_out
 from bifurc.curves.monitor import dead_points
-from bifurc.curves.near_miss import near_miss_value
+from bifurc.curves.near_miss import near_miss_values
 from bifurc.decisions import closes_to_rounding
 from bifurc.limits import Deadline
 from bifurc.numerics.blur import change_by_blur
@@ -264,22 +264,30 @@ def near_misses_of(
     located = np.array([point.u for point in points]).reshape(-1, problem.n)
     errors = np.array([point.error for point in points])
     for form, branch in enumerate(traced):
-        arclengths, values = branch.minima
-        is_low = stand_out(problem, branch.branch, branch.profile, values)
-        arclengths = arclengths[is_low & ~np.isin(arclengths, branch.located)]
+        arclengths = _low_minima(problem, branch)
+        places = wrap(branch.branch(arclengths), periods)
+        apart = problem.domain.difference(places[:, None], located)
+        passed, reach = _passes_of(form, met)
+        # an end that stops short of a cusp is at it
+        is_known = np.any(np.linalg.norm(apart, axis=2) <= errors, axis=1)
+        is_known |= np.any(np.abs(arclengths[:, None] - passed) <= reach, axis=1)
+        arclengths, places = arclengths[~is_known], places[~is_known]
         if not len(arclengths):
             continue
-        places = wrap(branch.branch(arclengths), periods)
-        passed, reach = _passes_of(form, met)
+        rank = branch.profile.rank
+        sizes = near_miss_values(problem, branch.branch, rank, arclengths)
         for k in order_points(places, periods, problem.domain.scale):
-            s = float(arclengths[k])
-            gaps = np.linalg.norm(problem.domain.difference(places[k], located), axis=1)
-            # an end that stops short of a cusp is at it
-            if np.any(gaps <= errors) or np.any(np.abs(s - passed) <= reach):
-                continue
-            size = near_miss_value(problem, branch.branch, branch.profile.rank, s)
-            events.append(Event(form, s, places[k], *size))
+            events.append(Event(form, float(arclengths[k]), places[k], *sizes[k]))
     return tuple(events)
+
+
+def _low_minima(problem: Problem, traced: TracedBranch) -> np.ndarray:
+    """Arclengths (k,) of the minima of the singular value on a branch that stand out,
+    and are not those of singular points that were located there."""
+    arclengths, values = traced.minima
+    is_low = stand_out(problem, traced.branch, traced.profile, values)
+    low: np.ndarray = arclengths[is_low & ~np.isin(arclengths, traced.located)]
+    return low
 
 
 def _passes_of(form: int, met: Sequence[MeetingPoint]) -> tuple[np.ndarray, np.ndarray]:
