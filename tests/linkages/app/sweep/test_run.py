@@ -194,9 +194,7 @@ def test_a_sweep_holds_no_more_of_many_members_than_of_few(tmp_path, monkeypatch
             tmp_path / "a.zarr",
             progress=look,
         )
-    assert (
-        sizes[700] - sizes[200] < 500 * 100
-    )  # a record alone is more than 500 bytes
+    assert sizes[700] - sizes[200] < 500 * 100  # a record alone is more than 500 bytes
 
 
 @pytest.mark.usefixtures("same_process")
