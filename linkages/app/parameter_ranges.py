@@ -76,7 +76,7 @@ def choose_equations(path: str, texts: Sequence[str]) -> EquationMembers:
         if name not in system.values:
             known = ", ".join(system.values)
             raise CommandError(f"--param {name}: it must be one of {known}")
-        low, high = _span(name, span)
+        low, high = read_span(name, span)
         if name in bounds or name in values:
             raise CommandError(f"--param {name}: it is given twice")
         bounds[name] = (low, high)
@@ -135,18 +135,19 @@ def _range(
     if not span:
         low = min(parameter.low, parameter.default)
         return parameter, low, max(parameter.high, parameter.default)
-    ends = _span(name, span)
+    ends = read_span(name, span)
     if parameter.kind is ParameterKind.ANGLE:
         ends = (math.radians(ends[0]), math.radians(ends[1]))
     return parameter, *ends
 
 
-def _span(name: str, text: str) -> tuple[float, float]:
-    """The ends of a range "low:high"; raises `CommandError`."""
+def read_span(name: str, text: str, option: str = "--param") -> tuple[float, float]:
+    """The ends of a range "low:high" behind an option; raises `CommandError`."""
     parts = text.split(":")
+    message = f"{option} {name}: {text!r} is not allowed; write low:high"
     if len(parts) != 2:
-        raise CommandError(f"--param {name}: {text!r} is not allowed; write low:high")
-    ends = [read_number(name, part) for part in parts]
-    if not ends[0] < ends[1]:
-        raise CommandError(f"--param {name}: {text!r} is not allowed; write low:high")
-    return ends[0], ends[1]
+        raise CommandError(message)
+    low, high = [read_number(name, part, option) for part in parts]
+    if not low < high:
+        raise CommandError(message)
+    return low, high
