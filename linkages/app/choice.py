@@ -51,11 +51,14 @@ def require_table(text: str, table: Loop | None) -> Loop:
     return table
 
 
-def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage | Mechanism:
+def choose_linkage(
+    text: str, parameters: Sequence[str] = (), closures: Path | None = None
+) -> Linkage | Mechanism:
     """The linkage called ``text``, or the linkage or mechanism read from the file
     ``text`` if that is one (or ends with .toml).
 
-    ``parameters`` are "key=value", angles in degrees. Raises `CommandError`,
+    ``parameters`` are "key=value", angles in degrees; ``closures`` is a file that closes
+    the loops of a robot. Raises `CommandError`,
     `GeometryError`, `UnknownLinkageError` and `LinkageFileError`.
     """
     if is_linkage_file(text) and parameters:
@@ -69,7 +72,7 @@ def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage | Mecha
         family: Entry | NetworkEntry = NETWORKS.get(text) or entry(text)
         values = read_parameters(family.parameters, parameters)
     try:
-        linkage = load(text, **values)
+        linkage = load(text, closures=closures, **values)
     except OverflowError:
         raise CommandError(f"{text}: it holds a number that is too large") from None
     _require_size(text, linkage)
@@ -172,7 +175,8 @@ def choose_held(
 ) -> Linkage | Mechanism:
     """What `choose_linkage` finds, with joints held; what nobody asked for is said on
     standard error. Raises as `choose_linkage` and `hold_joints`."""
-    inputs = hold_joints(text, choose_linkage(text, parameters), hold)
+    linkage = choose_linkage(text, parameters, hold.closures)
+    inputs = hold_joints(text, linkage, hold)
     for note in inputs.notes:
         click.echo(note, err=True)
     return inputs.mechanism
