@@ -112,6 +112,7 @@ def read_mjcf(root: Element, name: str) -> Assembly:
         model = _read_model(root, origin)
         rounding = model.rounding
     poses = {body.name: body.frame for body in model.bodies}
+    motors = _motors(root, model)
     return Assembly(
         root.attributes.get("model", name),
         tuple(body.name for body in model.bodies),
@@ -120,7 +121,7 @@ def read_mjcf(root: Element, name: str) -> Assembly:
         tuple(model.notes),
         model.origin.vector,
         rounding,
-        _motors(root, model),
+        motors,
     )
 
 
