@@ -175,7 +175,10 @@ def _trace(
     family: Family, fibre: Fibre, parameter: int, step: float, deadline: Deadline
 ) -> float | None:
     """How far the sum of the solutions is from linear in a ``parameter``, by number,
-    that moves by a ``step``, over its change; None where paths were lost."""
+    that moves by a ``step``, over its change; None where paths were lost, and where
+    there are no solutions."""
+    if not len(fibre.solutions):
+        return None
     sums = [fibre.solutions.sum(axis=0)]
     for shift in (step, -step):
         moved = fibre.parameters.copy()

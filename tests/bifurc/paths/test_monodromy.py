@@ -139,3 +139,11 @@ def test_a_platform_on_six_legs_has_40_complex_assemblies():
     ways = _Ways(np.ones(36), quiet=3)
     fibre = Fibre(parameters, start[None])
     assert len(_enlarged(family, fibre, ways, rng, Deadline()).solutions) == 40
+
+
+def test_a_trace_of_no_points_says_nothing():
+    from bifurc.paths.monodromy import _trace
+
+    family = framework(PRISM, 6)
+    nothing = Fibre(np.ones(family.parameters, dtype=complex), np.empty((0, family.n)))
+    assert _trace(family, nothing, 0, 1.0, Deadline()) is None
