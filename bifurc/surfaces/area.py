@@ -102,10 +102,7 @@ class _Measure:
         sectors = turned * rays.integrals
         errors = self._sums(rays.errors) + BLURRED * rays.outside
         errors += self._sums(_tails(sectors, nodes)[:, None])
-        # an edge that is off by so much moves area from one cell to the next
-        lengths = np.linalg.norm(outline[:, -1] - outline[:, 0], axis=1)
-        off = np.linalg.norm(_tails(np.swapaxes(outline, 1, 2), places), axis=1)
-        errors += self._sums((off * lengths)[:, None])
+        errors += self._sums(_errors_of_edges(outline, places)[:, None])
         errors[self._cells.chart[~are_known[self._edge]]] = np.inf
         return Sizes(self._sums(sectors * weights), errors, rays.outside)
 
@@ -221,6 +218,14 @@ class _Measure:
         count = points.shape[1]
         graphs = self._graphs.part(np.repeat(cells.chart, count))
         return graphs.positions(points.reshape(-1, n)).reshape(-1, count, 2)
+
+
+def _errors_of_edges(outline: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """How much area (e,) edges move from one cell to the next where the polynomials
+    through their ``outline`` (e, k, 2) at ``places`` (k,) are off."""
+    lengths: np.ndarray = np.linalg.norm(outline[:, -1] - outline[:, 0], axis=1)
+    off = _tails(np.swapaxes(outline, 1, 2), places)
+    return lengths * np.linalg.norm(off, axis=1)
 
 
 def _fill_cells(
