@@ -65,8 +65,8 @@ def cell_sizes(
 
 class _Rays(NamedTuple):
     """The ``integrals`` (e, r) of the ratio of areas along rays, of which each edge has r,
-    how far off the area is by each, ``errors`` (e, r), and what of it lies ``outside`` the
-    bounds (c,)."""
+    how far off the area is by each but the first, ``errors`` (e, r - 1), and what of it
+    lies ``outside`` the bounds (c,)."""
 
     integrals: np.ndarray
     errors: np.ndarray
@@ -96,19 +96,21 @@ class _Measure:
         curves, are_known = self._curves(nodes)
         outline = self._outlines(curves)
         places = np.concatenate([[0.0], nodes, [1.0]])
-        rates = np.einsum("ij,ejk->eik", _differentiation(places), outline)[:, 1:-1]
-        turned = _cross(outline[:, 1:-1], rates)  # (e, ALONG)
-        rays = self._rays(outline[:, 1:-1], turned * weights)
-        sectors = turned * rays.integrals
+        rates = np.einsum("ij,ejk->eik", _differentiation(places), outline)
+        turned = _cross(outline, rates)  # (e, ALONG + 2)
+        rays = self._rays(outline[:, :-1], turned[:, 1:-1] * weights)
+        at_ends = rays.integrals[self._cells.following, :1]
+        sectors = turned * np.concatenate([rays.integrals, at_ends], axis=1)
         errors = self._sums(rays.errors) + BLURRED * rays.outside
-        errors += self._sums(_tails(sectors, nodes)[:, None])
+        errors += self._sums(_tails(sectors, places)[:, None])
         errors += self._sums(_errors_of_edges(outline, places)[:, None])
         errors[self._cells.chart[~are_known[self._edge]]] = np.inf
-        return Sizes(self._sums(sectors * weights), errors, rays.outside)
+        areas = self._sums(sectors[:, 1:-1] * weights)
+        return Sizes(areas, errors, rays.outside)
 
     def _rays(self, ends: np.ndarray, turned: np.ndarray) -> _Rays:
-        """The rays from the centres to the nodes of each edge, ``ends`` (e, r, 2), each of
-        a weight ``turned`` (e, r)."""
+        """The rays from the centres to the beginning and the nodes of each edge, ``ends``
+        (e, r, 2), all but the first of each of a weight ``turned`` (e, r - 1)."""
         count = ends.shape[1]
         chart = np.repeat(self._cells.chart, count)
         t, t_weights = _gauss(RAYS)
@@ -116,10 +118,11 @@ class _Measure:
         points, is_there = self._graphs.part(chart).along(flat, t)
         ratio = self._ratios(chart, points)
         gaps = _fill_cells(ratio, flat[:, None] * t[:, None], is_there, chart)
-        gaps = np.maximum(gaps, _tails(ratio, t)[:, None]).reshape(-1, count)
+        gaps = np.maximum(gaps, _tails(ratio, t)[:, None]).reshape(-1, count)[:, 1:]
         ratio = ratio.reshape(-1, count, RAYS)
         weighted = t * t_weights * turned[:, :, None]
-        outside = ratio * weighted * self._are_outside(points).reshape(ratio.shape)
+        outside = ratio * self._are_outside(points).reshape(ratio.shape)
+        outside = outside[:, 1:] * weighted
         outside[self._are_bent(turned)[self._cells.chart]] = 0.0
         return _Rays(
             integrals=ratio @ (t * t_weights),
