@@ -345,8 +345,8 @@ Every comparison on which a count, a kind, a level or a word hangs compares one 
 in the tables `decisions.toml` of both packages; singular values and residuals are over the problem's magnitude,
 lengths over its scale. `python -m studies.margins --page` writes this page: it notes every quantity that was decided on
 over the catalogue, random members of its linkages, linkages that nearly bifurcate or end in something larger, surfaces,
-mechanisms, networks, hard cases, random plane curves and lines. `python -m studies.margins --nearest "same point"` says
-in which cases the quantities of a decision lie nearest to its threshold.
+mechanisms, networks, hard cases, random plane curves and lines.
+`python -m studies.margins --nearest "same point"` says in which cases the quantities of a decision lie nearest to its threshold.
 
 A *verdict* decides a count, a kind, a level or a word. Its threshold stands in an empty gap of three decades or more.
 Where the truth itself has no gap (a linkage may miss a condition by any amount), it has a *third answer*: what is said
