@@ -6,9 +6,9 @@ The quantities on which `bifurc.decisions` and `linkages.decisions` decide are n
 the catalogue and random members of its linkages, linkages that nearly bifurcate or end
 in something larger, surfaces, curves on which other methods fail, random plane
 curves, and lines through one point or next to one. For every decision the study prints
-how many quantities fell into which decade, where the threshold stands, and how wide the empty gap around it is. With --page the
-table and the histogram are written as a page of the docs; with --nearest the study says
-in which cases the quantities of one decision lie nearest to its threshold.
+how many quantities fell into which decade, where the threshold stands, and how wide the
+empty gap around it is. With --page the table and the histogram are written as a
+page of the docs; with --nearest the study says in which cases the quantities of one decision lie nearest to its threshold.
 """
 
 from __future__ import annotations
@@ -346,7 +346,8 @@ in the tables `decisions.toml` of both packages; singular values and residuals a
 lengths over its scale. `python -m studies.margins --page` writes this page: it notes every quantity that was decided on
 over the catalogue, random members of its linkages, linkages that nearly bifurcate or end in something larger, surfaces,
 mechanisms, networks, hard cases, random plane curves and lines.
-`python -m studies.margins --nearest "same point"` says in which cases the quantities of a decision lie nearest to its threshold.
+`python -m studies.margins --nearest "same point"` says in which cases the quantities of a decision lie nearest to
+its threshold.
 
 A *verdict* decides a count, a kind, a level or a word. Its threshold stands in an empty gap of three decades or more.
 Where the truth itself has no gap (a linkage may miss a condition by any amount), it has a *third answer*: what is said
