@@ -2,13 +2,14 @@
 
     python -m studies.margins [--members 2] [--near 60] [--page] [--nearest NAME]
 
-The quantities on which `bifurc.decisions` and `linkages.decisions` decide are noted over
-the catalogue and random members of its linkages, linkages that nearly bifurcate or end
-in something larger, surfaces, curves on which other methods fail, random plane
+The quantities on which `bifurc.decisions` and `linkages.decisions` decide are noted
+over the catalogue and random members of its linkages, linkages that nearly bifurcate or
+end in something larger, surfaces, curves on which other methods fail, random plane
 curves, and lines through one point or next to one. For every decision the study prints
 how many quantities fell into which decade, where the threshold stands, and how wide the
-empty gap around it is. With --page the table and the histogram are written as a
-page of the docs; with --nearest the study says in which cases the quantities of one decision lie nearest to its threshold.
+empty gap around it is. With --page the table and the histogram are written as a page of
+the docs; with --nearest the study says in which cases the quantities of one decision
+lie nearest to its threshold.
 """
 
 from __future__ import annotations
