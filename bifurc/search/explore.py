@@ -213,10 +213,11 @@ def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
         if atlas is not None:
             return atlas
     solutions = _solutions_of(problem, request)
-    atlas = _explored_in_own_units(problem, request)
     if solutions is None:
-        return atlas
-    return settled_in_boxes(atlas, solutions, problem.domain)
+        return _explored_in_own_units(problem, request)
+    # what units of its own let a search see is known where boxes show all
+    search = _explored if solutions.is_complete else _explored_in_own_units
+    return settled_in_boxes(search(problem, request), solutions, problem.domain)
 
 
 def _solutions_of(
