@@ -8,6 +8,7 @@ from linkages.entry import Entry, Linkage
 from linkages.file import read_content
 from linkages.formats.table import TOML, format_of
 from linkages.linkage import load
+from linkages.mechanisms.mechanism import Mechanism
 from linkages.parameters.mechanism_family import MechanismFamily
 from linkages.parameters.table_family import family_of_table
 
@@ -31,6 +32,12 @@ def family_of_file(path: Path | str) -> Entry | MechanismFamily:
     linkage = load(path)
     if isinstance(linkage, Linkage):
         return family_of_table(linkage.loop)
+    return mechanism_family(path, linkage)
+
+
+def mechanism_family(path: Path | str, mechanism: Mechanism) -> MechanismFamily:
+    """The family of the ``mechanism`` that was read from a file; raises
+    `LinkageFileError`."""
     # they import networkx, which a table does not need
     from linkages.files.arcs import assembled_arcs
     from linkages.files.bars import assembled_bars
@@ -41,7 +48,7 @@ def family_of_file(path: Path | str) -> Entry | MechanismFamily:
     is_toml = format_of(Path(path)) in (None, TOML)
     content = read_content(Path(path)) if is_toml else {}
     if "joints" not in content and "bars" in content:
-        return BarFamily(linkage, assembled_bars(content)[0])
+        return BarFamily(mechanism, assembled_bars(content)[0])
     if "joints" not in content and "arcs" in content:
-        return ArcFamily(linkage, assembled_arcs(content, angle_unit(content)))
-    return JointFamily(linkage)
+        return ArcFamily(mechanism, assembled_arcs(content, angle_unit(content)))
+    return JointFamily(mechanism)

@@ -167,7 +167,7 @@ def read_plan(
     """
     if random < 0:
         raise GeometryError("--random", random, "at least 1")
-    subject = choose_subject(source, parameters, is_without_centre)
+    subject = choose_subject(source, is_without_centre)
     if locks and not _of_option(subject, LOCK):
         raise CommandError(
             f"--lock: it takes a network or the file of a mechanism, and {source} has no "

@@ -1,5 +1,5 @@
-"""What is swept: a family or a network of the catalogue, the mechanism of a file, or its
-equations; the quantities of it that can be varied, and its members at their values."""
+"""What is swept: a family or a network of the catalogue, the table, the mechanism or the
+equations of a file; the quantities of it that can be varied, and its members at their values."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import hashlib
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
 from urllib.parse import quote
 
-from linkages.app.choice import NO_NETWORK, check_limits, choose_linkage, require_kind
+from linkages.app.choice import NO_NETWORK, check_limits, choose_linkage
 from linkages.app.exit_codes import CommandError
 from linkages.catalogue import entry
 from linkages.entry import Linkage, Parameter, ParameterKind
@@ -20,14 +20,16 @@ from linkages.labels import FormLabels
 from linkages.linkage import is_linkage_file, load
 from linkages.mapping import map_linkage
 from linkages.networks.entries import LENGTHS, NETWORKS
+from linkages.parameters.table_family import family_of_table
 from linkages.subject import subject_at
-from linkages.values import GeometryError
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas, Form
     from bifurc.settings import SearchSettings
     from bifurc.systems.equation_file import EquationFile, EquationSystem
+    from linkages.loop import Loop
     from linkages.mechanisms.mechanism import Mechanism
+    from linkages.parameters.mechanism_family import MechanismFamily
 
 JointName: TypeAlias = str | int
 
@@ -58,6 +60,13 @@ class Quantity:
         is_angle = parameter.kind is ParameterKind.ANGLE
         bounds = (parameter.low, parameter.high)
         return cls(name, name, PARAM, is_angle, f"{name} of the member", bounds)
+
+    @classmethod
+    def of_number(cls, parameter: Parameter) -> Quantity:
+        """A number of a file, which is drawn from no range but a given one."""
+        name = quote(parameter.name, safe="")
+        of_parameter = cls.of_parameter(parameter)
+        return replace(of_parameter, name=name, key=parameter.name, bounds=None)
 
     @classmethod
     def of_lock(cls, joint: str, is_angle: bool) -> Quantity:
@@ -234,39 +243,65 @@ class NetworkFamily(MemberSource):
 
 
 @dataclass(frozen=True)
-class FileMechanism(MemberSource):
-    """The ``mechanism`` that was read from a file, with joints locked."""
+class FileTable(MemberSource):
+    """The ``loop`` that was read from a file, with other entries of its table."""
 
-    mechanism: Mechanism
+    loop: Loop
+
+    @cached_property
+    def identity(self) -> dict[str, object]:
+        """The name, and a fingerprint of the table."""
+        table = [list(map(float, row)) for row in self.loop.arrays]
+        return {"table": self.loop.name, "fingerprint": _fingerprint({"table": table})}
+
+    @cached_property
+    def quantities(self) -> Sequence[Quantity]:
+        parameters = family_of_table(self.loop).parameters
+        return [Quantity.of_number(one) for one in parameters]
 
     @property
-    def name(self) -> str:
-        """What the mechanism is called."""
-        return self.mechanism.name
+    def joints(self) -> tuple[JointName, ...]:
+        return tuple(range(1, self.loop.n + 1))
+
+    def member(self, values: Mapping[str, float]) -> Member:
+        loop = family_of_table(self.loop).build(**self.by_key(PARAM, values))
+        return LinkageMember(Linkage(loop))
+
+
+@dataclass(frozen=True)
+class FileMechanism(MemberSource):
+    """The mechanism that was read from a file, a ``family`` by its numbers, with joints
+    locked."""
+
+    family: MechanismFamily
 
     @cached_property
     def identity(self) -> dict[str, object]:
         """The name, and a fingerprint of all that the file says."""
         from linkages.mechanisms.subject import mechanism_subject
 
-        values = mechanism_subject(self.mechanism)["mechanism"]
-        return {"mechanism": self.name, "fingerprint": _fingerprint(values)}
+        mechanism = self.family.mechanism
+        values = mechanism_subject(mechanism)["mechanism"]
+        return {"mechanism": mechanism.name, "fingerprint": _fingerprint(values)}
 
     @cached_property
     def quantities(self) -> Sequence[Quantity]:
-        return [
+        numbers = [Quantity.of_number(one) for one in self.family.parameters]
+        locks = [
             Quantity.of_lock(one.label, one.motion.is_turn)
-            for one in self.mechanism.variables
+            for one in self.family.mechanism.variables
         ]
+        return [*numbers, *locks]
 
     @property
     def joints(self) -> tuple[JointName, ...]:
-        return tuple(joint.name for joint in self.mechanism.joints)
+        return tuple(joint.name for joint in self.family.mechanism.joints)
 
     def member(self, values: Mapping[str, float]) -> Member:
         locks = self.by_key(LOCK, values)
-        check_limits(self.mechanism, locks)
-        return LinkageMember(self.mechanism.with_locks(locks))
+        mechanism = self.family.build(**self.by_key(PARAM, values))
+        check_limits(mechanism, locks)
+        return LinkageMember(mechanism.with_locks(locks))
 
 
 @dataclass(frozen=True)
@@ -301,39 +336,29 @@ def _fingerprint(values: Mapping[str, object]) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def choose_subject(
-    text: str, parameters: Sequence[str] = (), is_without_centre: bool = False
-) -> MemberSource:
-    """What is called ``text`` in the catalogue, or is in the file ``text``, whose
-    ``parameters`` are swept only where it holds equations.
+def choose_subject(text: str, is_without_centre: bool = False) -> MemberSource:
+    """What is called ``text`` in the catalogue, or is in the file ``text``.
 
-    Raises as `choose_linkage`, `EquationFileError`, and `CommandError` for a file with a single loop, and
-    for anything but a network without its centre.
+    Raises as `choose_linkage`, `EquationFileError`, and `CommandError` for anything but a
+    network without its centre.
     """
     if text in NETWORKS and not is_linkage_file(text):
         return NetworkFamily(text, is_without_centre)
     if not is_linkage_file(text):
-        entry(text)
-        if is_without_centre:
-            raise CommandError(NO_NETWORK.format(text))
-        return Family(text)
+        entry(text)  # who has mistyped a name is told that first
     if is_without_centre:
         raise CommandError(NO_NETWORK.format(text))
+    if not is_linkage_file(text):
+        return Family(text)
     equations = _equations_in(text)
     if equations is not None:
         return FileEquations(equations.system({}).name, equations)
-    if parameters:
-        raise GeometryError(PARAM, parameters[0], "left out with a file that is swept")
     chosen = choose_linkage(text)
-    from linkages.mechanisms.mechanism import Mechanism
+    if isinstance(chosen, Linkage):
+        return FileTable(chosen.loop)
+    from linkages.parameters.file_family import mechanism_family
 
-    refusal = (
-        f"{text}: it is a single loop, a table or axes, without parameters and "
-        "without joints to lock; a sweep takes a family or a network of the "
-        "catalogue or a file of equations with --param, and a network or the file of a "
-        "mechanism with --lock"
-    )
-    return FileMechanism(require_kind(chosen, Mechanism, refusal))
+    return FileMechanism(mechanism_family(text, chosen))
 
 
 def _equations_in(text: str) -> EquationFile | None:

@@ -20,6 +20,7 @@ from linkages.app.sweep.plan import Plan, read_plan
 from linkages.app.sweep.run import journal_path, run_sweep
 from linkages.app.sweep.store import StoreError, SweepStore, open_sweep
 from linkages.app.sweep.subjects import (
+    LOCK,
     Family,
     FileMechanism,
     NetworkFamily,
@@ -27,6 +28,7 @@ from linkages.app.sweep.subjects import (
 )
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.parameters.joint_family import JointFamily
 from linkages.values import GeometryError
 from tests.linkages.app.slider_cranks import slider_crank_text
 
@@ -160,7 +162,7 @@ def test_a_mechanism_that_moves_has_still_joints_by_name():
         Joint("D", "revolute", ("c", "d"), (2.6, 1.0, 0), (0, 0, 1)),
         Joint("E", "revolute", ("d", "frame"), (2.2, 0, 0), (0, 0, 1)),
     ]
-    subject = FileMechanism(Mechanism(tuple(joints), is_planar=True))
+    subject = FileMechanism(JointFamily(Mechanism(tuple(joints), is_planar=True)))
     record = map_member(subject, {"lock_C": 0.0}, 20, 0)
     forms = record["forms"]
     assert record["mobility"] == 1 and forms
@@ -171,7 +173,8 @@ def test_a_mechanism_that_moves_has_still_joints_by_name():
 
 def test_locks_that_leave_nothing_to_move_are_a_status(folder):
     subject = choose_subject("slider_crank.toml")
-    values = {quantity.name: 0.0 for quantity in subject.quantities}
+    locks = [one for one in subject.quantities if one.option == LOCK]
+    values = {quantity.name: 0.0 for quantity in locks}
     record = map_member(subject, values, 10, 0)
     assert record["status"] == Status.REFUSED
     assert "left to move" in record["message"]
@@ -181,7 +184,7 @@ def test_workers_get_the_mechanism_itself_and_not_its_file(folder):
     subject = choose_subject("slider_crank.toml")
     Path("slider_crank.toml").unlink()
     copy = pickle.loads(pickle.dumps(subject))
-    assert copy == subject and copy.identity == subject.identity
+    assert copy.identity == subject.identity
     assert copy.member({"lock_A-7": 0.5}).linkage.joint("A-7").locked == (0.5,)
 
 
@@ -282,13 +285,15 @@ def test_the_command_sweeps_networks_and_mechanisms(folder):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("table.toml", "--lock", "1=0:9:2"), "a family or a network of the catalogue"),
+        (("table.toml", "--lock", "1=0:9:2"), "it takes a network or the file"),
+        (("table.toml", "--param", "a=1:2:2"), "a name out of a12, alpha12, R1"),
+        (("table.toml", "--without-centre"), "takes a network"),
         (("bennett", "--lock", "1=0:9:2"), "it takes a network or the file"),
         (("bennett", "--param", "a=1:2:2", "--without-centre"), "takes a network"),
         (("slider_crank.toml", "--without-centre"), "takes a network"),
-        (("slider_crank.toml", "--param", "a=1:2:2"), "left out with a file"),
-        (("slider_crank.toml",), "--lock: no grid"),
-        (("slider_crank.toml", "--random", "3"), "--lock: no range"),
+        (("slider_crank.toml", "--param", "a=1:2:2"), "a name out of A-7."),
+        (("slider_crank.toml",), "--param or --lock: no grid"),
+        (("slider_crank.toml", "--random", "3"), "--param or --lock: no range"),
         (("slider_crank.toml", "--lock", "J9=0:9:2"), "out of A-7, J2, J3, S/4"),
         (("slider_crank.toml", "--lock", "J2=0:9"), "first:last:count"),
         (("slider_crank.toml", "--lock", "J2=0:9:2", "--lock", "J2=1"), "only once"),
@@ -316,16 +321,45 @@ def test_names_of_axes_are_those_of_joints_and_never_alike():
             ("A-7", ("c", "frame"), 2, 0),
         )
     ]
-    subject = FileMechanism(Mechanism(tuple(joints)))
+    subject = FileMechanism(JointFamily(Mechanism(tuple(joints))))
     names = [quantity.name for quantity in subject.quantities]
-    assert names == ["lock_a%2Fb", "lock_a%252Fb", "lock_a%20b", "lock_A-7"]
+    assert names[-4:] == ["lock_a%2Fb", "lock_a%252Fb", "lock_a%20b", "lock_A-7"]
 
 
-def test_a_table_takes_no_locks_and_no_parameters(folder):
-    with pytest.raises(CommandError, match="single loop"):
-        choose_subject("table.toml")
-    with pytest.raises(GeometryError, match="left out with a file"):
-        choose_subject("table.toml", ["a=1"])
+FOUR_BAR = """
+fixed = ["A", "D"]
+bars = [["A", "B"], ["B", "C"], ["C", "D"]]
+[points]
+A = [0, 0]
+B = [0, 1]
+C = [2, 2]
+D = [3, 0]
+"""
+
+
+@pytest.mark.usefixtures("same_process")
+def test_a_sweep_over_lengths_of_a_file_sees_where_a_crank_no_longer_turns(folder):
+    Path("four_bar.toml").write_text(FOUR_BAR, encoding="utf-8")
+    spans = ["A-B=0.5:2:4", "D.x=2.5:3.5:3"]
+    run_sweep(
+        read_plan("four_bar.toml", spans, starts=50), folder / "a.zarr", workers=1
+    )
+    dataset = open_sweep(folder / "a.zarr")
+    for crank in dataset["A-B"].values:
+        for ground in dataset["D.x"].values:
+            lengths = sorted([crank, ground, np.sqrt(5.0), np.sqrt(5.0)])
+            turns_fully = lengths[0] + lengths[3] < lengths[1] + lengths[2]
+            member = dataset.sel({"A-B": crank, "D.x": ground})
+            assert member.components == (2 if turns_fully else 1)
+
+
+def test_entries_of_a_table_are_swept_and_its_other_entries_stay(folder):
+    subject = choose_subject("table.toml")
+    twisted = subject.member({"alpha12": 0.7}).linkage.loop
+    table = subject.loop
+    assert twisted.twists == (0.7, *table.twists[1:])
+    assert twisted.lengths == table.lengths
+    assert pickle.loads(pickle.dumps(subject)).identity == subject.identity
 
 
 @pytest.mark.usefixtures("same_process")
