@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from bifurc.atlas import Atlas
+from bifurc.checks import check_type
 from bifurc.limits import HeldInterrupt, deadline_within, until
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
@@ -29,13 +30,13 @@ def map_linkage(
 
     ``seed`` is that of the random starts; ``progress`` is called with what was found
     and how many. The budget of the settings holds for naming as well: where it ends
-    before, forms have numbers only, and the statement says so. `linkages.labels.FormLabels` reads what a form is,
-    `linkages.labels.loop_of` the loop that an atlas is of, and
-    `linkages.readout.readout.Readout` the joint variables of a mechanism, also of
-    one that is a single loop. Every form
-    has its ``certificate``, unless the settings say otherwise. Raises `GeometryError`
-    for anything but a linkage or a mechanism, and for a loop with lengths whose squares
-    leave the range of doubles.
+    before, forms have numbers only, and the statement says so.
+    `linkages.labels.FormLabels` reads what a form is, `linkages.labels.loop_of` the
+    loop that an atlas is of, and `linkages.readout.readout.Readout` the joint variables
+    of a mechanism, also of one that is a single loop. Every form has its
+    ``certificate``, unless the settings say otherwise. Raises `ProblemError` for
+    settings of another type, `GeometryError` for anything but a linkage or a mechanism,
+    and for a loop with lengths whose squares leave the range of doubles.
 
     >>> import linkages
     >>> atlas = linkages.map_linkage(linkages.load("rhombus"))
@@ -47,6 +48,7 @@ def map_linkage(
     >>> [point.name for point in atlas.bifurcations], str(atlas.completeness.level)
     (['B1', 'B2', 'B3'], 'proved')
     """
+    check_type("settings", settings, SearchSettings)
     deadline = deadline_within(settings.budget)
     subject = as_subject(linkage)
     with HeldInterrupt() as interrupt, until(replace(deadline, interrupt=interrupt)):

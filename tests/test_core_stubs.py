@@ -22,7 +22,7 @@ def names_in(stub):
             found |= {
                 f"{node.name}.{inner.name}"
                 for inner in node.body
-                if isinstance(inner, ast.FunctionDef) and inner.name != "__init__"
+                if isinstance(inner, ast.FunctionDef) and inner.name[:2] != "__"
             }
     return found
 

@@ -20,6 +20,8 @@ import numpy as np
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Provenance
 from bifurc.branch import Outcome
 from bifurc.completeness import Claim, Completeness, Doubt, Level, Scope, worst_level
+from bifurc.curves.minima import singular_value_minima
+from bifurc.curves.monitor import profile_branch
 from bifurc.decisions import is_one_crossing, may_be_one_crossing
 from bifurc.equations.expression_problem import TapeProblem
 from bifurc.equations.factors import Factors, irreducible_factors
@@ -27,19 +29,26 @@ from bifurc.equations.tape import Tape
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
 from bifurc.limits import is_time_over
-from bifurc.search.answer.assemble import component_numbers
+from bifurc.search.answer.assemble import (
+    component_numbers,
+    near_misses_of,
+    smallest_value,
+)
 from bifurc.search.answer.completeness import SearchClaim, SearchDoubt
 from bifurc.search.answer.meeting_points import in_order
 from bifurc.search.canonical_order import order_branches
 from bifurc.search.crossings import crossings_with
+from bifurc.search.records import TracedBranch
 from bifurc.singular.point import Invariants, Kind, SingularPoint
 from bifurc.torus import wrap, wrapped_periods
 
+FEWEST = 3  # factors: where two cross their product is as well known as each of them
 NEWTON_STEPS = 4  # to where two factors vanish
 ROUNDING = 8 * np.finfo(float).eps
 IN_BOUNDS = (
     1e-6  # over the sizes: a crossing nearer to a bound may be of parts of curves
 )
+BLURRED = 1e-13  # singular value of a product, over its magnitude
 LONGEST_RADIUS = 1e-3  # of a section about a crossing, over the sizes
 
 
@@ -78,7 +87,7 @@ def explored_by_factors(
     problem: FunctionProblem, explored: Callable[[FunctionProblem], Atlas]
 ) -> Atlas | None:
     """The atlas of a plane curve made of those of its factors, each ``explored`` alone as
-    far as no other touches it; None where there is only one factor, and where all have
+    far as no other touches it; None where there are less than three, and where all have
     to be explored together."""
     factors = _factors_of(problem)
     if factors is None:
@@ -102,14 +111,14 @@ def explored_by_factors(
 
 
 def _factors_of(problem: FunctionProblem) -> Factors | None:
-    """The factors of a plane curve; None where it is none, or there is only one."""
+    """The factors of a plane curve; None where it is none, or there are not many."""
     tape = problem.recording.tape
     if tape is None or problem.n != 2 or tape.m != 1 or problem.accuracy.noise:
         return None
     if not np.all(np.isfinite(problem.domain.bounds)):
         return None
     factors = irreducible_factors(tape, problem.domain.bounds)
-    return None if factors is None or len(factors.powers) < 2 else factors
+    return None if factors is None or len(factors.powers) < FEWEST else factors
 
 
 def _part_of(
@@ -274,13 +283,14 @@ class _Union:
         numbers = {owned[k]: new for new, k in enumerate(order)}
         clusters = self._clusters(passes)
         points = self._points(clusters, numbers)
-        forms = _forms([listed[k] for k in order], points)
+        traced = [self._traced(listed[k]) for k in order]
+        forms = _forms(self.problem, [listed[k] for k in order], traced, points)
         return replace(
             self.parts[0].atlas,
             forms=forms,
             points=points,
-            near_misses=self._events("near_misses", numbers),
-            dead_points=self._events("dead_points", numbers),
+            near_misses=self._near_misses(traced, points),
+            dead_points=self._dead_points(numbers),
             rigid=np.concatenate([part.atlas.rigid for part in self.parts]),
             completeness=self._completeness(clusters, numbers, points),
             closure_gap=0.0 if forms else min(p.atlas.closure_gap for p in self.parts),
@@ -393,14 +403,31 @@ class _Union:
         unit: np.ndarray = tangents / np.linalg.norm(tangents, axis=1, keepdims=True)
         return unit
 
-    def _events(
-        self, kind: str, numbers: Mapping[tuple[int, int], int]
+    def _traced(self, form: Form) -> TracedBranch:
+        """A form with what the singular value of the product does along it."""
+        branch = form.branch
+        profile = profile_branch(self.problem, branch)
+        minima = singular_value_minima(self.problem, branch, profile)
+        return TracedBranch(branch, profile, minima, located=())
+
+    def _near_misses(
+        self, traced: Sequence[TracedBranch], points: Sequence[MeetingPoint]
     ) -> tuple[Event, ...]:
-        """The events of a kind on all forms, form by form."""
+        """The near misses of the product; where it is nearly singular to rounding, forms
+        cross or one of them is singular, and all such points are known."""
+        periods = wrapped_periods(
+            self.problem.domain.periods, self.problem.domain.bounds
+        )
+        located = [point.point for point in points]
+        events = near_misses_of(self.problem, traced, located, points, periods)
+        return tuple(one for one in events if one.value > max(BLURRED, 2.0 * one.error))
+
+    def _dead_points(self, numbers: Mapping[tuple[int, int], int]) -> tuple[Event, ...]:
+        """The dead points of all forms, form by form."""
         events = [
             replace(event, form=numbers[part, event.form])
             for part, each in enumerate(self.parts)
-            for event in getattr(each.atlas, kind)
+            for event in each.atlas.dead_points
         ]
         return tuple(sorted(events, key=lambda event: event.form))
 
@@ -478,16 +505,27 @@ def _name_of(point: SingularPoint, points: Sequence[MeetingPoint]) -> str:
     return name
 
 
-def _forms(forms: Sequence[Form], points: Sequence[MeetingPoint]) -> tuple[Form, ...]:
-    """The forms as they are numbered now, with their components."""
+def _forms(
+    problem: FunctionProblem,
+    forms: Sequence[Form],
+    traced: Sequence[TracedBranch],
+    points: Sequence[MeetingPoint],
+) -> tuple[Form, ...]:
+    """The forms as they are numbered now, with their components, and the singular values
+    of the product along them."""
     components = component_numbers(len(forms), points)
     singular = {form for point in points for form, _ in point.passes}
     return tuple(
         replace(
             form,
             name=f"Form {index + 1}",
+            profile=seen.profile,
             component=component,
-            min_singular_value=0.0 if index in singular else form.min_singular_value,
+            min_singular_value=0.0
+            if index in singular
+            else smallest_value(problem, seen),
         )
-        for index, (form, component) in enumerate(zip(forms, components, strict=True))
+        for index, (form, seen, component) in enumerate(
+            zip(forms, traced, components, strict=True)
+        )
     )

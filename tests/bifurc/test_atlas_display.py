@@ -63,7 +63,7 @@ def test_a_prompt_shows_forms_bifurcations_and_the_level_in_a_few_lines(atlas):
     for point in atlas.points:
         names = ", ".join(atlas.forms[form].name for form, _ in point.passes)
         assert f"  {point.name}: bifurcation of {names}" in lines
-    assert lines[-1] == "  completeness: certified>"
+    assert lines[-1] == "  completeness: proved>"
     assert len(repr(atlas)) < 1000
 
 
@@ -109,7 +109,7 @@ def test_a_notebook_shows_tables_of_forms_points_and_completeness(atlas):
     titles = [text for text in reader.texts if text in ("Forms", "Singular points")]
     assert titles == ["Forms", "Singular points"]
     assert reader.seen.count("tr") == 2 + len(atlas.forms) + len(atlas.points)
-    assert "Completeness: certified." in reader.texts
+    assert "Completeness: proved." in reader.texts
     assert any(atlas.completeness.statement in text for text in reader.texts)
 
 

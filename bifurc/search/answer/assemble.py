@@ -129,7 +129,7 @@ def _forms(
     singular = {form for point in points for form, _ in point.passes}
     forms = []
     for index, (branch, component) in enumerate(zip(traced, components, strict=True)):
-        smallest = 0.0 if index in singular else _smallest_value(problem, branch)
+        smallest = 0.0 if index in singular else smallest_value(problem, branch)
         passes = [s for point in points for form, s in point.passes if form == index]
         form = Form(
             name=numbered_form(index),
@@ -168,7 +168,7 @@ def _certificate(
     return certificate_of(problem, traced.branch, traced.profile, passes)
 
 
-def _smallest_value(problem: Problem, traced: TracedBranch) -> float:
+def smallest_value(problem: Problem, traced: TracedBranch) -> float:
     """The smallest regular singular value along a branch: at its minima or its ends."""
     branch, profile = traced.branch, traced.profile
     if not profile.rank:

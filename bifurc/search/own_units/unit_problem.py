@@ -271,7 +271,10 @@ class UnitProblem(EquationProblem):
         scale = self.problem.domain.scale
         anywhere = self.own_units.outwards(self._matrices()[0])
         slopes = np.linalg.norm(equations.jacobians(anywhere), axis=2)
-        units = np.median(slopes, axis=0) * scale + TINY
+        is_finite = np.isfinite(slopes).all(axis=1)
+        if not np.any(is_finite):
+            return 0.0
+        units = np.median(slopes[is_finite], axis=0) * scale + TINY
         missed = self._missed(equations, points) / units
         matrices = equations.jacobians(points) * scale / units[:, None]
         return _unseen(missed, matrices, (lost + 1) * orders)
@@ -501,9 +504,12 @@ def _unseen(missed: np.ndarray, matrices: np.ndarray, orders: np.ndarray) -> flo
     """How far from a curve solutions are by what equations miss (k, m) at its points, in
     the directions in which F' (k, m, n) does not change them; the ``orders`` (m,) are
     the powers of the distance that they grow with."""
-    left, sigma, _ = np.linalg.svd(matrices)
+    is_finite = np.isfinite(matrices).all(axis=(1, 2))
+    left, sigma, _ = np.linalg.svd(matrices[is_finite])
     largest = 0.0
-    for values, vectors, sizes in zip(missed, left.swapaxes(1, 2), sigma, strict=True):
+    for values, vectors, sizes in zip(
+        missed[is_finite], left.swapaxes(1, 2), sigma, strict=True
+    ):
         is_flat = np.ones(len(vectors), dtype=bool)
         is_flat[: len(sizes)] = is_flat_equation(sizes)
         for vector in vectors[is_flat]:
