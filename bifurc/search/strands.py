@@ -25,6 +25,7 @@ IN_PLANE, ON_SURFACE = 0.03, 1e-5
 LONGEST = 4.0  # radii: a strand that is longer to either side is none
 SAMPLES = 400  # of a strand
 AT_POINT = 1e-9  # over the scale: how near to a crossing its strands come
+SHARP = 0.1  # of a disc: where its middle is known no better it shows nothing
 CLEAR = 1e-3  # rad: ends that are nearer to each other on a rim do not tell
 
 
@@ -52,7 +53,8 @@ def missing_crossings(
     """The crossings that are missing among singular ``points`` of ``branches``."""
     reach = (IN_PLANE if problem.n == 2 else ON_SURFACE) * problem.domain.scale
     for number, point in enumerate(points):
-        if point.null_space.shape[1] != 2 or point.dimension != 1:
+        is_sharp = point.error < SHARP * reach
+        if not is_sharp or point.null_space.shape[1] != 2 or point.dimension != 1:
             continue
         disc = _Disc(problem, point, branches, reach)
         beside = problem.domain.difference(np.array([p.u for p in points]), point.u)
