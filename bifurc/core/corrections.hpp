@@ -13,7 +13,7 @@ namespace bifurc {
 namespace corrections {
 constexpr int most_steps = 20;
 constexpr double settled = 1e-9;           // last step, over the scale
-constexpr double exact = 1e-15;            // the step that would be next, over the scale
+constexpr double exact = 1e-18;            // the step that would be next, over the scale, by an estimate to decades
 constexpr double farthest = 0.5;           // longest step, over the scale
 constexpr double damping = 1e-14;          // of normal equations, over the largest squared singular value
 constexpr double smallest_pivot = 1e-300;  // of their factor: its inverse is still a double
