@@ -283,8 +283,9 @@ class _Union:
         numbers = {owned[k]: new for new, k in enumerate(order)}
         clusters = self._clusters(passes)
         points = self._points(clusters, numbers)
-        traced = [self._traced(listed[k]) for k in order]
-        forms = _forms(self.problem, [listed[k] for k in order], traced, points)
+        listed = [listed[k] for k in order]
+        traced = [self._traced(form) for form in listed]
+        forms = _forms(self.problem, listed, traced, points)
         return replace(
             self.parts[0].atlas,
             forms=forms,
@@ -293,7 +294,7 @@ class _Union:
             dead_points=self._dead_points(numbers),
             rigid=np.concatenate([part.atlas.rigid for part in self.parts]),
             completeness=self._completeness(clusters, numbers, points),
-            closure_gap=0.0 if forms else min(p.atlas.closure_gap for p in self.parts),
+            closure_gap=self._closure_gap(),
             provenance=self._provenance(),
         )
 
@@ -402,6 +403,10 @@ class _Union:
         )
         unit: np.ndarray = tangents / np.linalg.norm(tangents, axis=1, keepdims=True)
         return unit
+
+    def _closure_gap(self) -> float:
+        """By how much the product is missed where it vanishes nowhere."""
+        return min(part.atlas.closure_gap for part in self.parts)
 
     def _traced(self, form: Form) -> TracedBranch:
         """A form with what the singular value of the product does along it."""

@@ -232,7 +232,8 @@ def _errors_of_edges(outline: np.ndarray, places: np.ndarray) -> np.ndarray:
     through their ``outline`` (e, k, 2) at ``places`` (k,) are off."""
     lengths: np.ndarray = np.linalg.norm(outline[:, -1] - outline[:, 0], axis=1)
     off = _tails(np.swapaxes(outline, 1, 2), places)
-    return lengths * np.linalg.norm(off, axis=1)
+    errors: np.ndarray = lengths * np.linalg.norm(off, axis=1)
+    return errors
 
 
 def _fill_cells(
