@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -28,7 +28,7 @@ from bifurc.equations.factors import Factors, irreducible_factors
 from bifurc.equations.tape import Tape
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
-from bifurc.limits import is_time_over
+from bifurc.limits import is_time_over, made_in_time
 from bifurc.search.answer.assemble import (
     component_numbers,
     near_misses_of,
@@ -41,6 +41,9 @@ from bifurc.search.crossings import crossings_with
 from bifurc.search.records import TracedBranch
 from bifurc.singular.point import Invariants, Kind, SingularPoint
 from bifurc.torus import wrap, wrapped_periods
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 FEWEST = 3  # factors: where two cross their product is as well known as each of them
 NEWTON_STEPS = 4  # to where two factors vanish
@@ -71,9 +74,19 @@ class _Part:
         return np.asarray((low[:, 0] <= 0.0) & (high[:, 0] >= 0.0))
 
 
+class _Sighting(NamedTuple):
+    """Where a form, by its ``part`` and its ``number`` there, is seen to cross the curves
+    of another part, at an arclength ``s`` next to a ``place`` (n,)."""
+
+    part: int
+    number: int
+    s: float
+    other: int
+    place: np.ndarray
+
+
 class _Pass(NamedTuple):
-    """Where a form, by its ``part`` and its ``number`` there, crosses the curves of
-    another part, at an arclength ``s`` and a ``place`` (n,) known to an ``error``."""
+    """Such a crossing, at a ``place`` (n,) known to an ``error``, over the sizes."""
 
     part: int
     number: int
@@ -169,6 +182,7 @@ class _Union:
         self.problem = problem
         self.parts = parts
         self.left = left
+        self.is_cut = False  # whether there was no time to look along all forms
         self.sizes = np.diff(problem.domain.bounds, axis=1)[:, 0]
         samples = [form.branch.sample(64) for part in parts for form in part.forms]
         if samples:
@@ -179,13 +193,20 @@ class _Union:
 
     def meetings(self) -> tuple[list[_Pass], list[tuple[int, int]]]:
         """All passes of forms at the curves of other parts, and the pairs of parts that
-        are not plain crossings of each other."""
-        passes: list[_Pass] = []
+        are not plain crossings of each other. Parts for whose curves there is no time
+        count as ``left``."""
+        sightings: list[_Sighting] = []
         entangled: set[tuple[int, int]] = set()
         for one in range(len(self.parts)):
-            found, unclear = self._passes_of(one)
-            passes += found
+            if is_time_over():
+                self.left += 1
+                continue
+            found, unclear = self._sightings_of(one)
+            sightings += found
             entangled |= unclear | self._met_at_points(one)
+        passes = self._settled(sightings)
+        if self.left:
+            return passes, []
         seen = {(each.part, each.other): 0 for each in passes}
         for each in passes:
             seen[each.part, each.other] += 1
@@ -198,8 +219,8 @@ class _Union:
                 entangled.add((one, other))
         return passes, sorted(entangled)
 
-    def _passes_of(self, other: int) -> tuple[list[_Pass], set[tuple[int, int]]]:
-        """The passes at the curves of a part, by its number, and the pairs that it is
+    def _sightings_of(self, other: int) -> tuple[list[_Sighting], set[tuple[int, int]]]:
+        """Where forms pass the curves of a part, by its number, and the pairs that it is
         not plainly met by."""
         owners = [
             (part, number)
@@ -210,36 +231,62 @@ class _Union:
         branches = [self.parts[part].forms[number].branch for part, number in owners]
         tape = self.parts[other].tape
         crossings = crossings_with(tape, branches, self.sizes)
-        passes = []
-        for curve, s in crossings.zeros:
-            part, number = owners[curve]
-            place, error = self._settled(part, other, branches[curve](s))
-            passes.append(_Pass(part, number, s, other, place, error))
+        sightings = [
+            _Sighting(*owners[curve], s, other, branches[curve](s))
+            for curve, s in crossings.zeros
+        ]
         unclear = {(owners[curve][0], other) for curve in crossings.unclear}
-        return passes, unclear
+        return sightings, unclear
 
-    def _settled(
-        self, one: int, other: int, place: np.ndarray
-    ) -> tuple[np.ndarray, float]:
-        """Where two parts vanish next to a place (n,), by Newton's method, and how
-        exactly that is known, over the sizes."""
-        tapes = [self.parts[number].tape.compiled for number in (one, other)]
-        smallest = 0.0
+    def _settled(self, sightings: Sequence[_Sighting]) -> list[_Pass]:
+        """The passes, each where the two parts vanish next to the place, by Newton's
+        method, with how exactly that is known, over the sizes."""
+        if not sightings:
+            return []
+        pairs = np.array([(one.part, one.other) for one in sightings])
+        places = np.array([one.place for one in sightings])
         for _ in range(NEWTON_STEPS):
-            values = [tape.residuals(place[None])[0, 0] for tape in tapes]
-            rows = [tape.jacobians(place[None])[0, 0] for tape in tapes]
-            slopes = np.array(rows) * self.sizes
-            lengths = np.linalg.norm(slopes, axis=1)
-            if not np.all(lengths > 0.0):
-                return place, 1.0  # at a singular point of one of them
-            directions = slopes / lengths[:, None]
-            smallest = float(np.linalg.svd(directions)[1][-1])
-            step = np.linalg.lstsq(directions, np.array(values) / lengths, rcond=None)[
-                0
-            ]
-            place = place - self.sizes * step
-        size = 1.0 + float((np.abs(place) / self.sizes).max())
-        return place, ROUNDING * size / max(smallest, ROUNDING)
+            steps, smallest = self._newton_steps(pairs, places)
+            places -= self.sizes * steps
+        sizes = 1.0 + (np.abs(places) / self.sizes).max(axis=1)
+        errors = ROUNDING * sizes / np.maximum(smallest, ROUNDING)
+        return [
+            _Pass(one.part, one.number, one.s, one.other, place, float(error))
+            for one, place, error in zip(sightings, places, errors, strict=True)
+        ]
+
+    def _newton_steps(
+        self, pairs: np.ndarray, places: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Steps (k, n) over the sizes from places (k, n) to where pairs (k, 2) of parts
+        vanish, none where one of them is singular, and the sine (k,) of the angle between
+        the two, or less."""
+        values, rows = self._values_of(pairs, places)
+        slopes = rows * self.sizes
+        lengths = np.linalg.norm(slopes, axis=2)
+        is_plain = np.all(lengths > 0.0, axis=1)
+        directions = slopes[is_plain] / lengths[is_plain, :, None]
+        ahead = values[is_plain] / lengths[is_plain]
+        steps, smallest = np.zeros(places.shape), np.zeros(len(places))
+        steps[is_plain] = (np.linalg.pinv(directions) @ ahead[:, :, None])[:, :, 0]
+        smallest[is_plain] = np.linalg.svd(directions)[1][:, -1]
+        return steps, smallest
+
+    def _values_of(
+        self, pairs: np.ndarray, places: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The products of pairs (k, 2) of parts at places (k, n), and their slopes (k, 2,
+        n)."""
+        values = np.empty(pairs.shape)
+        rows = np.empty((*pairs.shape, places.shape[1]))
+        for number, part in enumerate(self.parts):
+            for side in range(2):
+                here = np.flatnonzero(pairs[:, side] == number)
+                if len(here):
+                    tape = part.tape.compiled
+                    values[here, side] = tape.residuals(places[here])[:, 0]
+                    rows[here, side] = tape.jacobians(places[here])[:, 0]
+        return values, rows
 
     def _met_at_points(self, one: int) -> set[tuple[int, int]]:
         """The pairs of a part, by its number, and others that may vanish at a singular
@@ -284,7 +331,7 @@ class _Union:
         clusters = self._clusters(passes)
         points = self._points(clusters, numbers)
         listed = [listed[k] for k in order]
-        traced = [self._traced(form) for form in listed]
+        traced = self._looked_along(listed)
         forms = _forms(self.problem, listed, traced, points)
         return replace(
             self.parts[0].atlas,
@@ -320,7 +367,7 @@ class _Union:
         return replace(
             known[0],
             interrupted=any(one.interrupted for one in known),
-            out_of_time=any(one.out_of_time for one in known) or self.left > 0,
+            out_of_time=any(one.out_of_time for one in known) or self._is_late,
             equations=self.problem.accuracy.equations,
             seconds=sum(one.seconds for one in known),
         )
@@ -329,23 +376,42 @@ class _Union:
         """The passes, those at one place together, the best known first."""
         if not passes:
             return []
-        from scipy.sparse.csgraph import connected_components
-
         in_order = sorted(passes, key=lambda one: one.error)
-        apart, unit = self._apart(in_order)
-        _, numbers = connected_components(is_one_crossing(apart, unit), directed=False)
-        clusters: dict[int, list[_Pass]] = defaultdict(list)
-        for number, each in zip(numbers.tolist(), in_order, strict=True):
-            clusters[number].append(each)
-        return list(clusters.values())
+        places = np.array([one.place for one in in_order])
+        errors = np.array([one.error for one in in_order])
+        tree = self._tree(places)
+        clusters = []
+        is_open = np.ones(len(places), dtype=bool)
+        reaches = is_one_crossing.threshold * (errors + errors[-1])
+        for k in range(len(places)):
+            if not is_open[k]:
+                continue
+            beside = tree.query_ball_point(tree.data[k], reaches[k], p=np.inf)
+            near = np.sort(np.array(beside))
+            near = near[is_open[near]]
+            apart = self._apart(places[near], places[k])
+            members = near[is_one_crossing(apart, errors[near] + errors[k])]
+            is_open[members] = False
+            clusters.append([in_order[member] for member in members.tolist()])
+        return clusters
 
-    def _apart(self, passes: Sequence[_Pass]) -> tuple[np.ndarray, np.ndarray]:
-        """How far passes are from each other (k, k), and how well that is known, over
-        the sizes."""
-        places = np.array([one.place for one in passes])
-        errors = np.array([one.error for one in passes])
-        gaps = self.problem.domain.difference(places[:, None], places[None])
-        return (np.abs(gaps) / self.sizes).max(axis=2), errors[:, None] + errors
+    def _tree(self, places: np.ndarray) -> cKDTree:
+        """The places (k, n) over the sizes, to be looked up by where they are."""
+        from scipy.spatial import cKDTree  # few searches need it
+
+        periods = self.problem.domain.periods
+        is_circle = np.isfinite(periods)
+        turns = np.where(is_circle, periods, 1.0)
+        within = np.where(is_circle, places % turns, places)
+        within = np.where(is_circle & (within >= turns), 0.0, within)
+        around = np.where(is_circle, turns / self.sizes, 0.0)
+        return cKDTree(within / self.sizes, boxsize=around)
+
+    def _apart(self, places: np.ndarray, others: np.ndarray) -> np.ndarray:
+        """How far places (k, n) are from others (k, n), over the sizes (k,)."""
+        gaps = self.problem.domain.difference(places, others)
+        apart: np.ndarray = (np.abs(gaps) / self.sizes).max(axis=1)
+        return apart
 
     def _crossings(
         self,
@@ -355,9 +421,11 @@ class _Union:
         """The points at which the passes of clusters meet."""
         if not clusters:
             return []
-        apart, _ = self._apart([cluster[0] for cluster in clusters])
-        np.fill_diagonal(apart, np.inf)
-        radii = np.minimum(LONGEST_RADIUS, 0.25 * apart.min(axis=1))
+        tree = self._tree(np.array([cluster[0].place for cluster in clusters]))
+        apart = tree.query(tree.data, k=2, p=np.inf)[0][
+            :, 1
+        ]  # infinite of a single one
+        radii = np.minimum(LONGEST_RADIUS, 0.25 * apart)
         return [
             self._crossing(cluster, float(radius), numbers)
             for cluster, radius in zip(clusters, radii, strict=True)
@@ -404,9 +472,19 @@ class _Union:
         unit: np.ndarray = tangents / np.linalg.norm(tangents, axis=1, keepdims=True)
         return unit
 
+    @property
+    def _is_late(self) -> bool:
+        return self.left > 0 or self.is_cut
+
     def _closure_gap(self) -> float:
         """By how much the product is missed where it vanishes nowhere."""
         return min(part.atlas.closure_gap for part in self.parts)
+
+    def _looked_along(self, forms: Sequence[Form]) -> list[TracedBranch]:
+        """What is seen along forms, as far as there is time."""
+        seen = made_in_time(lambda: [self._traced(form) for form in forms])
+        self.is_cut = seen is None
+        return [_not_looked_at(form) for form in forms] if seen is None else seen
 
     def _traced(self, form: Form) -> TracedBranch:
         """A form with what the singular value of the product does along it."""
@@ -453,7 +531,7 @@ class _Union:
     def _claims(self, known: Sequence[Completeness]) -> Iterator[Claim]:
         """What is claimed of the parts."""
         levels = [worst_level(one.claims) or Level.ESTIMATED for one in known]
-        if self.left:
+        if self._is_late:
             budget = float(self.parts[0].atlas.provenance.settings.budget)
             late = SearchClaim.FACTORS_LEFT
             yield late.claim(
@@ -489,11 +567,24 @@ class _Union:
         """Whether crossings are one."""
         if not clusters:
             return
-        apart, unit = self._apart([cluster[0] for cluster in clusters])
-        is_close = may_be_one_crossing(apart, unit)
-        close = (np.count_nonzero(is_close) - len(clusters)) // 2
+        places = np.array([cluster[0].place for cluster in clusters])
+        errors = np.array([cluster[0].error for cluster in clusters])
+        reach = may_be_one_crossing.threshold * 2.0 * float(errors.max())
+        pairs = self._tree(places).query_pairs(reach, p=np.inf, output_type="ndarray")
+        one, other = pairs.T
+        apart = self._apart(places[one], places[other])
+        close = np.count_nonzero(
+            may_be_one_crossing(apart, errors[one] + errors[other])
+        )
         if close:
             yield SearchDoubt.CROSSINGS_TOGETHER.doubt(count=int(close))
+
+
+def _not_looked_at(form: Form) -> TracedBranch:
+    """A form along which there was no time to look."""
+    return TracedBranch(
+        form.branch, form.profile, (np.empty(0), np.empty(0)), located=()
+    )
 
 
 def _renumbered(
