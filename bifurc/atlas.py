@@ -146,13 +146,13 @@ def samples_beyond_charts(surfaces: Sequence[Surface]) -> int:
     """How many of the solutions seen on surfaces of dimension 2 lie in no chart."""
     of_dimension = [surface for surface in surfaces if surface.dimension == 2]
     charted = [one.charts for one in of_dimension if one.charts is not None]
-    count = 0
-    for surface in of_dimension:
-        is_covered = np.zeros(len(surface.samples), dtype=bool)
-        for charts in charted:
-            is_covered |= charts.covers(surface.samples)
-        count += int(np.count_nonzero(~is_covered))
-    return count
+    if not of_dimension:
+        return 0
+    open_samples = np.concatenate([surface.samples for surface in of_dimension])
+    for charts in charted:
+        if len(open_samples):
+            open_samples = open_samples[~charts.covers(open_samples)]
+    return len(open_samples)
 
 
 @dataclass(frozen=True, eq=False)

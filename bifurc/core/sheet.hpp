@@ -134,7 +134,9 @@ public:
         slopes_.solve(jacobian, near, negligible, out.basis);
         const double steepest = straighten(out.basis);
         // where the plane is upright on the other one, no slopes say so
-        out.cosine = change_along(jacobian, out.basis) <= negligible ? 1.0 / steepest : 0.0;
+        // beside a rim of F it is not finite
+        const bool is_plane = std::isfinite(steepest) && steepest > 0.0;
+        out.cosine = is_plane && change_along(jacobian, out.basis) <= negligible ? 1.0 / steepest : 0.0;
         if (n_ > 2) find_weakest(jacobian, out);
         return out;
     }
@@ -168,7 +170,7 @@ private:
                 for (Index j = 0; j < plane.rows; ++j) change += jacobian(row, j) * plane(j, side);
                 square += change * change;
             }
-            largest = std::max(largest, square);
+            if (!(square <= largest)) largest = square;  // not a number is more than any
         }
         return std::sqrt(largest);
     }
@@ -633,7 +635,7 @@ private:
         for (Index i = 0; i < disk::rim; ++i) {
             double square = 0.0;
             for (Index j = 0; j < n_; ++j) square += (points_(i, j) - flat_(i, j)) * (points_(i, j) - flat_(i, j));
-            largest = std::max(largest, square);
+            if (!(square <= largest)) largest = square;  // not a number is more than any
         }
         return std::sqrt(largest);
     }
@@ -667,7 +669,8 @@ private:
             ab += slopes(j, 0) * slopes(j, 1);
             bb += slopes(j, 1) * slopes(j, 1);
         }
-        return 1.0 / std::sqrt(0.5 * (aa + bb) + std::hypot(0.5 * (aa - bb), ab));
+        const double largest = std::sqrt(0.5 * (aa + bb) + std::hypot(0.5 * (aa - bb), ab));
+        return largest > 0.0 ? 1.0 / largest : 0.0;  // no slopes where F' is not finite
     }
 
     const Equations& equations_;

@@ -227,3 +227,14 @@ def test_a_corner_of_the_bounds_that_is_cut_off_is_no_vertex(edge: float) -> Non
     area = np.sqrt(3) / 2 * ((4.0 - edge) ** 2 - 3 * (2.0 - edge) ** 2)
     assert charts.area == pytest.approx(area, rel=1e-12)
     assert charts.euler_characteristic == 1
+
+
+def test_no_chart_is_made_where_the_derivatives_are_no_numbers():
+    # F is zero for |x| <= pi / 2, where F' has no limit on the rim
+    problem = FunctionProblem(
+        lambda u: [np.arcsin(np.sin(u[0])) - u[0]], [(-10, 10)] * 2, names=["x", "y"]
+    )
+    charts = cover_surface(problem, np.array([[1.5, 0.0]]), charts=300)
+    distances = np.linalg.norm(charts.centers[:, None] - charts.centers, axis=2)
+    assert distances[~np.eye(len(charts), dtype=bool)].min() > 0.0
+    assert np.all(np.linalg.norm(charts.bases, axis=1) > 0.5)
