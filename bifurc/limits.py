@@ -35,7 +35,7 @@ SignalHandler = Callable[[int, FrameType | None], object] | int | None
 Arguments = ParamSpec("Arguments")
 Value = TypeVar("Value")
 
-GRACE = 0.2  # s after a deadline in which what asks for the time ends by itself
+GRACE = 0.1  # s after a deadline in which what asks for the time ends by itself
 AGAIN = 0.02  # s until it is tried again to cut off, or to raise
 LASTING = 500  # rows of a matrix whose decomposition takes a tenth of a second
 
