@@ -14,6 +14,7 @@ solutions lie on such a stretch, and where, doubles do not tell.
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
@@ -26,13 +27,15 @@ from bifurc.decisions import (
     is_weakly_isolated,
     is_without_equation,
     may_be_crossed,
+    may_be_mobile,
 )
+from bifurc.equations.rims import on_rims
 from bifurc.equations.system import ScaledTape
 from bifurc.function_problem import EquationProblem
 from bifurc.numerics.blur import ROUNDING
 from bifurc.numerics.corrector import limited
 from bifurc.numerics.null_spaces import correct_to_valley, decompose, null_spaces
-from bifurc.numerics.singular_values import singular_values
+from bifurc.numerics.singular_values import factors_of, singular_values
 from bifurc.problem import Problem
 from bifurc.seeding import start_region
 from bifurc.seeds import Seeds
@@ -206,6 +209,7 @@ def _hidden_stretch(problem: Problem, solution: np.ndarray) -> _Stretch:
 
 IN_A_BOUND = 8  # starts in each bound, and on each rim, of so many unknowns at most
 MOST_UNKNOWNS = 8
+MOST_RIMS = 50  # on which solutions along them are looked for
 
 
 def solutions_in_bounds(problem: Problem, rng: np.random.Generator) -> np.ndarray:
@@ -230,4 +234,30 @@ def solutions_in_bounds(problem: Problem, rng: np.random.Generator) -> np.ndarra
     for points, gaps in ends:
         is_inside = problem.domain.are_inside(points)
         found = np.concatenate([found, points[is_start_solved(gaps) & is_inside]])
+    return found
+
+
+def solutions_along_rims(problem: Problem, rng: np.random.Generator) -> np.ndarray:
+    """Solutions (k, n) within the region on rims of the equations, reached from a few
+    starts for each rim, that are no mere ends of others: a rim is one condition more,
+    and does not add to the rank there. None of equations that are not recorded. F' is
+    not finite there, and a search does not end on them."""
+    found = np.empty((0, problem.n))
+    if not isinstance(problem, EquationProblem) or problem.n > MOST_UNKNOWNS:
+        return found
+    tape = problem.recording.tape
+    if tape is None:
+        return found
+    low, high = start_region(problem).T
+    for equations in islice(on_rims(tape), MOST_RIMS):
+        starts = rng.uniform(low, high, (IN_A_BOUND, problem.n))
+        on_rim = ScaledTape(equations, problem.magnitude, problem.domain)
+        points, gaps = on_rim.project(starts)
+        is_there = is_start_solved(gaps) & problem.domain.are_inside(points)
+        points = points[is_there]
+        rows = on_rim.jacobians(points)
+        lengths = np.linalg.norm(rows, axis=2, keepdims=True)
+        rows = rows / np.where(lengths > 0.0, lengths, 1.0)
+        is_along = may_be_mobile(factors_of(rows).sigma[:, -1])
+        found = np.concatenate([found, points[is_along]])
     return found

@@ -39,6 +39,7 @@ from bifurc.search.answer.completeness import SearchDoubt
 from bifurc.search.findings import Findings
 from bifurc.search.own_units.unit_problem import sheets_beside
 from bifurc.search.records import RigidAssembly, TracedBranch
+from bifurc.search.solutions import solutions_along_rims
 from bifurc.search.strands import missing_crossings
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
@@ -185,6 +186,9 @@ def doubts_of_findings(
     on_rim = int(np.count_nonzero(are_on_rim(problem, findings.rigid.values())))
     if on_rim:
         yield SearchDoubt.ON_RIM.doubt(count=on_rim)
+    missing = _missing_along_rims(problem, findings)
+    if missing:
+        yield SearchDoubt.ALONG_RIM.doubt(count=missing)
     unfollowed = len(findings.components.notes.unfollowed)
     if unfollowed:
         yield SearchDoubt.SINGULAR_CURVES.doubt(count=unfollowed)
@@ -201,6 +205,17 @@ def are_on_rim(problem: Problem, assemblies: Collection[RigidAssembly]) -> np.nd
     reach = RIM * problem.domain.scale
     rough = [not _is_smooth_within(problem, one.place, reach) for one in assemblies]
     return np.array(rough, dtype=bool)
+
+
+def _missing_along_rims(problem: Problem, findings: Findings) -> int:
+    """How many solutions of some along rims of the equations lie on no known form."""
+    points = solutions_along_rims(problem, np.random.default_rng(0))
+    reach = RIM * problem.domain.scale
+    is_known = np.zeros(len(points), dtype=bool)
+    for branch in findings.branches:
+        distances, _ = branch.nearest(points, reach)
+        is_known |= distances < reach
+    return int(np.count_nonzero(~is_known))
 
 
 def _are_single(problem: Problem, assemblies: Sequence[RigidAssembly]) -> np.ndarray:
