@@ -237,27 +237,35 @@ def solutions_in_bounds(problem: Problem, rng: np.random.Generator) -> np.ndarra
     return found
 
 
-def solutions_along_rims(problem: Problem, rng: np.random.Generator) -> np.ndarray:
-    """Solutions (k, n) within the region on rims of the equations, reached from a few
-    starts for each rim, that are no mere ends of others: a rim is one condition more,
-    and does not add to the rank there. None of equations that are not recorded. F' is
-    not finite there, and a search does not end on them."""
-    found = np.empty((0, problem.n))
-    if not isinstance(problem, EquationProblem) or problem.n > MOST_UNKNOWNS:
-        return found
-    tape = problem.recording.tape
-    if tape is None:
-        return found
+class OnRims(NamedTuple):
+    """Solutions ``points`` (k, n) on rims of the equations, where F' is not finite, and
+    whether there ``are_others`` (k,) along the rim beside each."""
+
+    points: np.ndarray
+    are_others: np.ndarray
+
+
+def solutions_on_rims(problem: Problem, rng: np.random.Generator) -> OnRims:
+    """Solutions within the region on rims of the equations, reached from a few starts
+    for each rim; none of equations that are not recorded.
+
+    A rim is one condition more: where it does not add to the rank, what is solved there
+    is no mere end of a curve.
+    """
+    points, others = [np.empty((0, problem.n))], [np.empty(0, dtype=bool)]
+    tape = None
+    if isinstance(problem, EquationProblem) and problem.n <= MOST_UNKNOWNS:
+        tape = problem.recording.tape
+    tapes = [] if tape is None else islice(on_rims(tape), MOST_RIMS)
     low, high = start_region(problem).T
-    for equations in islice(on_rims(tape), MOST_RIMS):
+    for equations in tapes:
         starts = rng.uniform(low, high, (IN_A_BOUND, problem.n))
         on_rim = ScaledTape(equations, problem.magnitude, problem.domain)
-        points, gaps = on_rim.project(starts)
-        is_there = is_start_solved(gaps) & problem.domain.are_inside(points)
-        points = points[is_there]
-        rows = on_rim.jacobians(points)
+        ends, gaps = on_rim.project(starts)
+        ends = ends[is_start_solved(gaps) & problem.domain.are_inside(ends)]
+        rows = on_rim.jacobians(ends)
         lengths = np.linalg.norm(rows, axis=2, keepdims=True)
         rows = rows / np.where(lengths > 0.0, lengths, 1.0)
-        is_along = may_be_mobile(factors_of(rows).sigma[:, -1])
-        found = np.concatenate([found, points[is_along]])
-    return found
+        points.append(ends)
+        others.append(may_be_mobile(factors_of(rows).sigma[:, -1]))
+    return OnRims(np.concatenate(points), np.concatenate(others))

@@ -146,3 +146,8 @@ def test_a_rim_of_a_factor_of_a_sum_is_in_doubt():
 def test_curves_that_end_or_turn_on_a_rim_leave_nothing_missing_there(function):
     _, doubts = doubts_of(function)
     assert "along rim" not in doubts
+
+
+def test_forms_that_meet_where_a_root_has_no_slope_are_in_doubt():
+    atlas, doubts = doubts_of(lambda x, y: (np.cbrt(x) - y) * y)
+    assert len(atlas.bifurcations) == 1 or "meeting on rim" in doubts
