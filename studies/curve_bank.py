@@ -35,8 +35,9 @@ from studies.study import Study, require_known
 BANK = Path(__file__).parent.parent / "data" / "curves.json"
 SCALES = (1e-6, 1e-3, 10.0, 1e3, 1e6)
 SLOW = 5.0  # s, from which on an answer is listed
-NAMES = ("sin", "cos", "tan", "asin", "acos", "acosh", "exp", "log", "sqrt", "pi")
-FUNCTIONS = {name: getattr(np, name) for name in NAMES}
+NAMES = ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "tanh", "acosh")
+OTHERS = ("exp", "log", "sqrt", "cbrt", "pi")
+FUNCTIONS = {name: getattr(np, name) for name in (*NAMES, *OTHERS)}
 
 
 class Answer(NamedTuple):

@@ -29,7 +29,8 @@ class DiagramPoint:
     """A fold, a Hopf point or an event at arclength ``s`` of a form, ``u`` (n,) there.
 
     ``label`` is the name of the event; at a Hopf point what becomes of the pair,
-    "becomes unstable as p grows" or "becomes stable as p grows"; empty at a fold. ``value`` is the second
+    "becomes unstable as p grows", "becomes stable as p grows", or "where p turns back" at
+    a fold; empty at a fold itself. ``value`` is the second
     derivative of the parameter in the arclength at a fold, the angular frequency at a
     Hopf point, and the value that the function takes at an event. ``error`` is the
     arclength to either side within which rounding hides where it is, 0 where that is no

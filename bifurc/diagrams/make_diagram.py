@@ -7,6 +7,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 from bifurc.atlas import Atlas
+from bifurc.branch import Branch
 from bifurc.checks import UnknownName, check_type, index_of_unknown
 from bifurc.decisions import is_same_point
 from bifurc.diagrams.diagram import (
@@ -76,7 +77,7 @@ def diagram_of(
     has_stability = is_flow and bool(atlas.forms) and has_square_rest(problem)
     along = _stability(problem, atlas, index, turnings.folds, has_stability)
     hopf_points = [
-        _hopf_point(atlas, index, form, place)
+        _hopf_point(atlas, index, form, place, turnings)
         for form, one in enumerate(along)
         for place in one.hopf_places
     ]
@@ -127,21 +128,45 @@ def _stability(
     return along
 
 
-def _hopf_point(atlas: Atlas, index: int, form: int, place: HopfPlace) -> DiagramPoint:
+def _hopf_point(
+    atlas: Atlas,
+    index: int,
+    form: int,
+    place: HopfPlace,
+    turnings: Turnings,
+) -> DiagramPoint:
     branch = atlas.forms[form].branch
     s = place.s % branch.length if branch.closed else place.s
     grows = branch(s, 1)[index] >= 0.0
     after = "unstable" if place.is_unstable_after == grows else "stable"
     label = f"becomes {after} as {atlas.names[index]} grows"
-    return DiagramPoint("", Kind.HOPF, form, s, branch(s), place.frequency, label)
+    if any(_is_at(fold, form, s, branch) for fold in turnings.folds):
+        label = f"where {atlas.names[index]} turns back"
+    return DiagramPoint(
+        name="",
+        kind=Kind.HOPF,
+        form=form,
+        s=s,
+        u=branch(s),
+        value=place.frequency,
+        label=label,
+        error=place.error,
+    )
+
+
+def _is_at(point: DiagramPoint, form: int, s: float, branch: Branch) -> bool:
+    """Whether a point is at arclength ``s`` of form number ``form``, to 1e-6 of it."""
+    apart = abs(point.s - s)
+    if branch.closed:
+        apart = min(apart, branch.length - apart)
+    return point.form == form and is_same_point(apart, branch.length)
 
 
 def _double_hopf_points(atlas: Atlas, points: Sequence[DiagramPoint]) -> Iterator[str]:
     """What is to be said of Hopf points, in the order of their names, at one place."""
     of_kind = [point for point in points if point.kind is Kind.HOPF]
     for one, other in pairwise(of_kind):
-        unit = atlas.forms[one.form].branch.length
-        if one.form == other.form and is_same_point(abs(one.s - other.s), unit):
+        if _is_at(one, other.form, other.s, atlas.forms[other.form].branch):
             places = f"{one.name} and {other.name}"
             yield f"two pairs cross at one place, to 1e-6 of the form: {places}"
 

@@ -8,7 +8,7 @@ zero: the number of unstable ones changes at Hopf points only.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -28,6 +28,8 @@ UNEVEN = (
     0.4631  # of the width between two places, where the next one is: on no symmetry
 )
 CLEARLY = 0.3  # of the distance to the next: an eigenvalue moved from where it was
+NEAREST = 1e-14  # of a form: nearer to a Hopf point rounding of its place decides
+FARTHEST = 0.1  # of a form: an eigenvalue hidden as far as that does not cross there
 RATE = 1e-10  # of a form, over which it is seen how fast eigenvalues move
 STRIDE = 5  # of the nodes of a piece at which those of a large problem are computed
 RESIDUAL = 1e-12  # over F' along a form: how well F = 0 holds there
@@ -40,12 +42,14 @@ SEED = 1
 
 
 class HopfPlace(NamedTuple):
-    """An arclength at which a pair of eigenvalues +-i ``frequency`` is imaginary; from
-    there on it is unstable where ``is_unstable_after``, and before that else."""
+    """An arclength at which a pair of eigenvalues +-i ``frequency`` is imaginary, to
+    ``error``; from there on it is unstable where ``is_unstable_after``, and before that
+    else."""
 
     s: float
     frequency: float
     is_unstable_after: bool
+    error: float
 
 
 @dataclass(frozen=True)
@@ -73,24 +77,17 @@ def stability_along(
     ends = _ends(branch, cuts)
     nodes = _nodes(spectrum.problem, branch)
     imaginary = _imaginary_places(spectrum)
+    views = [
+        _view(spectrum, start, end, _places_between(start, end, nodes, imaginary))
+        for start, end in pairwise(ends)
+    ]
+    crossings = _crossings(spectrum, views)
+    places = [place.s + turn * branch.length for place in crossings for turn in (-1, 0)]
     stretches: list[Stretch] = []
-    places: list[HopfPlace] = []
     for start, end in pairwise(ends):
-        inner = _places_between(start, end, nodes, imaginary)
-        counts = spectrum.counts(inner)
-        is_clear = counts.on_axis == 0
-        even = spectrum.counts(start + INNER * (end - start))
-        if 2 * np.count_nonzero(even.on_axis) > len(INNER):
-            number = int(np.median(even.unstable))
-            stability = Stability.UNSTABLE if number else Stability.NEUTRAL
-            stretches.append(Stretch(form, start, end, stability, number))
-            continue
-        clear, numbers = inner[is_clear], counts.unstable[is_clear]
-        crossings = _crossings(spectrum, clear, numbers)
-        places += crossings
-        between = sorted({place.s for place in crossings})
+        between = sorted({s for s in places if start < s < end})
         stretches += _between(spectrum, form, [start, *between, end])
-    hopf_places = [place for place in places if place.frequency > 0.0]
+    hopf_places = [place for place in crossings if place.frequency > 0.0]
     return FormStability(stretches, hopf_places)
 
 
@@ -100,7 +97,16 @@ def _imaginary_places(spectrum: Spectrum) -> np.ndarray:
     branch = spectrum.branch
     if spectrum.problem.n <= 2 or spectrum.problem.domain.is_large:
         return np.empty(0)
-    zeros = zeros_along(branch, spectrum.pair_product, is_measured=False)
+    ratios = spectrum.pair_sums(branch.places(NODES).ravel())
+    neutral = int(np.median(np.count_nonzero(ratios == 0.0, axis=1)))
+
+    def product_of_others(s: np.ndarray) -> np.ndarray:
+        sums = spectrum.pair_sums(s)
+        order = np.argsort(np.abs(sums), axis=1)[:, neutral:]
+        others = np.take_along_axis(sums, order, axis=1)
+        return np.asarray(np.prod(others, axis=1).real)
+
+    zeros = zeros_along(branch, product_of_others, is_measured=False)
     places = np.array([s for zero in zeros.zeros for s in (zero.low, zero.high)])
     if branch.closed:
         places = np.concatenate([places, places + branch.length])
@@ -149,36 +155,87 @@ def _places_between(
     return np.unique(np.concatenate([nodes[is_inside], inner, middles]))
 
 
-def _crossings(
-    spectrum: Spectrum, places: np.ndarray, numbers: np.ndarray
-) -> list[HopfPlace]:
-    """Where eigenvalues cross the axis, in order, between ``places`` (k,) at which so
-    many are unstable as ``numbers`` (k,) says.
+class _View(NamedTuple):
+    """What is seen of the eigenvalues along a stretch: so many are ``neutral``, on the
+    imaginary axis, and at ``places`` (k,) no others; there so many are unstable as
+    ``numbers`` (k,) says."""
 
-    Of a large problem only where that number changes: two that cross in opposite
-    directions between two of the places leave it as it is.
+    places: np.ndarray
+    numbers: np.ndarray
+    neutral: int
+
+
+def _view(spectrum: Spectrum, start: float, end: float, places: np.ndarray) -> _View:
+    """What is seen of a stretch at ``places`` (k,)."""
+    even = spectrum.counts(start + INNER * (end - start))
+    neutral = int(np.median(even.on_axis))
+    counts = spectrum.counts(places)
+    is_clear = counts.on_axis == neutral
+    return _View(places[is_clear], counts.unstable[is_clear], neutral)
+
+
+class _Row(NamedTuple):
+    """Places (k,) of all stretches of a form in order, the numbers (k,) of unstable and
+    of ``neutral`` eigenvalues there, and the number (k,) of each ``stretch``."""
+
+    places: np.ndarray
+    numbers: np.ndarray
+    neutral: np.ndarray
+    stretch: np.ndarray
+
+
+def _in_a_row(branch: Branch, views: Sequence[_View]) -> _Row:
+    """The places of the ``views`` of all stretches, of a closed form with the first of
+    them once more after a turn."""
+    views = [one for one in views if len(one.places)]
+    if branch.closed and views:
+        first = views[0]
+        once_more = first.places[:1] + branch.length
+        views.append(_View(once_more, first.numbers[:1], first.neutral))
+    counts = [len(one.places) for one in views]
+    return _Row(
+        places=np.concatenate([one.places for one in views] or [np.empty(0)]),
+        numbers=np.concatenate([one.numbers for one in views] or [np.empty(0)]),
+        neutral=np.repeat([one.neutral for one in views], counts),
+        stretch=np.repeat(np.arange(len(views)), counts),
+    )
+
+
+def _crossings(spectrum: Spectrum, views: Sequence[_View]) -> list[HopfPlace]:
+    """Where eigenvalues cross the axis, in order, between the places of the ``views`` of
+    all stretches of a form.
+
+    Of a large problem only where the number of unstable ones changes, by more than the
+    one that a fold or a crossing of forms makes: two that cross in opposite directions
+    between two of the places leave it as it is.
     """
-    is_asked = np.diff(numbers) != 0
-    if not spectrum.problem.domain.is_large:
-        is_asked[:] = True
+    row = _in_a_row(spectrum.branch, views)
+    is_cut = np.diff(row.stretch) != 0
+    is_asked = np.diff(row.neutral) == 0
+    if spectrum.problem.domain.is_large:
+        is_asked &= np.abs(np.diff(row.numbers)) > is_cut
     crossings: list[HopfPlace] = []
     known: dict[int, MovingSet] = {}
     for k in np.flatnonzero(is_asked).tolist():
         for number in (k, k + 1):
             if number not in known:
-                known[number] = spectrum.moving(float(places[number]))
-        crossings += _between_sets(spectrum, known.pop(k), known[k + 1])
+                s, count = float(row.places[number]), int(row.neutral[number])
+                known[number] = spectrum.moving(s, count)
+        found = _between_sets(spectrum, known.pop(k), known[k + 1])
+        # real ones cross at folds and singular points
+        crossings += [one for one in found if one.frequency > 0.0 or not is_cut[k]]
     return crossings
 
 
 class MovingSet(NamedTuple):
     """The eigenvalues (q,) at arclength ``s``, and their derivatives (q,) by it as seen
-    ``before`` and ``after``."""
+    ``before`` and ``after``; those that are ``neutral`` (q,) stay on the axis."""
 
     s: float
     values: np.ndarray
     before: np.ndarray
     after: np.ndarray
+    neutral: np.ndarray
 
 
 def _between_sets(
@@ -191,11 +248,16 @@ def _between_sets(
     if width > NARROW * spectrum.branch.length:
         if not np.any(moved.has_crossed) and not moved.is_open:
             return []
-        middle = spectrum.moving(low.s + UNEVEN * width)
+        count = int(np.count_nonzero(low.neutral))
+        middle = spectrum.moving(low.s + UNEVEN * width, count)
         before = _between_sets(spectrum, low, middle)
         return [*before, *_between_sets(spectrum, middle, high)]
     places = []
+    crossed = moved.values[moved.has_crossed]
     for k in np.flatnonzero(moved.has_crossed & (moved.values.imag >= 0.0)):
+        if moved.values[k].conj() not in crossed:
+            # a real one that meets another between the places
+            continue
         slope = (moved.values[k] - low.values[k]) / width
         s = low.s - float(low.values[k].real / slope.real)
         value = low.values[k] + (s - low.s) * slope
@@ -227,7 +289,10 @@ def _moved(low: MovingSet, high: MovingSet) -> _Moved:
     partners = _partners(distances)
     values = high.values[partners]
     has_crossed = (low.values.real > 0.0) != (values.real > 0.0)
-    return _Moved(values, has_crossed, _is_open(distances, partners, high.values))
+    has_crossed &= ~(low.neutral & high.neutral[partners])
+    # a neutral one is on no side
+    side = np.where(high.neutral, 0.0, np.sign(high.values.real))
+    return _Moved(values, has_crossed, _is_open(distances, partners, side))
 
 
 def _partners(distances: np.ndarray) -> np.ndarray:
@@ -241,12 +306,11 @@ def _partners(distances: np.ndarray) -> np.ndarray:
     return partners
 
 
-def _is_open(distances: np.ndarray, partners: np.ndarray, values: np.ndarray) -> bool:
-    """Whether one of the eigenvalues may as well be one of the ``values`` (q,) on the
-    other side of the axis: it is at ``distances`` (q, q) from them, and is taken for
-    that of its ``partners`` (q,)."""
-    side = values.real > 0.0
-    is_other = side[partners][:, None] != side
+def _is_open(distances: np.ndarray, partners: np.ndarray, side: np.ndarray) -> bool:
+    """Whether one of the eigenvalues may as well be one on the other ``side`` (q,) of
+    the axis: it is at ``distances`` (q, q) from them, and is taken for that of its
+    ``partners`` (q,)."""
+    is_other = side[partners][:, None] * side < 0.0
     nearest = np.where(is_other, distances, np.inf).min(axis=1)
     own = distances[np.arange(len(partners)), partners]
     return bool(np.any(own > CLEARLY * nearest))
@@ -263,18 +327,41 @@ def _hopf_place(
     if is_real_crossing(frequency, max(float(errors[0, nearest]), SMALLEST)):
         frequency = 0.0
     closer = s - float(values[0, nearest].real / slope.real)
-    return HopfPlace(closer, frequency, bool(slope.real > 0.0))
+    error = _hidden_about(spectrum, closer, value) if frequency else 0.0
+    return HopfPlace(closer, frequency, bool(slope.real > 0.0), error)
+
+
+def _hidden_about(spectrum: Spectrum, s: float, value: complex) -> float:
+    """The arclength to either side of ``s`` within which rounding hides on which side
+    of the axis the eigenvalue next to a ``value`` is; to a factor of 4."""
+    length = spectrum.branch.length
+    width = NEAREST * length
+    while width < FARTHEST * length:
+        beside = spectrum.with_errors(s + width * np.array([-1.0, 1.0]))
+        nearest = np.abs(beside.values - value).argmin(axis=1)[:, None]
+        if not np.any(np.take_along_axis(beside.is_on_axis, nearest, axis=1)):
+            break
+        width *= 4.0
+    return 0.0 if width == NEAREST * length else width
 
 
 def _between(spectrum: Spectrum, form: int, ends: Sequence[float]) -> list[Stretch]:
     """The stretches between consecutive ``ends``, on each of which the number of
-    unstable eigenvalues does not change."""
-    stretches = []
-    for start, end in pairwise(ends):
-        inner = start + INNER * (end - start)
-        number = int(np.median(spectrum.counts(inner).unstable))
-        stability = Stability.UNSTABLE if number else Stability.STABLE
+    unstable eigenvalues does not change; where rounding hides it between two of them,
+    these are one."""
+    views = [spectrum.counts(a + INNER * (b - a)) for a, b in pairwise(ends)]
+    neutral = min(int(np.median(view.on_axis)) for view in views)
+    stretches: list[Stretch] = []
+    start = ends[0]
+    for view, end in zip(views, ends[1:], strict=True):
+        on_axis, number = int(np.median(view.on_axis)), int(np.median(view.unstable))
+        if on_axis > neutral:
+            continue
+        quiet = Stability.NEUTRAL if on_axis else Stability.STABLE
+        stability = Stability.UNSTABLE if number else quiet
         stretches.append(Stretch(form, start, end, stability, number))
+        start = end
+    stretches[-1] = replace(stretches[-1], end=ends[-1])
     return stretches
 
 
@@ -348,17 +435,23 @@ class Spectrum:
         unstable = (eigenvalues.values.real > 0.0) & ~on_axis
         return Counts(unstable.sum(axis=1), on_axis.sum(axis=1))
 
-    def moving(self, s: float) -> MovingSet:
+    def moving(self, s: float, neutral: int) -> MovingSet:
         """The eigenvalues at an arclength and how fast they move, as far as that is
-        seen next to it."""
+        seen next to it; so many as are ``neutral`` are those next to the axis."""
         step = RATE * self.branch.length
         former, here, later = self.eigenvalues(s + step * np.array([-1.0, 0.0, 1.0]))
+        is_neutral = np.zeros(len(here), dtype=bool)
+        if neutral:
+            values, errors = self.with_errors(np.array([s]))
+            here = values[0]
+            parts = np.abs(here.real) / np.maximum(errors[0], SMALLEST)
+            is_neutral[np.argsort(parts)[:neutral]] = True
         before = here - former[_partners(np.abs(here[:, None] - former))]
         after = later[_partners(np.abs(here[:, None] - later))] - here
-        return MovingSet(s, here, before / step, after / step)
+        return MovingSet(s, here, before / step, after / step, is_neutral)
 
-    def pair_product(self, s: np.ndarray) -> np.ndarray:
-        """The product (k,) over all pairs of eigenvalues of their sum over their sizes:
+    def pair_sums(self, s: np.ndarray) -> np.ndarray:
+        """The sums of any two eigenvalues over their sizes (k, pairs): their product is
         zero where a pair is imaginary (Guckenheimer, Myers and Sturmfels 1997), or two
         real ones are opposite."""
         values, errors = self.with_errors(s)
@@ -367,8 +460,8 @@ class Spectrum:
         sizes = np.abs(values[:, first]) + np.abs(values[:, second])
         units = np.maximum(errors[:, first] + errors[:, second], SMALLEST)
         sums[is_on_axis(np.abs(sums), units)] = 0.0
-        ratios = sums / np.maximum(sizes, SMALLEST)
-        return np.asarray(np.prod(ratios, axis=1).real)
+        ratios: np.ndarray = sums / np.maximum(sizes, SMALLEST)
+        return ratios
 
     def _rest(self, jacobians: np.ndarray) -> np.ndarray:
         """F' without the parameter (k, q, q)."""

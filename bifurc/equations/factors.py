@@ -124,7 +124,7 @@ def polynomial_factors(tape: Tape, rows: Sequence[int], region: np.ndarray) -> F
 def irreducible_factors(tape: Tape, region: np.ndarray) -> Factors | None:
     """The factors of one equation of which none is a product any more, as far as it is
     written so or a polynomial, over the rational numbers, shows it in a ``region`` (n, 2);
-    None where their product is not the equation."""
+    None where their product is not the equation, or one is zero on a rim."""
     written = written_factors(tape)
     if tape.m != 1 or not written.are_plain:
         return None
@@ -141,7 +141,9 @@ def irreducible_factors(tape: Tape, region: np.ndarray) -> Factors | None:
             parts = {slots[output]: 1}  # as it was written
         for part, multiplicity in parts.items():
             found[part] += power * multiplicity
-    return _factors(writer, [(0, slot, power) for slot, power in found.items()])
+    factors = _factors(writer, [(0, slot, power) for slot, power in found.items()])
+    # what is zero on a rim of its own has no gradient there
+    return factors if written_factors(factors.tape).are_plain else None
 
 
 def _factors_with(

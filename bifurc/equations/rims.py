@@ -9,7 +9,7 @@ a root in one of its terms, sqrt(g) = h, is g = h^2 where h is not negative.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -161,6 +161,31 @@ _INTERVALS: Mapping[Operation, tuple[float, float]] = {
     Operation.ACOSH: (1.0, math.inf),
     Operation.ATANH: (-1.0, 1.0),
 }
+
+
+def on_rims(tape: Tape) -> Iterator[Tape]:
+    """The equations on each of their rims: with the value there in the place of the
+    function, and last what is zero on the rim."""
+    operations = tape.operations.tolist()
+    for slot, operation in enumerate(operations):
+        exponent = float(tape.constants[slot])
+        for value, argument in _ends(Operation(operation), exponent).items():
+            writer = TapeWriter(tape.n)
+            slots = tape.write_on(writer, values={slot: value})
+            left = slots.get(int(tape.operands[slot, 0]))
+            if left is not None and slot in slots:
+                outputs = [slots[output] for output in tape.outputs.tolist()]
+                rim = writer.add(left, writer.constant(-argument))
+                yield writer.tape([*outputs, rim])
+
+
+def _ends(operation: Operation, exponent: float) -> Mapping[float, float]:
+    """The values of an operation on its rims, and its arguments there."""
+    is_odd_root = operation is Operation.CBRT
+    is_power = operation is Operation.POWER and not exponent.is_integer()
+    if is_odd_root or (is_power and exponent > 0.0):
+        return {0.0: 0.0}
+    return _ENDS.get(operation, {})
 
 
 # --- what is zero on a rim ------------------------------------------------------------

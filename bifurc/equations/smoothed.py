@@ -18,7 +18,7 @@ from numpy.polynomial.chebyshev import chebvander
 from bifurc.decisions import is_left_by_noise, may_be_left_by_noise
 from bifurc.equations.tape import Tape, TapeWriter
 
-DEGREES = (1, 2, 3, 4, 6, 8, 10, 12)
+DEGREES = (1, 2, 3, 4, 6, 8, 10, 12, 16, 20)
 MOST_TERMS = 300  # of a polynomial
 PER_TERM = 5  # values that are fitted
 OTHERS = 50  # values at which a fit is tried out

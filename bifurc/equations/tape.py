@@ -245,12 +245,19 @@ class Tape:
         return writer.tape(outputs)
 
     def write_on(
-        self, writer: TapeWriter, unknowns: Sequence[int] | None = None
+        self,
+        writer: TapeWriter,
+        unknowns: Sequence[int] | None = None,
+        values: Mapping[int, float] | None = None,
     ) -> dict[int, int]:
         """Write the equations on another tape, in terms of its slots ``unknowns`` (n,)
-        or else its unknowns; where each slot of this one stands there."""
+        or else its unknowns, and with ``values`` for what stands in some slots; where
+        each slot of this one stands there."""
         slots: dict[int, int] = {}
         for slot, (operation, left, right, constant) in self._program:
+            if values is not None and slot in values:
+                slots[slot] = writer.constant(values[slot])
+                continue
             if operation is Operation.UNKNOWN and unknowns is not None:
                 slots[slot] = unknowns[left]
                 continue

@@ -21,7 +21,7 @@ from bifurc.diagrams.diagram import Diagram
 from bifurc.diagrams.events import EventRequests, events_of
 from bifurc.diagrams.make_diagram import diagram_of, named_points
 from bifurc.errors import ProblemError
-from bifurc.function_problem import FunctionProblem
+from bifurc.function_problem import EquationProblem, FunctionProblem
 from bifurc.limits import (
     CutOff,
     Deadline,
@@ -269,7 +269,10 @@ def _explored_in_units(own: UnitProblem, request: _Request) -> Atlas:
 
 
 def _in_noise(problem: Problem, request: _Request) -> _Request:
-    """The request with curves followed no closer than values of a problem are good."""
+    """The request with curves followed no closer than values of a problem are good; a
+    polynomial next to them is as exact as any."""
+    if isinstance(problem, EquationProblem) and problem.recording.tape is not None:
+        return request
     tolerance = min(PIECES_IN_NOISE * problem.accuracy.noise, LOOSEST)
     tracing = request.settings.tracing
     if tolerance <= tracing.tolerance:

@@ -14,6 +14,7 @@ solutions lie on such a stretch, and where, doubles do not tell.
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
@@ -26,13 +27,15 @@ from bifurc.decisions import (
     is_weakly_isolated,
     is_without_equation,
     may_be_crossed,
+    may_be_mobile,
 )
+from bifurc.equations.rims import on_rims
 from bifurc.equations.system import ScaledTape
 from bifurc.function_problem import EquationProblem
 from bifurc.numerics.blur import ROUNDING
 from bifurc.numerics.corrector import limited
 from bifurc.numerics.null_spaces import correct_to_valley, decompose, null_spaces
-from bifurc.numerics.singular_values import singular_values
+from bifurc.numerics.singular_values import factors_of, singular_values
 from bifurc.problem import Problem
 from bifurc.seeding import start_region
 from bifurc.seeds import Seeds
@@ -206,6 +209,7 @@ def _hidden_stretch(problem: Problem, solution: np.ndarray) -> _Stretch:
 
 IN_A_BOUND = 8  # starts in each bound, and on each rim, of so many unknowns at most
 MOST_UNKNOWNS = 8
+MOST_RIMS = 50  # on which solutions along them are looked for
 
 
 def solutions_in_bounds(problem: Problem, rng: np.random.Generator) -> np.ndarray:
@@ -231,3 +235,37 @@ def solutions_in_bounds(problem: Problem, rng: np.random.Generator) -> np.ndarra
         is_inside = problem.domain.are_inside(points)
         found = np.concatenate([found, points[is_start_solved(gaps) & is_inside]])
     return found
+
+
+class OnRims(NamedTuple):
+    """Solutions ``points`` (k, n) on rims of the equations, where F' is not finite, and
+    whether there ``are_others`` (k,) along the rim beside each."""
+
+    points: np.ndarray
+    are_others: np.ndarray
+
+
+def solutions_on_rims(problem: Problem, rng: np.random.Generator) -> OnRims:
+    """Solutions within the region on rims of the equations, reached from a few starts
+    for each rim; none of equations that are not recorded.
+
+    A rim is one condition more: where it does not add to the rank, what is solved there
+    is no mere end of a curve.
+    """
+    points, others = [np.empty((0, problem.n))], [np.empty(0, dtype=bool)]
+    tape = None
+    if isinstance(problem, EquationProblem) and problem.n <= MOST_UNKNOWNS:
+        tape = problem.recording.tape
+    tapes = [] if tape is None else islice(on_rims(tape), MOST_RIMS)
+    low, high = start_region(problem).T
+    for equations in tapes:
+        starts = rng.uniform(low, high, (IN_A_BOUND, problem.n))
+        on_rim = ScaledTape(equations, problem.magnitude, problem.domain)
+        ends, gaps = on_rim.project(starts)
+        ends = ends[is_start_solved(gaps) & problem.domain.are_inside(ends)]
+        rows = on_rim.jacobians(ends)
+        lengths = np.linalg.norm(rows, axis=2, keepdims=True)
+        rows = rows / np.where(lengths > 0.0, lengths, 1.0)
+        points.append(ends)
+        others.append(may_be_mobile(factors_of(rows).sigma[:, -1]))
+    return OnRims(np.concatenate(points), np.concatenate(others))

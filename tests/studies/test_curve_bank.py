@@ -49,11 +49,17 @@ SAMPLE = [
     ("fold and three events at one place", "shifted"),
     ("two Hopf points at one place, in opposite directions", "unknowns 1e-06"),
     ("Hopf point and an event at one place", "last unknown 1000"),
+    ("rim of a disc and a chord", "unknowns 1000"),
+    ("cube roots of a cubic and a line", "last unknown 10"),
+    ("rim in space and a line across it", "shifted"),
+    ("ellipse in noise of 1e-6", "unknowns 1e-06"),
+    ("three Hopf points at one place, one in the other direction", "unknowns 10"),
+    ("a Hopf point beside a pair that rests on the axis", "last unknown 0.001"),
 ]
 
 
 def test_every_curve_has_a_source_and_a_name_of_its_own():
-    assert len(CURVES) == len(load_curves()) >= 250
+    assert len(CURVES) == len(load_curves()) >= 290
     for curve in CURVES.values():
         assert curve.source
         assert len(curve.bounds) == len(curve.unknowns) == len(curve.periods)

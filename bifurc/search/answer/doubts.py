@@ -39,6 +39,7 @@ from bifurc.search.answer.completeness import SearchDoubt
 from bifurc.search.findings import Findings
 from bifurc.search.own_units.unit_problem import sheets_beside
 from bifurc.search.records import RigidAssembly, TracedBranch
+from bifurc.search.solutions import solutions_on_rims
 from bifurc.search.strands import missing_crossings
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
@@ -185,6 +186,7 @@ def doubts_of_findings(
     on_rim = int(np.count_nonzero(are_on_rim(problem, findings.rigid.values())))
     if on_rim:
         yield SearchDoubt.ON_RIM.doubt(count=on_rim)
+    yield from _doubts_on_rims(problem, findings, points)
     unfollowed = len(findings.components.notes.unfollowed)
     if unfollowed:
         yield SearchDoubt.SINGULAR_CURVES.doubt(count=unfollowed)
@@ -201,6 +203,28 @@ def are_on_rim(problem: Problem, assemblies: Collection[RigidAssembly]) -> np.nd
     reach = RIM * problem.domain.scale
     rough = [not _is_smooth_within(problem, one.place, reach) for one in assemblies]
     return np.array(rough, dtype=bool)
+
+
+def _doubts_on_rims(
+    problem: Problem, findings: Findings, points: Sequence[SingularPoint]
+) -> Iterator[Doubt]:
+    """Whether solutions along rims of the equations lie on no form, and whether forms
+    meet on a rim where none of the singular ``points`` is listed."""
+    on_rims = solutions_on_rims(problem, np.random.default_rng(0))
+    reach = RIM * problem.domain.scale
+    passes = np.zeros(len(on_rims.points), dtype=int)
+    for branch in findings.branches:
+        distances, _ = branch.nearest(on_rims.points, reach)
+        passes += distances < reach
+    missing = int(np.count_nonzero(on_rims.are_others & (passes == 0)))
+    if missing:
+        yield SearchDoubt.ALONG_RIM.doubt(count=missing)
+    meeting = on_rims.points[passes > 1]
+    for point in points:
+        distances = np.linalg.norm(problem.domain.difference(meeting, point.u), axis=1)
+        meeting = meeting[distances > reach]
+    if len(meeting):
+        yield SearchDoubt.MEETING_ON_RIM.doubt(starts=len(meeting))
 
 
 def _are_single(problem: Problem, assemblies: Sequence[RigidAssembly]) -> np.ndarray:

@@ -271,13 +271,13 @@ class UnitProblem(EquationProblem):
         scale = self.problem.domain.scale
         anywhere = self.own_units.outwards(self._matrices()[0])
         slopes = np.linalg.norm(equations.jacobians(anywhere), axis=2)
-        is_finite = np.isfinite(slopes).all(axis=1)
-        if not np.any(is_finite):
-            return 0.0
-        units = np.median(slopes[is_finite], axis=0) * scale + TINY
+        is_defined = np.isfinite(slopes).all(axis=1)
+        units = np.median(slopes[is_defined], axis=0) * scale + TINY
         missed = self._missed(equations, points) / units
         matrices = equations.jacobians(points) * scale / units[:, None]
-        return _unseen(missed, matrices, (lost + 1) * orders)
+        is_defined = np.isfinite(matrices).all(axis=(1, 2))
+        orders = (lost + 1) * orders
+        return _unseen(missed[is_defined], matrices[is_defined], orders)
 
     def _multiple_equations(self, branch: Branch) -> tuple[Tape | None, np.ndarray]:
         """The user's equations, or where these have roots their factors, and the powers

@@ -56,6 +56,57 @@ def test_two_hopf_points_close_together_are_two() -> None:
     )
 
 
+@pytest.mark.parametrize("beside", [0.0, 1e-6])
+def test_a_pair_that_crosses_at_a_fold_is_a_hopf_point(beside) -> None:
+    place = 1 / np.sqrt(3)
+
+    def s_curve(u):
+        x, y, z, p = u
+        rate = x - place - beside
+        return [p + x - x**3, rate * y - z, y + rate * z]
+
+    diagram = atlas_of(s_curve, [(-2, 2)] * 4, "xyzp").diagram
+    assert len(diagram.folds) == 2
+    (hopf,) = diagram.hopf_points
+    assert hopf.u[0] == pytest.approx(place + beside, abs=1e-9)
+    assert hopf.label == "where p turns back"
+    counts = [0, 1, 2] if beside == 0.0 else [0, 0, 1, 2]
+    assert sorted(one.unstable for one in diagram.stretches) == counts
+
+
+def test_pairs_that_cross_at_both_folds_of_a_closed_form_are_hopf_points() -> None:
+    diagram = atlas_of(
+        lambda u: [1 - u[0] ** 2 - u[3] ** 2, u[0] * u[1] - u[2], u[1] + u[0] * u[2]],
+        [(-2, 2)] * 4,
+        "xyzp",
+    ).diagram
+    assert sorted(hopf.u[3] for hopf in diagram.hopf_points) == pytest.approx([-1, 1])
+
+
+def test_a_pair_that_stays_on_the_axis_hides_no_hopf_points() -> None:
+    def two_oscillators(u):
+        x, y, z, w, p = u
+        rate = p**2 - 1e-6
+        return [rate * x - y, x + rate * y, -3 * w, 3 * z]
+
+    diagram = atlas_of(two_oscillators, [(-1, 1)] * 4 + [(-1, 1.1)], "xyzwp").diagram
+    places = sorted(hopf.u[4] for hopf in diagram.hopf_points)
+    assert places == pytest.approx([-1e-3, 1e-3])
+    assert [one.unstable for one in diagram.stretches] == [2, 0, 2]
+    assert diagram.stretches[1].stability is Stability.NEUTRAL
+
+
+@pytest.mark.parametrize(("power", "error"), [(1, 1e-9), (3, 1e-3)])
+def test_a_hopf_point_is_as_exact_as_it_says(power, error) -> None:
+    def oscillator(u):
+        x, y, p = u
+        rate = (p - 0.123) ** power
+        return [rate * x - y, x + rate * y]
+
+    (hopf,) = atlas_of(oscillator, [(-2, 2)] * 3, "xyp").diagram.hopf_points
+    assert abs(hopf.u[2] - 0.123) < hopf.error < error
+
+
 def test_opposite_real_eigenvalues_are_no_hopf_point() -> None:
     atlas = atlas_of(
         lambda u: [(1 + u[2]) * u[0], (-1 + u[2]) * u[1]], [(-0.9, 0.8)] * 3, "xyp"

@@ -111,3 +111,43 @@ def test_many_digits_are_refused_beyond_a_rim(tmp_path):
     assert residual([mpmath.mpf(2), mpmath.mpf(1)]) == [1]
     with pytest.raises(ValueError, match="no real number"):
         residual([mpmath.mpf(1), mpmath.mpf(2)])
+
+
+def doubts_of(*functions, bounds=BOUNDS):
+    atlas = explore(FunctionProblem(lambda u: [f(*u) for f in functions], bounds))
+    return atlas, {doubt.kind for doubt in atlas.completeness.doubts}
+
+
+def test_a_rim_that_only_combinations_of_equations_have_is_in_doubt():
+    def rim(x, y, z):
+        return np.acosh(x**2 + y**2 + z**2)
+
+    atlas, doubts = doubts_of(
+        lambda *u: 0.6 * rim(*u) - 1.7 * (u[2] - u[0] * u[1]),
+        lambda *u: 0.8 * rim(*u) + 1.3 * (u[2] - u[0] * u[1]),
+        bounds=[*BOUNDS, (-2.2, 2.0)],
+    )
+    assert not atlas.forms and "along rim" in doubts
+
+
+def test_a_rim_of_a_factor_of_a_sum_is_in_doubt():
+    _, doubts = doubts_of(lambda x, y: np.acos(x) * y - np.acos(x) * x)
+    assert "along rim" in doubts
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda x, y: y - np.sqrt(x**2),
+        lambda x, y: y - (x + 2.0) ** 1.5,
+        lambda x, y: np.sqrt(x) - np.cbrt(y),
+    ],
+)
+def test_curves_that_end_or_turn_on_a_rim_leave_nothing_missing_there(function):
+    _, doubts = doubts_of(function)
+    assert "along rim" not in doubts
+
+
+def test_forms_that_meet_where_a_root_has_no_slope_are_in_doubt():
+    atlas, doubts = doubts_of(lambda x, y: (np.cbrt(x) - y) * y)
+    assert len(atlas.bifurcations) == 1 or "meeting on rim" in doubts
