@@ -48,6 +48,8 @@ OFF_CURVE = 1e-20
 WHOLE = (Outcome.CLOSED, Outcome.LEFT_REGION)
 
 
+# Share of the time that is left in which charts are made; they are measured in the rest.
+GROWING = 0.35
 RADIUS = 0.7  # of the largest charts, over the problem's scale
 # Singular value, over the median on the surface, below which a singular point is looked
 # for.
@@ -177,7 +179,7 @@ def cover_components(
 
     from bifurc.surfaces.covering import cover_surface
 
-    seconds = deadline.left
+    seconds = GROWING * deadline.left
     if not seconds:
         return []
     metric = np.ones(problem.n)

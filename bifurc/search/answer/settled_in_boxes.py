@@ -72,7 +72,9 @@ def _beside_boxes(claim: Claim, count: int) -> Claim | None:
     or that of all paths which end at as many."""
     if claim.level is None:
         return claim
-    is_same = SearchClaim.ALL_ISOLATED.is_kind_of(claim) and claim.data["inside"] == count
+    is_same = (
+        SearchClaim.ALL_ISOLATED.is_kind_of(claim) and claim.data["inside"] == count
+    )
     return replace(claim, level=None) if is_same else None
 
 
