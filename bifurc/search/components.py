@@ -108,7 +108,8 @@ def singular_curve_through(
     if local.dimension[0] != 1 or local.nullity[0] != 1 or not local.regular[0]:
         return None
     branch = trace_branch(deflated, places[0], settings=tracing, deadline=deadline)
-    if branch.outcome not in WHOLE:
+    # a point beyond a bound starts no curve inside
+    if branch.outcome not in WHOLE or not branch.length > 0.0:
         return None
     places = branch.sample(LOOKS)
     if _miss_in_more_digits(problem, places, rank, OFF_CURVE):

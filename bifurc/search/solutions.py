@@ -13,7 +13,9 @@ solutions lie on such a stretch, and where, doubles do not tell.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -209,8 +211,9 @@ MOST_UNKNOWNS = 8
 
 
 def solutions_in_bounds(problem: Problem, rng: np.random.Generator) -> np.ndarray:
-    """Solutions (k, n) within the region that have one unknown in a bound, or lie on a
-    rim, reached from a few starts for each; none of equations that are not recorded."""
+    """Solutions (k, n) within the region that have one unknown in a bound, of surfaces
+    also two, or lie on a rim, reached from a few starts for each; none of equations that
+    are not recorded."""
     found = np.empty((0, problem.n))
     if not isinstance(problem, EquationProblem) or problem.n > MOST_UNKNOWNS:
         return found
@@ -219,10 +222,13 @@ def solutions_in_bounds(problem: Problem, rng: np.random.Generator) -> np.ndarra
         return found
     low, high = start_region(problem).T
     ends = []
-    for number, bound in np.argwhere(np.isfinite(problem.domain.bounds)):
+    for bounds in _bounds_together(problem, problem.n - compiled.tape.m):
         starts = rng.uniform(low, high, (IN_A_BOUND, problem.n))
-        starts[:, number] = problem.domain.bounds[number, bound]
-        ends.append(compiled.project(starts, np.arange(problem.n) == number))
+        numbers = [number for number, _ in bounds]
+        for number, bound in bounds:
+            starts[:, number] = problem.domain.bounds[number, bound]
+        are_held = np.isin(np.arange(problem.n), numbers)
+        ends.append(compiled.project(starts, are_held))
     for tape in problem.tapes_on_rims():
         starts = rng.uniform(low, high, (IN_A_BOUND, problem.n))
         on_rim = ScaledTape(tape, problem.magnitude, problem.domain)
@@ -231,3 +237,20 @@ def solutions_in_bounds(problem: Problem, rng: np.random.Generator) -> np.ndarra
         is_inside = problem.domain.are_inside(points)
         found = np.concatenate([found, points[is_start_solved(gaps) & is_inside]])
     return found
+
+
+def _bounds_together(
+    problem: Problem, freedom: int
+) -> Iterator[tuple[tuple[int, int], ...]]:
+    """Each bound, as the number of its unknown and 0 or 1 for the lower or the upper one,
+    and where there is the ``freedom`` each two of different unknowns."""
+    every = [
+        (i, j) for i, j in np.argwhere(np.isfinite(problem.domain.bounds)).tolist()
+    ]
+    for bound in every:
+        yield (bound,)
+    if freedom < 2:
+        return
+    for one, other in combinations(every, 2):
+        if one[0] != other[0]:
+            yield one, other

@@ -51,8 +51,9 @@ class Sizes(NamedTuple):
     def are_vague(self) -> np.ndarray:
         """Of which cells (c,) the area is not known well enough, nor that of all."""
         share = self.errors / max(self.areas.sum(), 1e-300)
-        is_vague: np.ndarray = share > WELL_KNOWN / len(share)
-        return is_vague & (share.sum() > WELL_KNOWN)
+        is_known = share.sum() <= WELL_KNOWN
+        are_vague: np.ndarray = (share > WELL_KNOWN / len(share)) & ~is_known
+        return are_vague
 
     def with_part(self, others: Sizes, among: np.ndarray) -> Sizes:
         """These, but for the cells ``among`` (c,) which those of others are put."""
@@ -269,7 +270,8 @@ def _errors_of_edges(outline: np.ndarray, places: np.ndarray) -> np.ndarray:
     through their ``outline`` (e, k, 2) at ``places`` (k,) are off."""
     lengths: np.ndarray = np.linalg.norm(outline[:, -1] - outline[:, 0], axis=1)
     off = _tails(np.swapaxes(outline, 1, 2), places)
-    return lengths * np.linalg.norm(off, axis=1)
+    errors: np.ndarray = lengths * np.linalg.norm(off, axis=1)
+    return errors
 
 
 def _fill_cells(
