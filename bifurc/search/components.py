@@ -183,10 +183,7 @@ def cover_components(
     seconds = GROWING * deadline.left
     if not seconds:
         return []
-    metric = np.ones(problem.n)
-    if isinstance(problem, UnitProblem):
-        # areas of the user's unknowns, but for one factor for all
-        metric = problem.own_units.sizes / problem.own_units.sizes.max()
+    metric = _metric_of(problem)
     outer = problem
     if components.deflated is not None:
         problem = components.deflated
@@ -205,6 +202,16 @@ def cover_components(
         components.part_of = np.where(chart >= 0, covering.part[chart], -1)
         return []
     return [] if deadline.passed else components.seeds.pop(2)
+
+
+def _metric_of(problem: Problem) -> np.ndarray:
+    """Factors (n,) by which areas are those of the user's unknowns, but for one factor
+    for all."""
+    if not isinstance(problem, UnitProblem):
+        return np.ones(problem.n)
+    sizes = problem.own_units.sizes
+    metric: np.ndarray = sizes / sizes.max()
+    return metric
 
 
 def _are_several(problem: Problem, charts: ChartAtlas) -> bool:

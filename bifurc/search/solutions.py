@@ -222,13 +222,10 @@ def solutions_in_bounds(problem: Problem, rng: np.random.Generator) -> np.ndarra
         return found
     low, high = start_region(problem).T
     ends = []
-    for bounds in _bounds_together(problem, problem.n - compiled.tape.m):
+    for numbers, sides in _bounds_together(problem, problem.n - compiled.tape.m):
         starts = rng.uniform(low, high, (IN_A_BOUND, problem.n))
-        numbers = [number for number, _ in bounds]
-        for number, bound in bounds:
-            starts[:, number] = problem.domain.bounds[number, bound]
-        are_held = np.isin(np.arange(problem.n), numbers)
-        ends.append(compiled.project(starts, are_held))
+        starts[:, numbers] = problem.domain.bounds[numbers, sides]
+        ends.append(compiled.project(starts, np.isin(np.arange(problem.n), numbers)))
     for tape in problem.tapes_on_rims():
         starts = rng.uniform(low, high, (IN_A_BOUND, problem.n))
         on_rim = ScaledTape(tape, problem.magnitude, problem.domain)
@@ -241,16 +238,15 @@ def solutions_in_bounds(problem: Problem, rng: np.random.Generator) -> np.ndarra
 
 def _bounds_together(
     problem: Problem, freedom: int
-) -> Iterator[tuple[tuple[int, int], ...]]:
-    """Each bound, as the number of its unknown and 0 or 1 for the lower or the upper one,
-    and where there is the ``freedom`` each two of different unknowns."""
-    every = [
-        (i, j) for i, j in np.argwhere(np.isfinite(problem.domain.bounds)).tolist()
-    ]
-    for bound in every:
-        yield (bound,)
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Each bound, as the number (1,) of its unknown and 0 or 1 (1,) for the lower or the
+    upper one, and where there is the ``freedom`` each two (2,) of different unknowns."""
+    every = np.argwhere(np.isfinite(problem.domain.bounds))
+    for number, side in every:
+        yield number[None], side[None]
     if freedom < 2:
         return
-    for one, other in combinations(every, 2):
-        if one[0] != other[0]:
-            yield one, other
+    for pair in combinations(every, 2):
+        numbers, sides = np.array(pair).T
+        if numbers[0] != numbers[1]:
+            yield numbers, sides
