@@ -123,6 +123,16 @@ def test_a_plane_that_cuts_off_a_corner_of_the_bounds_is_a_surface() -> None:
     assert surface.charts.area == pytest.approx(np.sqrt(3) / 2 * 1e-6, rel=1e-9)
 
 
+def test_a_small_circle_in_which_surfaces_cross_is_no_isolated_point() -> None:
+    def sphere_and_plane(u: np.ndarray) -> np.ndarray:
+        return np.array([(u @ u - 1) * (u[2] - (1 - 5e-7))])  # its radius is 1e-3
+
+    problem = FunctionProblem(sphere_and_plane, [(-1.5, 1.5)] * 3)
+    atlas = explore(problem, settings=SearchSettings(starts=30))
+    assert atlas.points
+    assert all(point.kind is Kind.CURVE_SAMPLE for point in atlas.points)
+
+
 def test_lines_in_which_surfaces_cross_and_that_meet_themselves_are_a_doubt() -> None:
     def two_saddles(u: np.ndarray) -> list[float]:
         x, y, z = u
