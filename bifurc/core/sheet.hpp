@@ -481,8 +481,9 @@ namespace disk {
 constexpr Index rim = 8;  // places on the rim of a disk at which the surface is looked at
 // How far from the centre, over the radius, other sheets are looked for. Where none is near, the second step of
 // Newton's method from there, over the first, and the distance of where it ends from the centre, over that of
-// where it begins, are smaller than these.
-constexpr double aside = 0.2, contraction = 0.25, back = 0.3;
+// where it begins, are smaller than these. With a factor for every two steps the first is 1/4 where the other sheet is
+// far nearer than that.
+constexpr double aside = 0.2, contraction = 0.15, back = 0.3;
 // Change of F' across the plane up to the rim, over F', below which no sheet crosses in the disk, and entries,
 // over the largest, that are taken for zero there.
 constexpr double steady = 0.5, negligible = 1e-12;

@@ -48,6 +48,8 @@ OFF_CURVE = 1e-20
 WHOLE = (Outcome.CLOSED, Outcome.LEFT_REGION)
 
 
+# Share of the time that is left in which charts are made; they are measured in the rest.
+GROWING = 0.35
 RADIUS = 0.7  # of the largest charts, over the problem's scale
 # Singular value, over the median on the surface, below which a singular point is looked
 # for.
@@ -106,7 +108,8 @@ def singular_curve_through(
     if local.dimension[0] != 1 or local.nullity[0] != 1 or not local.regular[0]:
         return None
     branch = trace_branch(deflated, places[0], settings=tracing, deadline=deadline)
-    if branch.outcome not in WHOLE:
+    # a point beyond a bound starts no curve inside
+    if branch.outcome not in WHOLE or not branch.length > 0.0:
         return None
     places = branch.sample(LOOKS)
     if _miss_in_more_digits(problem, places, rank, OFF_CURVE):
@@ -177,13 +180,10 @@ def cover_components(
 
     from bifurc.surfaces.covering import cover_surface
 
-    seconds = deadline.left
+    seconds = GROWING * deadline.left
     if not seconds:
         return []
-    metric = np.ones(problem.n)
-    if isinstance(problem, UnitProblem):
-        # areas of the user's unknowns, but for one factor for all
-        metric = problem.own_units.sizes / problem.own_units.sizes.max()
+    metric = _metric_of(problem)
     outer = problem
     if components.deflated is not None:
         problem = components.deflated
@@ -202,6 +202,16 @@ def cover_components(
         components.part_of = np.where(chart >= 0, covering.part[chart], -1)
         return []
     return [] if deadline.passed else components.seeds.pop(2)
+
+
+def _metric_of(problem: Problem) -> np.ndarray:
+    """Factors (n,) by which areas are those of the user's unknowns, but for one factor
+    for all."""
+    if not isinstance(problem, UnitProblem):
+        return np.ones(problem.n)
+    sizes = problem.own_units.sizes
+    metric: np.ndarray = sizes / sizes.max()
+    return metric
 
 
 def _are_several(problem: Problem, charts: ChartAtlas) -> bool:

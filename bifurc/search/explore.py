@@ -294,6 +294,8 @@ def _explored(
     except KeyboardInterrupt:  # the second one, or that of the function of a user
         interrupted = True
     provenance = _provenance(problem, request, interrupted, deadline)
+    if search.findings.components.is_out_of_time and not interrupted:
+        provenance = replace(provenance, out_of_time=True)
     return assemble_atlas(problem, search.findings, provenance, deadline)
 
 

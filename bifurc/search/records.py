@@ -16,7 +16,7 @@ from bifurc.curves.monitor import Profile
 from bifurc.problem import Problem
 from bifurc.search.seed_book import Fate, SeedFate
 from bifurc.singular.point import SingularPoint
-from bifurc.surfaces.chart_atlas import ChartAtlas
+from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.tables import count_of
 
 NO_DOUBT = (False, False, 0.0)
@@ -189,6 +189,11 @@ class Components:
     def has_surfaces(self) -> bool:
         """Whether surfaces are known of which singular points may be known."""
         return self.charts is not None or self.deflated is not None
+
+    @property
+    def is_out_of_time(self) -> bool:
+        """Whether surfaces are not covered, as that took too long."""
+        return self.charts is not None and self.charts.outcome is Covering.OUT_OF_TIME
 
     def samples(self, points: np.ndarray, dimension: int) -> np.ndarray:
         """The seeds (k, n) of a dimension, as exact as can be known."""

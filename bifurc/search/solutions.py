@@ -13,8 +13,9 @@ solutions lie on such a stretch, and where, doubles do not tell.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
-from itertools import islice
+from itertools import combinations, islice
 from typing import NamedTuple
 
 import numpy as np
@@ -213,8 +214,9 @@ MOST_RIMS = 50  # on which solutions along them are looked for
 
 
 def solutions_in_bounds(problem: Problem, rng: np.random.Generator) -> np.ndarray:
-    """Solutions (k, n) within the region that have one unknown in a bound, or lie on a
-    rim, reached from a few starts for each; none of equations that are not recorded."""
+    """Solutions (k, n) within the region that have one unknown in a bound, of surfaces
+    also two, or lie on a rim, reached from a few starts for each; none of equations that
+    are not recorded."""
     found = np.empty((0, problem.n))
     if not isinstance(problem, EquationProblem) or problem.n > MOST_UNKNOWNS:
         return found
@@ -223,10 +225,10 @@ def solutions_in_bounds(problem: Problem, rng: np.random.Generator) -> np.ndarra
         return found
     low, high = start_region(problem).T
     ends = []
-    for number, bound in np.argwhere(np.isfinite(problem.domain.bounds)):
+    for numbers, sides in _bounds_together(problem, problem.n - compiled.tape.m):
         starts = rng.uniform(low, high, (IN_A_BOUND, problem.n))
-        starts[:, number] = problem.domain.bounds[number, bound]
-        ends.append(compiled.project(starts, np.arange(problem.n) == number))
+        starts[:, numbers] = problem.domain.bounds[numbers, sides]
+        ends.append(compiled.project(starts, np.isin(np.arange(problem.n), numbers)))
     for tape in problem.tapes_on_rims():
         starts = rng.uniform(low, high, (IN_A_BOUND, problem.n))
         on_rim = ScaledTape(tape, problem.magnitude, problem.domain)
@@ -269,3 +271,19 @@ def solutions_on_rims(problem: Problem, rng: np.random.Generator) -> OnRims:
         points.append(ends)
         others.append(may_be_mobile(factors_of(rows).sigma[:, -1]))
     return OnRims(np.concatenate(points), np.concatenate(others))
+
+
+def _bounds_together(
+    problem: Problem, freedom: int
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Each bound, as the number (1,) of its unknown and 0 or 1 (1,) for the lower or the
+    upper one, and where there is the ``freedom`` each two (2,) of different unknowns."""
+    every = np.argwhere(np.isfinite(problem.domain.bounds))
+    for number, side in every:
+        yield number[None], side[None]
+    if freedom < 2:
+        return
+    for pair in combinations(every, 2):
+        numbers, sides = np.array(pair).T
+        if numbers[0] != numbers[1]:
+            yield numbers, sides

@@ -167,8 +167,12 @@ class SingularPoint:
         count = len(self.half_branches)
         if self.dimension > 1 and count:
             return Kind.DIMENSION_CHANGE
+        if self.dimension > 1 and self.is_sample:
+            return Kind.CURVE_SAMPLE
         if self.dimension > 1:
-            return Kind.CURVE_SAMPLE if self.is_sample else Kind.SURFACE
+            # with no larger null space it would be a regular one
+            is_singular = self.null_space.shape[1] > self.dimension
+            return Kind.SURFACE if is_singular else Kind.UNDECIDED
         if self.dimension < 0:
             return Kind.UNDECIDED
         if count == 0:

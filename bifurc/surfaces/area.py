@@ -25,7 +25,10 @@ from bifurc.surfaces.complex import Cells
 from bifurc.surfaces.graphs import Graphs, bounds_of
 from bifurc.surfaces.polygon import BORDER, FlatCharts
 
-ALONG, RAYS = 6, 5  # nodes along an edge and along a ray
+# Nodes along an edge and along a ray, at first, and where an area is not known well then.
+NODES = ((6, 5), (8, 7), (11, 10))
+# Error of an area that is known well enough, over it.
+WELL_KNOWN = 1e-7
 # Error of an area by rounding, over it.
 ROUNDING = 1e-13
 # Points of an edge that others are interpolated between, at least, and powers of the
@@ -45,9 +48,25 @@ class Sizes(NamedTuple):
     errors: np.ndarray
     outside: np.ndarray
 
+    def are_vague(self) -> np.ndarray:
+        """Of which cells (c,) the area is not known well enough, nor that of all."""
+        share = self.errors / max(self.areas.sum(), 1e-300)
+        is_known = share.sum() <= WELL_KNOWN
+        are_vague: np.ndarray = (share > WELL_KNOWN / len(share)) & ~is_known
+        return are_vague
+
+    def with_part(self, others: Sizes, among: np.ndarray) -> Sizes:
+        """These, but for the cells ``among`` (c,) which those of others are put."""
+        columns = zip(others, self, strict=True)
+        return Sizes(*(np.where(among, other, own) for other, own in columns))
+
 
 def cell_sizes(
-    problem: Problem, charts: FlatCharts, cells: Cells, metric: np.ndarray
+    problem: Problem,
+    charts: FlatCharts,
+    cells: Cells,
+    metric: np.ndarray,
+    rounds: int,
 ) -> Sizes:
     """The areas of the cells of ``charts``, lengths being taken after the unknowns are
     multiplied by ``metric`` (n,).
@@ -55,10 +74,18 @@ def cell_sizes(
     The error of a cell whose edges do not fit those of its neighbours, with a vertex
     outside the bounds, or over which the surface is not followed everywhere, is its
     whole area; where one leaves the bounds a few times the area outside, as far as
-    nodes show it, is added.
+    nodes show it, is added. Cells whose areas are not known well are measured with more
+    nodes, in up to so many ``rounds``.
     """
-    measure = _Measure(problem, charts, cells, metric)
-    areas, errors, outside = measure.sizes()
+    every = np.ones(len(charts.radii), dtype=bool)
+    sizes = _Measure(problem, charts, cells, metric, every).sizes(*NODES[0])
+    for nodes in NODES[1:rounds]:
+        among = sizes.are_vague()
+        if not np.any(among):
+            break
+        finer = _Measure(problem, charts, cells, metric, among).sizes(*nodes)
+        sizes = sizes.with_part(finer, among)
+    areas, errors, outside = sizes
     errors += ROUNDING * np.abs(areas)
     errors[cells.chart[cells.misfits()]] = np.inf
     is_outside = ~problem.domain.are_inside(cells.vertices)
@@ -78,52 +105,63 @@ class _Rays(NamedTuple):
 
 
 class _Measure:
-    """The edges and sectors of cells, each edge taken once."""
+    """The edges and sectors of the cells ``among`` (c,) all, each edge taken once: it is
+    the curve above the plane of the first of all cells that have it."""
 
     def __init__(
-        self, problem: Problem, charts: FlatCharts, cells: Cells, metric: np.ndarray
+        self,
+        problem: Problem,
+        charts: FlatCharts,
+        cells: Cells,
+        metric: np.ndarray,
+        among: np.ndarray,
     ):
         self._problem = problem
-        self._cells = cells
         self._metric = metric
         self._count = len(charts.radii)
         self._graphs = Graphs(problem, charts)
         pairs, first, edge = np.unique(
             cells.pairs, axis=0, return_index=True, return_inverse=True
         )
-        self._pairs, self._first, self._edge = pairs, first, edge
+        is_own = among[cells.chart]
+        own, self._edge = np.unique(edge[is_own], return_inverse=True)
+        self._cells = cells.part(is_own)
+        self._pairs = pairs[own]
+        self._chart, self._label = cells.chart[first[own]], cells.label[first[own]]
 
-    def sizes(self) -> Sizes:
+    def sizes(self, along: int, rays: int) -> Sizes:
         """Areas, and errors by the quadrature, by nodes to which the surface was not
-        followed and by what lies outside the bounds."""
-        nodes, weights = _gauss(ALONG)
+        followed and by what lies outside the bounds; with so many nodes ``along`` an
+        edge and along ``rays``."""
+        nodes, weights = _gauss(along)
         curves, are_known = self._curves(nodes)
         outline = self._outlines(curves)
         places = np.concatenate([[0.0], nodes, [1.0]])
         rates = np.einsum("ij,ejk->eik", _differentiation(places), outline)
-        turned = _cross(outline, rates)  # (e, ALONG + 2)
-        rays = self._rays(outline[:, :-1], turned[:, 1:-1] * weights)
-        at_ends = rays.integrals[self._cells.following, :1]
-        sectors = turned * np.concatenate([rays.integrals, at_ends], axis=1)
-        errors = self._sums(rays.errors) + BLURRED * rays.outside
+        turned = _cross(outline, rates)  # (e, along + 2)
+        of_rays = self._rays(outline[:, :-1], turned[:, 1:-1] * weights, rays)
+        at_ends = of_rays.integrals[self._cells.following, :1]
+        sectors = turned * np.concatenate([of_rays.integrals, at_ends], axis=1)
+        errors = self._sums(of_rays.errors) + BLURRED * of_rays.outside
         errors += self._sums(_tails(sectors, places)[:, None])
         errors += self._sums(_errors_of_edges(outline, places)[:, None])
         errors[self._cells.chart[~are_known[self._edge]]] = np.inf
         areas = self._sums(sectors[:, 1:-1] * weights)
-        return Sizes(areas, errors, rays.outside)
+        return Sizes(areas, errors, of_rays.outside)
 
-    def _rays(self, ends: np.ndarray, turned: np.ndarray) -> _Rays:
+    def _rays(self, ends: np.ndarray, turned: np.ndarray, nodes: int) -> _Rays:
         """The rays from the centres to the beginning and the nodes of each edge, ``ends``
-        (e, r, 2), all but the first of each of a weight ``turned`` (e, r - 1)."""
+        (e, r, 2), all but the first of each of a weight ``turned`` (e, r - 1), with so
+        many ``nodes``."""
         count = ends.shape[1]
         chart = np.repeat(self._cells.chart, count)
-        t, t_weights = _gauss(RAYS)
+        t, t_weights = _gauss(nodes)
         flat = ends.reshape(-1, 2)
         points, is_there = self._graphs.part(chart).along(flat, t)
         ratio = self._ratios(chart, points)
         gaps = _fill_cells(ratio, flat[:, None] * t[:, None], is_there, chart)
         gaps = np.maximum(gaps, _tails(ratio, t)[:, None]).reshape(-1, count)[:, 1:]
-        ratio = ratio.reshape(-1, count, RAYS)
+        ratio = ratio.reshape(-1, count, nodes)
         weighted = t * t_weights * turned[:, :, None]
         outside = ratio * self._are_outside(points).reshape(ratio.shape)
         outside = outside[:, 1:] * weighted
@@ -166,16 +204,16 @@ class _Measure:
         """Points (u, k, n) of all edges, from the vertex of the lower number on, and
         whether they are known (u,): between those to which the surface was followed
         others are interpolated."""
-        cells, n, count = self._cells, self._problem.n, len(nodes)
-        begin, end = cells.vertices[self._pairs.T]
+        vertices, n, count = self._cells.vertices, self._problem.n, len(nodes)
+        begin, end = vertices[self._pairs.T]
         chord = self._problem.domain.difference(end, begin)
         points = begin[:, None] + nodes[:, None] * chord[:, None]
         shape = points.shape
-        chart = np.repeat(cells.chart[self._first], count)
+        chart = np.repeat(self._chart, count)
         graphs = self._graphs.part(chart)
         positions = graphs.positions(points.reshape(-1, n))
         points, is_there = graphs.above(positions)
-        label = np.repeat(cells.label[self._first], count)
+        label = np.repeat(self._label, count)
         border = np.flatnonzero(label <= BORDER)
         points[border], is_there[border] = self._graphs.part(chart[border]).onto_bounds(
             positions[border], bounds_of(label[border], n)
@@ -189,7 +227,7 @@ class _Measure:
         """Interpolate ``points`` (u, k, n) of edges that are not there, inside the
         bounds, and whether all are known then (u,)."""
         are_known = is_there.all(axis=1)
-        is_inner = self._cells.label[self._first] > BORDER
+        is_inner = self._label > BORDER
         can_be_filled = is_inner & (is_there.sum(axis=1) >= FEWEST_ON_EDGE)
         for k in np.flatnonzero(~are_known & can_be_filled):
             begin, end = self._cells.vertices[self._pairs[k]]

@@ -17,6 +17,9 @@ from bifurc.system import relative_gaps
 MERGED, MERGED_OF_SAME = 0.15, 0.7
 # Height over the radius above which a corner was lifted onto another sheet.
 TOO_HIGH = 0.5
+# Length of an edge that can be given up, over the smallest radius of its charts, and how
+# often such are looked for.
+SHORT, ROUNDS = 1.0, 4
 
 
 class _Corners(NamedTuple):
@@ -33,15 +36,23 @@ class _Corners(NamedTuple):
 
 
 class Cells(NamedTuple):
-    """Polygons fitted together: ``vertices`` (v, n), and one behind the other around
-    each polygon the edges, each with the number of its ``chart`` (e,), the vertices
-    where it begins and ``end``s (e,), and its ``label`` (e,)."""
+    """Polygons fitted together: ``vertices`` (v, n), whether they ``are_off_bounds`` (v,)
+    on which they should lie, and the ``bases`` (c, n, 2) of the planes of all charts; and
+    one behind the other around each polygon the edges, each with the number of its
+    ``chart`` (e,), the vertices where it begins and ``end``s (e,), and its ``label``
+    (e,)."""
 
     vertices: np.ndarray
+    are_off_bounds: np.ndarray
+    bases: np.ndarray
     chart: np.ndarray
     begin: np.ndarray
     end: np.ndarray
     label: np.ndarray
+
+    def part(self, edges: np.ndarray) -> Cells:
+        """These with some of the ``edges`` (e,) alone."""
+        return Cells(*self[:3], *(column[edges] for column in self[3:]))
 
     @property
     def pairs(self) -> np.ndarray:
@@ -58,31 +69,46 @@ class Cells(NamedTuple):
 
     def misfits(self) -> np.ndarray:
         """Which edges (e,) do not fit: one inside the bounds that not just two polygons
-        have, in opposite directions, and one about a vertex where polygons meet that
-        are not one fan."""
+        have, on its two sides, one about a vertex where polygons meet that are not one
+        fan, and one that begins at a vertex off its bounds."""
         _, edge, sizes = np.unique(
             self.pairs, axis=0, return_inverse=True, return_counts=True
         )
-        turn = np.where(self.begin < self.end, 1, -1)
         is_border = (sizes[edge] == 1) & (self.label <= BORDER)
-        turns = np.bincount(edge, weights=turn, minlength=len(sizes))
-        is_shared = (sizes[edge] == 2) & (turns[edge] == 0)
-        order = np.lexsort((turn, edge))
-        order = order[is_shared[order]]
-        fans = self._fans(order[0::2], order[1::2])
-        misfits: np.ndarray = ~(is_border | is_shared) | (fans[self.begin] > 1)
+        order = np.argsort(edge, kind="stable")
+        order = order[sizes[edge[order]] == 2]
+        one, other = order[0::2], order[1::2]
+        is_back = self.begin[one] == self.end[other]
+        has_two_sides = is_back != self._are_mirrored(one, other)
+        one, other, is_back = (x[has_two_sides] for x in (one, other, is_back))
+        is_shared = np.zeros(len(edge), dtype=bool)
+        is_shared[one] = is_shared[other] = True
+        is_wrong = (self._fans(one, other, is_back) > 1) | self.are_off_bounds
+        misfits: np.ndarray = ~(is_border | is_shared) | is_wrong[self.begin]
         return misfits
 
-    def _fans(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    def _are_mirrored(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """Whether the planes of the charts of edges (k,) and (k,) turn opposite ways."""
+        bases = self.bases[self.chart[one]], self.bases[self.chart[other]]
+        turns = np.linalg.det(np.einsum("kij,kil->kjl", *bases))
+        are_mirrored: np.ndarray = turns < 0.0
+        return are_mirrored
+
+    def _fans(
+        self, one: np.ndarray, other: np.ndarray, is_back: np.ndarray
+    ) -> np.ndarray:
         """How many fans of polygons meet at each vertex (v,); ``one`` (k,) and ``other``
-        (k,) are the numbers of edges that are twins."""
+        (k,) are the numbers of edges that are twins, of which one ``is_back`` (k,) if
+        it runs against the other."""
         from scipy.sparse import csr_array
         from scipy.sparse.csgraph import connected_components
 
         count = len(self.chart)
         after = self.following
-        # an edge and the one after its twin leave the same vertex
-        i, j = np.concatenate([one, other]), np.concatenate([after[other], after[one]])
+        # edges that leave the same vertex: one of each polygon about it
+        at_begin = np.where(is_back, after[other], other)
+        at_end = np.where(is_back, other, after[other])
+        i, j = np.concatenate([one, after[one]]), np.concatenate([at_begin, at_end])
         graph = csr_array((np.ones(len(i)), (i, j)), shape=(count, count))
         _, fan = connected_components(graph, directed=False)
         vertices = np.unique(np.stack([self.begin, fan], axis=1), axis=0)[:, 0]
@@ -100,6 +126,22 @@ def fitted_cells(problem: Problem, charts: FlatCharts) -> Cells:
     corners = _lift_corners(problem, charts)
     neighbours = neighbours_of(charts.polygons)
     vertex = _merge_corners(problem, corners, charts.radii, neighbours)
+    cells, first = _cells_between(vertex, corners, charts)
+    for _ in range(ROUNDS):
+        crowded = _crowded_pairs(problem, charts, cells)
+        if not len(crowded):
+            break
+        vertex = _joined(len(cells.vertices), crowded)[vertex]
+        cells, first = _cells_between(vertex, corners, charts)
+    _move_onto_bounds(problem, charts, cells, corners, first)
+    return cells
+
+
+def _cells_between(
+    vertex: np.ndarray, corners: _Corners, charts: FlatCharts
+) -> tuple[Cells, np.ndarray]:
+    """The cells whose ``corners`` are the vertices of these numbers (v,), and the number
+    of the corner whose place each vertex takes."""
     following = _next_vertex(vertex, charts.polygons)
     leaves = vertex != following
     order = np.argsort(~corners.is_there, kind="stable")
@@ -107,13 +149,42 @@ def fitted_cells(problem: Problem, charts: FlatCharts) -> Cells:
     labels = np.concatenate([np.empty(0, int), *(q.labels for q in charts.polygons)])
     cells = Cells(
         vertices=corners.points[first],
+        are_off_bounds=np.zeros(len(first), dtype=bool),
+        bases=charts.bases,
         chart=corners.owner[leaves],
         begin=vertex[leaves],
         end=following[leaves],
         label=labels[leaves],
     )
-    _move_onto_bounds(problem, charts, cells, corners, first)
-    return cells
+    return cells, first
+
+
+def _crowded_pairs(problem: Problem, charts: FlatCharts, cells: Cells) -> np.ndarray:
+    """Pairs of vertices (k, 2) between which edges of more than two polygons run that
+    are short for all of them, inside the bounds: where four charts meet almost in a
+    point, each two that lie opposite may hold the other two apart."""
+    pairs, edge, sizes = np.unique(
+        cells.pairs, axis=0, return_inverse=True, return_counts=True
+    )
+    gaps = problem.domain.difference(*np.swapaxes(cells.vertices[pairs], 0, 1))
+    lengths = np.linalg.norm(gaps, axis=1)
+    smallest = np.full(len(pairs), np.inf)
+    np.minimum.at(smallest, edge, charts.radii[cells.chart])
+    is_at_bound = np.zeros(len(cells.vertices), dtype=bool)
+    is_at_bound[pairs[edge[cells.label <= BORDER]]] = True
+    is_inside = ~is_at_bound[pairs].any(axis=1)
+    crowded: np.ndarray = pairs[(sizes > 2) & (lengths < SHORT * smallest) & is_inside]
+    return crowded
+
+
+def _joined(count: int, pairs: np.ndarray) -> np.ndarray:
+    """New numbers of ``count`` vertices, those of the pairs (k, 2) being one."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
+    graph = csr_array((np.ones(len(pairs)), tuple(pairs.T)), shape=(count, count))
+    number: np.ndarray = connected_components(graph, directed=False)[1]
+    return number
 
 
 def _move_onto_bounds(
@@ -123,8 +194,9 @@ def _move_onto_bounds(
     corners: _Corners,
     first: np.ndarray,
 ) -> None:
-    """Move vertices at which edges along bounds end to these, over the surface.
-    ``first`` (v,) are the numbers of corners at the vertices."""
+    """Move vertices at which edges along bounds end to these, over the surface, and note
+    where there is no such place. ``first`` (v,) are the numbers of corners at the
+    vertices."""
     on_bound = np.zeros((len(cells.vertices), 2 * problem.n), dtype=bool)
     along = bounds_of(cells.label, problem.n)
     np.logical_or.at(on_bound, cells.begin, along)
@@ -134,6 +206,7 @@ def _move_onto_bounds(
     graph = Graphs(problem, charts).part(corners.owner[corner])
     points, is_there = graph.onto_bounds(corners.positions[corner], on_bound[moved])
     cells.vertices[moved[is_there]] = points[is_there]
+    cells.are_off_bounds[moved[~is_there]] = True
 
 
 def without_empty_polygons(charts: FlatCharts) -> FlatCharts:
@@ -202,11 +275,7 @@ def _merge_corners(
     """Number (v,) of the vertex that each corner is: corners that nearly coincide, of
     one polygon or of two neighbours, are one, but for the ends of an edge along a bound
     between two others: that corner of the region is not cut off."""
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import connected_components
-
     points, owner = corners.points, corners.owner
-    count = len(points)
     i, j = _corners_of_pairs(owner, len(radii), neighbours)
     gaps = problem.domain.difference(points[i], points[j])
     distance = np.linalg.norm(gaps, axis=1)
@@ -214,10 +283,7 @@ def _merge_corners(
     is_same = np.all(corners.between[i] == corners.between[j], axis=1)
     is_nested = _are_nested(corners.between, problem.n, i, j)
     is_one = (distance < MERGED) & is_nested | (is_same & (distance < MERGED_OF_SAME))
-    i, j = i[is_one], j[is_one]
-    graph = csr_array((np.ones(len(i)), (i, j)), shape=(count, count))
-    vertex: np.ndarray = connected_components(graph, directed=False)[1]
-    return vertex
+    return _joined(len(points), np.stack([i[is_one], j[is_one]], axis=1))
 
 
 def _are_nested(

@@ -67,9 +67,11 @@ SMALLEST, NEXT_TO = 1.0 / 64, 16.0
 SMALLEST_BESIDE_BOUNDS = 1.0 / 256
 # Radius over the scale below which no chart is made at all: the size of a neck.
 TINIEST = 1e-8
-# Radius of a chart that is too large among others, over what it was, how often that is
-# looked at, and the error of an area that is known well enough, over it.
-SMALLER, MENDING, WELL_KNOWN = 0.7, 4, 1e-7
+# Radius of a chart that is too large among others, over what it was, and how often that
+# is looked at.
+SMALLER, MENDING = 0.7, 6
+# In how many rounds areas are measured; in one only where more would not be worth while.
+ROUNDS, UNFINISHED = 3, (Covering.CHART_LIMIT, Covering.OUT_OF_TIME)
 # Distance of a centre from another one, over the radius there, that is not worth a
 # chart.
 TOO_CLOSE = 0.2
@@ -128,53 +130,87 @@ def _covering(
     cover: _Cover, finish: Callable[[], Covering], metric: np.ndarray
 ) -> ChartAtlas:
     """The charts that ``finish`` ends with, their polygons fitted together and measured
-    in ``metric`` (n,): where that does not go well they are made smaller first."""
-    outcome = finish()
-    flat, cells, sizes = _measured(cover, metric)
+    in ``metric`` (n,): where that does not go well they are made smaller first. Where
+    that makes it worse, those before are taken."""
+    fits = [_Fit(finish(), *cover.cells())]
     for _ in range(MENDING):
-        too_large = _too_large(flat, cells, sizes)
-        if outcome is not Covering.COMPLETE or not len(too_large):
+        fit = fits[-1]
+        if fit.outcome is not Covering.COMPLETE:
             break
-        cover.shrink(flat, too_large)
-        outcome = finish()
-        flat, cells, sizes = _measured(cover, metric)
-    does_not_fit = np.any(cells.misfits()) or np.any(sizes.outside)
-    if outcome is Covering.COMPLETE and does_not_fit:
-        outcome = Covering.MISFIT
-    return ChartAtlas(
-        centers=flat.centers,
-        bases=flat.bases,
-        radii=flat.radii,
-        neighbours=neighbours_of(flat.polygons),
-        vertices=cells.vertices,
-        polygons=cells.begin,
-        polygon_sizes=np.bincount(cells.chart, minlength=len(flat.radii)),
-        areas=sizes.areas,
-        area_errors=sizes.errors,
-        periods=cover.problem.domain.periods,
-        outcome=outcome,
-    )
+        if not np.any(fit.misfits):
+            fit = fits[-1] = fit.measured(cover.problem, metric)
+        too_large = fit.too_large()
+        if not len(too_large):
+            break
+        cover.shrink(fit.charts, too_large)
+        fits.append(_Fit(finish(), *cover.cells()))
+    best = min(fits, key=_Fit.fault).measured(cover.problem, metric)
+    return best.atlas(cover.problem)
 
 
-def _measured(cover: _Cover, metric: np.ndarray) -> tuple[FlatCharts, Cells, Sizes]:
-    """The charts, their polygons fitted together, and the sizes of these."""
-    flat, cells = cover.cells()
-    return flat, cells, cell_sizes(cover.problem, flat, cells, metric)
+class _Fit(NamedTuple):
+    """Charts with the ``outcome`` of covering a surface with them, their polygons fitted
+    together to ``cells``, and the ``sizes`` of these, None before they are measured."""
 
+    outcome: Covering
+    charts: FlatCharts
+    cells: Cells
+    sizes: Sizes | None = None
 
-def _too_large(charts: FlatCharts, cells: Cells, sizes: Sizes) -> np.ndarray:
-    """Numbers (k,) of the charts that are larger than others where polygons do not fit
-    together; where they do, of those whose areas are not known well enough."""
-    misfits = cells.misfits()
-    if not np.any(misfits):
-        share = sizes.errors / max(sizes.areas.sum(), 1e-300)
-        is_large = (share.sum() > WELL_KNOWN) & (share > WELL_KNOWN / len(share))
-        return np.flatnonzero(is_large | (sizes.outside != 0.0))
-    numbers = set()
-    for vertex in np.unique(cells.begin[misfits]):
-        about = cells.chart[cells.begin == vertex]
-        numbers.add(int(about[np.argmax(charts.radii[about])]))
-    return np.array(sorted(numbers))
+    @property
+    def misfits(self) -> np.ndarray:
+        """Which edges (e,) do not fit."""
+        return self.cells.misfits()
+
+    def measured(self, problem: Problem, metric: np.ndarray) -> _Fit:
+        """The same with sizes: rough ones where part of the surface is missing."""
+        if self.sizes is not None:
+            return self
+        rounds = 1 if self.outcome in UNFINISHED else ROUNDS
+        sizes = cell_sizes(problem, self.charts, self.cells, metric, rounds)
+        return self._replace(sizes=sizes)
+
+    def too_large(self) -> np.ndarray:
+        """Numbers (k,) of the charts that are larger than others where polygons do not
+        fit together; where they do, of those that leave the bounds, or whose areas are
+        not known well enough."""
+        if self.sizes is not None:
+            is_large = self.sizes.are_vague() | (self.sizes.outside != 0.0)
+            return np.flatnonzero(is_large)
+        numbers = set()
+        for vertex in np.unique(self.cells.begin[self.misfits]):
+            about = self.cells.chart[self.cells.begin == vertex]
+            numbers.add(int(about[np.argmax(self.charts.radii[about])]))
+        return np.array(sorted(numbers))
+
+    def fault(self) -> tuple[bool, int, float]:
+        """What is wrong, the less the better: that it is not complete, how many edges do
+        not fit, and the error of the area."""
+        is_unfinished = self.outcome is not Covering.COMPLETE
+        error = np.inf if self.sizes is None else float(self.sizes.errors.sum())
+        return is_unfinished, int(np.count_nonzero(self.misfits)), error
+
+    def atlas(self, problem: Problem) -> ChartAtlas:
+        """The charts, with what is known of them once they are measured."""
+        charts, cells, sizes = self.charts, self.cells, self.sizes
+        assert sizes is not None
+        outcome = self.outcome
+        does_not_fit = np.any(self.misfits) or np.any(sizes.outside)
+        if outcome is Covering.COMPLETE and does_not_fit:
+            outcome = Covering.MISFIT
+        return ChartAtlas(
+            centers=charts.centers,
+            bases=charts.bases,
+            radii=charts.radii,
+            neighbours=neighbours_of(charts.polygons),
+            vertices=cells.vertices,
+            polygons=cells.begin,
+            polygon_sizes=np.bincount(cells.chart, minlength=len(charts.radii)),
+            areas=sizes.areas,
+            area_errors=sizes.errors,
+            periods=problem.domain.periods,
+            outcome=outcome,
+        )
 
 
 class Placement(Enum):

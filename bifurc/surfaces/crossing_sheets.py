@@ -29,9 +29,9 @@ LOW = 0.3
 # Pairs of charts between which a crossing is looked for, and how far from the place,
 # over the larger radius.
 LOOKS, REACH = 6, 2.0
-# Distance, over the scale and over the error, at which other singular points are looked
-# for.
-NEXT, NEXT_TO_ERROR = 0.02, 100
+# Distances, over the scale, and that over the error, at which other singular points are
+# looked for.
+NEXT, NEXT_TO_ERROR = (0.02, 1e-3, 5e-5), 100
 # Distance, over that and over the error, from which another singular point counts.
 OTHER, OTHER_TO_ERROR = 0.2, 10
 
@@ -57,12 +57,18 @@ def has_uncovered_crossing(problem: Problem, charts: ChartAtlas, agree: float) -
 
 
 def is_on_singular_curve(problem: Problem, located: LocatedPoint) -> bool:
-    """Whether other singular points of the same kind are near one.
+    """Whether other singular points of the same kind are near one: on a curve of them,
+    which may be as small as the smallest distance at which they are looked for."""
+    steps = problem.domain.scale * np.array(NEXT) + NEXT_TO_ERROR * located.error
+    return any(_has_another_beside(problem, located, step) for step in steps.tolist())
 
-    They are looked for from starts to all sides in its null space.
-    """
-    u, null_space, error, _ = located
-    distance = NEXT * problem.domain.scale + NEXT_TO_ERROR * error
+
+def _has_another_beside(
+    problem: Problem, located: LocatedPoint, distance: float
+) -> bool:
+    """Whether starts at a ``distance`` to all sides of a singular point, in its null
+    space, lead to others."""
+    u, null_space = located.u, located.null_space
     nullity = null_space.shape[1]
     for direction in np.concatenate([null_space.T, -null_space.T]):
         start = u + distance * direction

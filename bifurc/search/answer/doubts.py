@@ -54,6 +54,7 @@ COVERING_DOUBTS = {
     Covering.UNFIT: SearchDoubt.HOLES,
     Covering.MISFIT: SearchDoubt.MISFIT,
 }
+ON_SURFACE = "it may be a regular point of a surface"
 MOST_SAMPLES = 200  # of a surface at which it is seen what it misses
 
 
@@ -403,7 +404,9 @@ def _doubts_of_point(problem: Problem, point: MeetingPoint) -> Iterator[Doubt]:
     if not misses_by_rounding(missed - explained):
         yield SearchDoubt.POINT_OR_NEAR_MISS.doubt(point.name, missed, point_kind=kind)
     elif point.kind is Kind.UNDECIDED:
-        reason = point.note or "sections of two radii disagree"
+        is_on_surface = point.point.dimension > 1
+        reason = ON_SURFACE if is_on_surface else "sections of two radii disagree"
+        reason = point.note or reason
         yield SearchDoubt.UNDECIDED.doubt(point.name, reason=reason)
     elif point.note:
         doubt = SearchDoubt.NOT_WHOLE

@@ -114,6 +114,35 @@ def test_a_corner_of_a_surface_that_random_starts_miss_is_a_surface() -> None:
     assert surface.charts.area == pytest.approx(2e-3 * np.pi, rel=1e-6)
 
 
+def test_a_plane_that_cuts_off_a_corner_of_the_bounds_is_a_surface() -> None:
+    # starts end outside, also those in a single bound
+    plane = FunctionProblem(lambda u: [u.sum() - 2.999], [(-1, 1)] * 3)
+    (surface,) = explore(plane, settings=SearchSettings(starts=20)).surfaces
+    assert surface.charts is not None
+    assert surface.charts.euler_characteristic == 1
+    assert surface.charts.area == pytest.approx(np.sqrt(3) / 2 * 1e-6, rel=1e-9)
+
+
+def test_a_small_circle_in_which_surfaces_cross_is_no_isolated_point() -> None:
+    def sphere_and_plane(u: np.ndarray) -> np.ndarray:
+        return np.array([(u @ u - 1) * (u[2] - (1 - 5e-7))])  # its radius is 1e-3
+
+    problem = FunctionProblem(sphere_and_plane, [(-1.5, 1.5)] * 3)
+    atlas = explore(problem, settings=SearchSettings(starts=30))
+    assert atlas.points
+    assert all(point.kind is Kind.CURVE_SAMPLE for point in atlas.points)
+
+
+def test_lines_in_which_surfaces_cross_and_that_meet_themselves_are_a_doubt() -> None:
+    def two_saddles(u: np.ndarray) -> list[float]:
+        x, y, z = u
+        return [(x - y * z) * (x + y * z)]
+
+    atlas = explore(FunctionProblem(two_saddles, [(-1, 1)] * 3))
+    assert len(atlas.surfaces) == 2
+    assert atlas.completeness.is_in_doubt
+
+
 def test_charts_that_do_not_fit_together_are_a_doubt(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -15,7 +15,7 @@ def point(half_branches: list[tuple[float, float]], dimension: int) -> SingularP
     return SingularPoint(
         u=np.zeros(2),
         rank=4,
-        null_space=np.eye(2),
+        null_space=np.eye(3),
         error=2.5e-15,
         half_branches=np.array(half_branches).reshape(-1, 2),
         tangents=np.eye(2),
@@ -45,6 +45,12 @@ def test_the_half_branches_and_the_dimension_make_the_kind(
     half_branches: list[tuple[float, float]], dimension: int, kind: Kind
 ) -> None:
     assert point(half_branches, dimension).kind is kind
+
+
+def test_a_point_of_a_surface_with_no_larger_null_space_is_undecided() -> None:
+    on_surface = point([], 2)
+    assert on_surface.kind is Kind.SURFACE
+    assert replace(on_surface, null_space=np.eye(2)).kind is Kind.UNDECIDED
 
 
 @pytest.mark.parametrize("is_through", [False, True])

@@ -173,6 +173,44 @@ def test_spheres_side_by_side_are_two_surfaces(gap: float) -> None:
     assert [part.area for part in parts] == pytest.approx([np.pi] * 2, rel=1e-6)
 
 
+@pytest.mark.parametrize("gap", [1e-3, 1e-5])
+def test_parallel_planes_are_two_surfaces_however_near(gap: float) -> None:
+    problem = FunctionProblem(lambda u: np.array([u[2] * (u[2] - gap)]), [(-1, 1)] * 3)
+    parts = cover_surface(problem, np.array([[0.1, 0.2, 0.0]])).parts()
+    assert [part.euler_characteristic for part in parts] == [1, 1]
+    assert [part.area for part in parts] == pytest.approx([4, 4], rel=1e-9)
+
+
+def test_a_surface_with_one_side_has_an_euler_characteristic() -> None:
+    def moebius_band(u: np.ndarray) -> np.ndarray:
+        x, y, z, w = u
+        return np.array([x**2 + y**2 - 1, z * (1 - x) - w * y, z * y - w * (1 + x)])
+
+    bounds = [(-1.5, 1.5), (-1.5, 1.5), (-1, 1), (-1, 1)]
+    problem = FunctionProblem(moebius_band, bounds)
+    charts = cover_surface(problem, np.array([[1.0, 0, 0.5, 0]]))
+    assert charts.outcome is Covering.COMPLETE
+    assert charts.euler_characteristic == 0
+    assert charts.area == pytest.approx(14.832242382922185, rel=1e-6)
+
+
+def test_an_area_is_refined_without_smaller_charts() -> None:
+    def ellipsoid(u: np.ndarray) -> np.ndarray:
+        return np.array([u[0] ** 2 + u[1] ** 2 / 4 + u[2] ** 2 / 9 - 1])
+
+    problem = FunctionProblem(ellipsoid, [(-3.5, 3.5)] * 3)
+    charts = cover_surface(problem, np.array([[1.0, 0, 0]]), radius=0.9)
+    assert charts.euler_characteristic == 2
+    assert abs(charts.area - 48.88214630258206) < charts.area_error < 1e-7 * charts.area
+
+
+def test_a_bridge_between_two_bounds_is_in_one_piece_or_said_to_be_open() -> None:
+    # its width is 1e-3, and planes cut it off
+    problem = FunctionProblem(lambda u: np.array([u @ u - 1]), [(-0.7075, 0.7075)] * 3)
+    charts = cover_surface(problem, np.full((1, 3), np.sqrt(1 / 3)))
+    assert charts.outcome is not Covering.COMPLETE or len(charts.parts()) == 1
+
+
 def test_where_both_sheets_that_cross_are_covered_nothing_is_missed() -> None:
     starts = np.array([[-0.9, 0, 0], [1.0, 0, 0]])
     charts = cover_surface(two_spheres(0.4), starts, radius=0.4)
