@@ -392,9 +392,12 @@ class _Cover:
         charts = self._charts(self._looked_from)
         self._looked_from = len(self._front)
         some = ~charts.are_clear
-        return solutions_across(
+        found = solutions_across(
             self.problem, charts.centers[some], charts.bases[some], charts.radii[some]
         )
+        is_told = found.distances > SAME * self.problem.domain.scale
+        self._undecided += int(np.count_nonzero(~is_told))
+        return found.points[is_told]
 
     def grow(self, charts: int, deadline: Deadline) -> Covering:
         """Add charts at open vertices until there are none, or until a limit is

@@ -7,6 +7,8 @@ its other roots lie next to the next two sheets.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from bifurc.numerics.corrector import normal_corrections
@@ -22,24 +24,30 @@ PROBE, FARTHEST = 0.05, 1.0
 AWAY = 0.5
 
 
+class OtherSheets(NamedTuple):
+    """Solutions ``points`` (k, n) on sheets at ``distances`` (k,) from another one."""
+
+    points: np.ndarray
+    distances: np.ndarray
+
+
 def solutions_across(
     problem: Problem, centers: np.ndarray, bases: np.ndarray, radii: np.ndarray
-) -> np.ndarray:
-    """Solutions (k, n) straight above or below the ``centers`` (c, n) of charts with
-    tangent planes ``bases`` (c, n, 2) and ``radii`` (c,)."""
-    nothing = np.empty((0, problem.n))
+) -> OtherSheets:
+    """Solutions straight above or below the ``centers`` (c, n) of charts with tangent
+    planes ``bases`` (c, n, 2) and ``radii`` (c,)."""
     if problem.n < 3 or not len(centers):
-        return nothing
+        return OtherSheets(np.empty((0, problem.n)), np.empty(0))
     normals, distances = _places_across(problem, centers, radii)
     chart, which = np.nonzero(np.abs(distances) < FARTHEST * radii[:, None])
     aside = distances[chart, which][:, None] * normals[chart]
     corrected = normal_corrections(problem, centers[chart] + aside, bases[chart])
     is_solved = corrected.is_settled & (corrected.gaps < SOLVED)
     offset = problem.domain.difference(corrected.points, centers[chart])
-    is_away = np.linalg.norm(offset, axis=1) > AWAY * np.linalg.norm(aside, axis=1)
-    is_inside = problem.domain.are_inside(corrected.points)
-    points: np.ndarray = corrected.points[is_solved & is_away & is_inside]
-    return points
+    reached = np.linalg.norm(offset, axis=1)
+    is_away = reached > AWAY * np.linalg.norm(aside, axis=1)
+    is_other = is_solved & is_away & problem.domain.are_inside(corrected.points)
+    return OtherSheets(corrected.points[is_other], reached[is_other])
 
 
 def _places_across(

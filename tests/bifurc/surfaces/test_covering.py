@@ -276,3 +276,10 @@ def test_there_is_no_tangent_plane_where_the_derivatives_are_no_numbers():
     inside, rim = np.array([1.0, 0.3]), np.array([np.pi / 2, 0.3])
     assert tangent_plane_at(problem, inside, np.eye(2))[1] == pytest.approx(1.0)
     assert tangent_plane_at(problem, rim, np.eye(2))[1] == 0.0
+
+
+@pytest.mark.parametrize("gap", [1e-8, 1e-9])
+def test_planes_too_near_to_be_told_apart_are_said_to_be(gap: float) -> None:
+    problem = FunctionProblem(lambda u: np.array([u[2] * (u[2] - gap)]), [(-1, 1)] * 3)
+    charts = cover_surface(problem, np.array([[0.1, 0.2, 0.0]]))
+    assert charts.outcome is Covering.UNDECIDED

@@ -39,6 +39,6 @@ def test_a_ray_ends_where_the_sheet_is_upright() -> None:
 def test_the_other_sheet_is_seen_from_both_sides(gap: float) -> None:
     problem = spheres(np.zeros(3), 1.0, np.zeros(3), 1.0 + gap)
     centers = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0 + gap]])
-    seen = solutions_across(problem, centers, PLANES[:2], np.array([0.2, 0.2]))
+    seen = solutions_across(problem, centers, PLANES[:2], np.array([0.2, 0.2])).points
     heights = np.sort(seen[:, 2])
     assert np.abs(heights - [1.0, 1.0 + gap]).max() < 1e-15 / gap
