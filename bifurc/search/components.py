@@ -58,6 +58,7 @@ MOST_POINTS = 200  # singular points of surfaces that are located
 # Those among them that are samples of curves of singular points, which have no end.
 MOST_SAMPLES = 24
 NULLITY = 3  # of F' at a singular point of a surface
+MOST_NULLITY = 4  # where two surfaces share nothing but a point, their planes span that
 # Distance from a chart's centre at which its singular point is looked for: over the
 # chart's radius, which counts as no smaller than a share of the problem's scale.
 REACH = 4.0
@@ -394,7 +395,9 @@ def _point_next_to(
     """The singular point of a surface next to a ``place`` (n,) on a chart of a
     ``radius``."""
     reach = REACH * max(radius, SMALLEST_RADIUS * problem.domain.scale)
-    point = locate_singular_point(problem, place, NULLITY, reach)
+    nullities = range(NULLITY, min(problem.n, MOST_NULLITY) + 1)
+    located = (locate_singular_point(problem, place, k, reach) for k in nullities)
+    point = next((one for one in located if one is not None), None)
     if point is None:
         return None
     is_blurred = point.error > BLURRED * reach

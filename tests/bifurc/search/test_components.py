@@ -269,3 +269,15 @@ def test_sheets_nearer_than_doubles_tell_apart_are_in_doubt_and_double_ones_are_
     atlas = explore(problem, settings=SearchSettings(starts=20))
     assert len(atlas.surfaces) == 1
     assert atlas.completeness.is_in_doubt is is_in_doubt
+
+
+def test_surfaces_that_share_a_point_alone_meet_there():
+    # complex lines z = w and z = -w
+    def squares(u):
+        x, y, a, b = u
+        return [x * x - y * y - a * a + b * b, x * y - a * b]
+
+    atlas = explore(FunctionProblem(squares, [(-1, 1)] * 4))
+    (point,) = atlas.points
+    assert point.surfaces == (0, 1)
+    assert np.abs(point.point.u).max() < 1e-9
