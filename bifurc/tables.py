@@ -51,12 +51,12 @@ def section_of(
 
 def count_of(number: int, noun: str) -> str:
     """``number`` and the noun in its number: "1 form", "2 assemblies",
-    "3 near misses", "4 touches"."""
+    "3 near misses", "4 touches", "5 boxes"."""
     if number == 1:
         return f"{number} {noun}"
     if noun.endswith("y"):
         return f"{number} {noun[:-1]}ies"
-    if noun.endswith(("s", "ch")):
+    if noun.endswith(("s", "ch", "x")):
         return f"{number} {noun}es"
     return f"{number} {noun}s"
 

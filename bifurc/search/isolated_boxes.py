@@ -30,6 +30,7 @@ AT_ONCE = 2048
 MOST_OPEN = 6000  # boxes that wait: where there are more, solutions are no points
 NEWTON_STEPS = 6
 PRODUCTS = 1e-14  # rounding of products of matrices, over their sizes
+OUTWARDS = 1.0 + PRODUCTS  # makes a bound of what is rounded
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +71,10 @@ class _Boxes(NamedTuple):
         low, high = zip(self, others, strict=True)
         return _Boxes(np.concatenate(low), np.concatenate(high))
 
+    def reaches(self, middles: np.ndarray) -> np.ndarray:
+        """How far each reaches (k, n) from ``middles`` (k, n), which are rounded."""
+        return OUTWARDS * np.maximum(self.high - middles, middles - self.low)
+
     def holds(self, points: np.ndarray) -> np.ndarray:
         """Which boxes hold the points (k, n), one each."""
         return np.asarray(np.all((self.low <= points) & (points <= self.high), axis=1))
@@ -90,7 +95,7 @@ def isolated_in_boxes(tape: Tape, domain: Domain, most: int) -> IsolatedInBoxes 
     boxes; None where they are not as many, or too many, jump or have no bounds."""
     if np.any(tape.operations == Operation.ANGLE):
         return None
-    bounds = _region(domain)
+    bounds = _region(tape, domain)
     if tape.m != tape.n or tape.n > MOST_UNKNOWNS or not np.all(np.isfinite(bounds)):
         return None
     division = _Division(tape, bounds)
@@ -125,18 +130,40 @@ class _Division:
         self.singles = self.singles.and_others(now.at(verdicts.is_single))
         is_open = ~verdicts.is_empty & ~verdicts.is_single
         rest = verdicts.left.at(is_open)
-        is_small = _is_small(rest, LEAST * self.widths)
+        can_be_cut = _can_be_cut(rest, LEAST * self.widths)
+        is_small = ~can_be_cut.any(axis=1)
         self.left = self.left.and_others(rest.at(is_small))
-        shares = verdicts.shares[is_open][~is_small]
+        shares = np.where(can_be_cut, verdicts.shares[is_open], -1.0)[~is_small]
         self.waiting = _halves(rest.at(~is_small), shares).and_others(later)
 
 
-def _region(domain: Domain) -> np.ndarray:
-    """The bounds (n, 2), of a circle one period and a little more."""
+def _region(tape: Tape, domain: Domain) -> np.ndarray:
+    """The bounds (n, 2), of a circle one period and a little more, of others what counts
+    as inside, unless the equations are defined on one side of a bound only."""
     is_circle = np.isfinite(domain.periods) & np.isinf(domain.bounds).all(axis=1)
     half = np.where(is_circle, TURN * domain.periods, 0.0)
     turn = np.column_stack([-half, half])
-    return np.where(is_circle[:, None], turn, domain.bounds)
+    bounds = np.where(is_circle[:, None], turn, domain.bounds)
+    wider = bounds.copy()
+    for unknown in np.flatnonzero(~is_circle):
+        for side, slack in enumerate((-domain.slack, domain.slack)):
+            beyond = _defined_beside(tape, bounds, unknown, side, slack)
+            inside = _defined_beside(tape, bounds, unknown, side, -slack)
+            if np.all(beyond >= inside):
+                wider[unknown, side] += slack
+    return wider
+
+
+def _defined_beside(
+    tape: Tape, bounds: np.ndarray, unknown: int, side: int, slack: float
+) -> np.ndarray:
+    """Which of the values of F and F' are bounded from one of the ``bounds`` (n, 2) to
+    ``slack`` beyond it."""
+    slab = bounds.copy()
+    slab[unknown] = np.sort(bounds[unknown, side] + [0.0, slack])
+    ends = [np.ascontiguousarray(column[None]) for column in slab.T]
+    values = (*tape.compiled.value_bounds(*ends), *tape.compiled.jacobian_bounds(*ends))
+    return np.isfinite(np.concatenate([value.ravel() for value in values]))
 
 
 def _divided(boxes: _Boxes) -> tuple[_Boxes, _Boxes]:
@@ -151,7 +178,7 @@ def _judged(tape: Tape, boxes: _Boxes, widths: np.ndarray) -> _Verdicts:
     """What bounds on F and F' show of boxes; ``widths`` (n,) are those of the bounds."""
     middles = 0.5 * (boxes.low + boxes.high)
     at_middle = tape.compiled.value_bounds(middles, middles)
-    changes = _changes(tape, boxes)
+    changes = _changes(tape, boxes, middles)
     reach = changes.sum(axis=2)
     values = tape.compiled.value_bounds(*map(np.ascontiguousarray, boxes))
     is_empty = np.any(leave_out_zero(values, at_middle, reach), axis=1)
@@ -175,12 +202,12 @@ def _shares(changes: np.ndarray, widths: np.ndarray) -> np.ndarray:
     return np.where(is_known, shares, widths)
 
 
-def _changes(tape: Tape, boxes: _Boxes) -> np.ndarray:
-    """Bounds (k, m, n) on what each unknown changes the equations by from the middle of
-    a box."""
+def _changes(tape: Tape, boxes: _Boxes, middles: np.ndarray) -> np.ndarray:
+    """Bounds (k, m, n) on what each unknown changes the equations by from the
+    ``middles`` (k, n) of boxes; their sums are bounds as well."""
     least, most = tape.compiled.jacobian_bounds(*map(np.ascontiguousarray, boxes))
-    half = 0.5 * (boxes.high - boxes.low)
-    changes: np.ndarray = np.maximum(np.abs(least), np.abs(most)) * half[:, None]
+    reaches = OUTWARDS * boxes.reaches(middles)[:, None]
+    changes: np.ndarray = np.maximum(np.abs(least), np.abs(most)) * reaches
     return changes
 
 
@@ -198,11 +225,12 @@ def _krawczyk(
     if not len(chosen):
         return _Boxes(low, high)
     ends = [value[chosen, :, None] / rows[chosen] for value in values]
-    half = 0.5 * (boxes.high - boxes.low)[chosen, :, None]
+    half = boxes.reaches(middles)[chosen, :, None]
     value, spread = 0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0])
     step, reach = slopes.at(chosen).newton_step(value, spread, half)
     # what overflows shows nothing
-    lowest, highest = middles[chosen] - step - reach, middles[chosen] - step + reach
+    lowest = np.nextafter(middles[chosen] - (step + reach), -np.inf)
+    highest = np.nextafter(middles[chosen] - (step - reach), np.inf)
     low[chosen] = np.where(np.isnan(lowest), -np.inf, lowest)
     high[chosen] = np.where(np.isnan(highest), np.inf, highest)
     return _Boxes(low, high)
@@ -246,15 +274,15 @@ class _Slopes(NamedTuple):
         identity = np.eye(self.center.shape[1])
         left_over = np.abs(identity - inverse @ self.center) + sizes @ radius
         reach = left_over @ half + sizes @ (spread + PRODUCTS * np.abs(value))
-        return (inverse @ value)[:, :, 0], reach[:, :, 0]
+        return (inverse @ value)[:, :, 0], OUTWARDS * reach[:, :, 0]
 
 
-def _is_small(boxes: _Boxes, least: np.ndarray) -> np.ndarray:
-    """Which boxes (k,) rounding does not let be cut any more."""
+def _can_be_cut(boxes: _Boxes, least: np.ndarray) -> np.ndarray:
+    """In which unknowns (k, n) rounding lets boxes be cut."""
     farthest = np.maximum(np.abs(boxes.low), np.abs(boxes.high))
     limit = np.maximum(FEWEST_ULPS * np.spacing(farthest), least)
-    is_small: np.ndarray = (boxes.high - boxes.low <= limit).all(axis=1)
-    return is_small
+    can_be_cut: np.ndarray = boxes.high - boxes.low > limit
+    return can_be_cut
 
 
 def _halves(boxes: _Boxes, shares: np.ndarray) -> _Boxes:

@@ -28,8 +28,8 @@ SLOWEST = 0.95  # rate at which they shrink, at most, where the rest of them is 
 FARTHEST = 4.0  # errors of the point in doubles, and at least this share of the scale:
 NEAREST = 0.02  # no farther away is the point
 ENOUGH = 1e-16  # length of the last step over the scale
-SETTLED = 1e-14  # error of the place then, over the scale
-LEAST = 1e-26  # of F, over the magnitude and the scale, that counts as anything
+SETTLED = 1e-15  # error of the place then, over the scale, beside what doubles round
+LEAST = 1e-30  # of F, over the magnitude and the scale, that counts as anything
 
 
 def held_to_exact_equations(
@@ -96,7 +96,8 @@ def precisely_located(
         return located._replace(is_confirmed=False)
     u, vectors = end
     null_space, _ = np.linalg.qr(vectors)
-    settled = LocatedPoint(u, null_space, SETTLED * problem.domain.scale)
+    error = SETTLED * problem.domain.scale + float(np.linalg.norm(np.spacing(u)))
+    settled = LocatedPoint(u, null_space, error)
     held = held_to_exact_equations(problem, settled, misclosure)
     if held is None:
         return None

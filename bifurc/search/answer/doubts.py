@@ -35,7 +35,7 @@ from bifurc.numerics.blur import (
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
-from bifurc.search.answer.completeness import SearchDoubt
+from bifurc.search.answer.completeness import SearchClaim, SearchDoubt
 from bifurc.search.findings import Findings
 from bifurc.search.own_units.unit_problem import sheets_beside
 from bifurc.search.records import RigidAssembly, TracedBranch
@@ -174,6 +174,7 @@ def doubts_of_findings(
     for kind, count in counts.items():
         if count:
             yield kind.doubt(amount=is_faint.threshold, count=int(count))
+    yield from _doubts_of_assumed_bounds(problem, findings)
     knows_all = findings.audit is not None and findings.audit.has_all_isolated
     if (traces or findings.near_surfaces) and not knows_all:
         yield SearchDoubt.NEAR_ASSEMBLIES.doubt()
@@ -196,6 +197,16 @@ def doubts_of_findings(
         yield SearchDoubt.UNCHARTED.doubt(starts=off_charts)
     if findings.gaps_of_stops:
         yield SearchDoubt.SHORT_STOPS.doubt(amount=min(findings.gaps_of_stops))
+
+
+def _doubts_of_assumed_bounds(problem: Problem, findings: Findings) -> Iterator[Doubt]:
+    """That of solutions which paths reach, beyond bounds that nobody gave."""
+    if findings.audit is None or not np.any(problem.domain.has_assumed_bounds):
+        return
+    for claim in findings.audit.claims:
+        beyond = claim.data.get("real", 0) - claim.data.get("inside", 0)
+        if SearchClaim.ALL_ISOLATED.is_kind_of(claim) and beyond > 0:
+            yield SearchDoubt.BEYOND_ASSUMED_BOUNDS.doubt(count=beyond)
 
 
 def are_on_rim(problem: Problem, assemblies: Collection[RigidAssembly]) -> np.ndarray:

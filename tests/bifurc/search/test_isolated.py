@@ -5,7 +5,7 @@ import pytest
 
 import bifurc
 from bifurc.completeness import Level
-from bifurc.search.answer.completeness import SearchClaim
+from bifurc.search.answer.completeness import SearchClaim, SearchDoubt
 from bifurc.settings import SearchSettings
 
 FEW = SearchSettings(starts=5, near_motions=False)
@@ -139,3 +139,13 @@ def test_no_more_paths_are_followed_than_are_asked_for(paths):
     settings = SearchSettings(starts=5, near_motions=False, paths=paths)
     atlas = explored(economics, [(-30, 30)] * 5, settings)
     assert atlas.completeness.level is Level.ESTIMATED
+
+
+def test_solutions_beyond_bounds_that_nobody_gave_are_a_doubt():
+    problem = bifurc.FunctionProblem(
+        lambda u: [(u[0] - 1) * (u[0] - 1e9), u[1] - u[0]], [(-np.inf, np.inf)] * 2
+    )
+    completeness = bifurc.explore(problem).completeness
+    (doubt,) = completeness.doubts
+    assert doubt.kind == SearchDoubt.BEYOND_ASSUMED_BOUNDS.name
+    assert doubt.data["count"] == 1

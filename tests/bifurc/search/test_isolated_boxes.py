@@ -115,6 +115,35 @@ def test_a_double_solution_is_left_open():
     )
 
 
+@pytest.mark.parametrize("side", ["low", "high"])
+@pytest.mark.parametrize("turns", [1, 2, 3, 5])
+def test_a_solution_in_a_bound_that_is_rounded_is_listed(turns, side):
+    root = turns * np.pi  # off by rounding, to either side
+    bounds = (root, root + 1.5) if side == "low" else (root - 1.5, root)
+    problem = bifurc.FunctionProblem(
+        lambda u: [np.sin(u[0]), np.sin(u[1])], [bounds, (-1, 1)]
+    )
+    found = isolated_in_boxes(problem.recording.tape, problem.domain, MOST)
+    assert found.is_complete
+    assert found.points == pytest.approx(np.array([[root, 0.0]]))
+
+
+def test_a_solution_beyond_a_bound_by_rounding_is_listed():
+    problem = bifurc.FunctionProblem(
+        lambda u: [u[0] - (0.1 + 0.2), np.log(u[1] + 1)], [(0, 0.3), (-1, 1)]
+    )
+    atlas = bifurc.explore(problem, settings=bifurc.SearchSettings(starts=3))
+    assert atlas.rigid == pytest.approx(np.array([[0.3, 0.0]]))
+
+
+def test_boxes_about_a_double_solution_are_cut_in_every_unknown():
+    problem = bifurc.FunctionProblem(
+        lambda u: [u[0] ** 2 + u[1] ** 2 - 1, u[0] - 1], [(-2, 2)] * 2
+    )
+    found = isolated_in_boxes(problem.recording.tape, problem.domain, MOST)
+    assert np.ptp(found.left[:, 1], axis=1).max() < 1e-6
+
+
 def test_open_boxes_about_nothing_that_is_listed_are_a_doubt():
     settings = bifurc.SearchSettings(boxes=3, paths=0)
     problem = bifurc.FunctionProblem(lambda u: [np.tanh(1e9 * u[0]) - 0.5], [(-1, 1)])

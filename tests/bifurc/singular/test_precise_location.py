@@ -39,6 +39,30 @@ def test_a_miss_that_doubles_do_not_see_leaves_the_point_in_doubt():
     assert not exactly.is_confirmed
 
 
+@pytest.mark.parametrize("gap", [1e-11, 1e-12, 2e-13])
+def test_curves_that_nearly_touch_are_in_doubt(gap):
+    problem = FunctionProblem(
+        lambda u: [(u[1] - u[0] ** 2) * (u[1] + gap)], [(-2, 2)] * 2
+    )
+    exactly = precisely_located(problem, located(1e-8, 1e-8))
+    assert exactly is not None
+    assert not exactly.is_confirmed
+
+
+@pytest.mark.parametrize("center", [0.0, 3.0, 1000.0])
+def test_curves_that_touch_far_from_the_origin_are_confirmed(center):
+    problem = FunctionProblem(
+        lambda u: [
+            ((u[0] - center) ** 2 + u[1] ** 2 - 1)
+            * (3 * (u[0] - center) + 4 * u[1] - 5)
+        ],
+        [(center - 2, center + 2), (-2, 2)],
+    )
+    exactly = precisely_located(problem, located(center + 0.6, 0.8))
+    assert exactly is not None
+    assert exactly.is_confirmed
+
+
 def test_a_crossing_is_confirmed_where_coefficients_are_rounded():
     problem = FunctionProblem(
         lambda u: [u[1] ** 2 - u[0] ** 2 + 0.2 * u[0] - 0.01], [(-1, 1)] * 2
