@@ -73,7 +73,8 @@ class _Boxes(NamedTuple):
 
     def reaches(self, middles: np.ndarray) -> np.ndarray:
         """How far each reaches (k, n) from ``middles`` (k, n), which are rounded."""
-        return OUTWARDS * np.maximum(self.high - middles, middles - self.low)
+        farther: np.ndarray = np.maximum(self.high - middles, middles - self.low)
+        return OUTWARDS * farther
 
     def holds(self, points: np.ndarray) -> np.ndarray:
         """Which boxes hold the points (k, n), one each."""
@@ -131,7 +132,7 @@ class _Division:
         is_open = ~verdicts.is_empty & ~verdicts.is_single
         rest = verdicts.left.at(is_open)
         can_be_cut = _can_be_cut(rest, LEAST * self.widths)
-        is_small = ~can_be_cut.any(axis=1)
+        is_small = np.asarray(~can_be_cut.any(axis=1))
         self.left = self.left.and_others(rest.at(is_small))
         shares = np.where(can_be_cut, verdicts.shares[is_open], -1.0)[~is_small]
         self.waiting = _halves(rest.at(~is_small), shares).and_others(later)
@@ -145,7 +146,7 @@ def _region(tape: Tape, domain: Domain) -> np.ndarray:
     turn = np.column_stack([-half, half])
     bounds = np.where(is_circle[:, None], turn, domain.bounds)
     wider = bounds.copy()
-    for unknown in np.flatnonzero(~is_circle):
+    for unknown in np.flatnonzero(~is_circle).tolist():
         for side, slack in enumerate((-domain.slack, domain.slack)):
             beyond = _defined_beside(tape, bounds, unknown, side, slack)
             inside = _defined_beside(tape, bounds, unknown, side, -slack)
@@ -163,7 +164,10 @@ def _defined_beside(
     slab[unknown] = np.sort(bounds[unknown, side] + [0.0, slack])
     ends = [np.ascontiguousarray(column[None]) for column in slab.T]
     values = (*tape.compiled.value_bounds(*ends), *tape.compiled.jacobian_bounds(*ends))
-    return np.isfinite(np.concatenate([value.ravel() for value in values]))
+    are_bounded: np.ndarray = np.isfinite(
+        np.concatenate([value.ravel() for value in values])
+    )
+    return are_bounded
 
 
 def _divided(boxes: _Boxes) -> tuple[_Boxes, _Boxes]:
