@@ -667,7 +667,7 @@ def _checked_bounds(
 ) -> np.ndarray:
     """The bounds as an array (n, 2)."""
     checked = floats_of(what, bounds)
-    allowed = "rows of (low, high) with low < high"
+    allowed = "rows of (low, high) with low < high, -inf or inf where there is no bound"
     if checked.ndim != 2 or checked.shape[1] != 2:
         raise ProblemError(what, checked.tolist(), allowed)
     low, high = checked.T
