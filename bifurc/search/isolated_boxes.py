@@ -94,10 +94,11 @@ class _Verdicts(NamedTuple):
 def isolated_in_boxes(tape: Tape, domain: Domain, most: int) -> IsolatedInBoxes | None:
     """The solutions of as many recorded equations as unknowns within bounds, from ``most``
     boxes; None where they are not as many, or too many, jump or have no bounds."""
-    if np.any(tape.operations == Operation.ANGLE):
+    is_small = tape.m == tape.n <= MOST_UNKNOWNS
+    if not is_small or np.any(tape.operations == Operation.ANGLE):
         return None
     bounds = _region(tape, domain)
-    if tape.m != tape.n or tape.n > MOST_UNKNOWNS or not np.all(np.isfinite(bounds)):
+    if not np.all(np.isfinite(bounds)):
         return None
     division = _Division(tape, bounds)
     while division.is_open and division.count < most and not is_time_over():

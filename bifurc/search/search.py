@@ -326,6 +326,8 @@ class Search:
                 yield half_branch_starts(sighting.point)
             elif stops_short(float(gaps[k])):
                 findings.gaps_of_stops.append(float(gaps[k]))
+        if self.run.is_over:
+            return
         is_slow = is_inside & ~is_near
         is_slow[is_slow] = ~is_at_rest(self._slopes(ends[is_slow]))
         for end in ends[is_slow][:LOOKS_WHERE_SLOW]:

@@ -50,6 +50,7 @@ from bifurc.limits import (
     current_deadline,
     cut_off_after,
     is_time_over,
+    made_in_time,
 )
 from bifurc.numerics.singular_values import values_of
 from bifurc.problem import Problem
@@ -470,7 +471,9 @@ def in_own_units(problem: Problem) -> UnitProblem | None:
     if has_no_own_answers(problem) and problem.n <= LARGEST_DENSE:
         own = _in_units_of_solutions(problem)
     if own is None:
-        own = _in_one_unit(problem, _unit_of(problem))
+        own = made_in_time(lambda: _in_one_unit(problem, _unit_of(problem)))
+    if own is None:
+        return None
     units = own.own_units
     has_gained = np.any(units.origin) or own.simplified is not None
     has_sizes = np.any(units.sizes != 1.0) or np.any(units.weights != 1.0)
