@@ -304,14 +304,15 @@ def _corners_of_pairs(
     polygons of ``count`` charts to which they belong (v,)."""
     sizes = np.bincount(owner, minlength=count)
     first = np.cumsum(sizes) - sizes
-    place = np.arange(sizes.max(initial=0))
-    corner = np.where(place < sizes[:, None], first[:, None] + place, -1)
     own = np.arange(count)
     one = np.concatenate([own, neighbours[:, 0]])
     other = np.concatenate([own, neighbours[:, 1]])
-    i, j = np.broadcast_arrays(corner[one][:, :, None], corner[other][:, None])
-    is_pair = (i >= 0) & (j > i)
-    return i[is_pair], j[is_pair]
+    counts = sizes[one] * sizes[other]
+    pair = np.repeat(np.arange(len(one)), counts)
+    number = np.arange(len(pair)) - np.repeat(np.cumsum(counts) - counts, counts)
+    place, place_in_other = np.divmod(number, sizes[other][pair])
+    i, j = first[one][pair] + place, first[other][pair] + place_in_other
+    return i[j > i], j[j > i]
 
 
 def _next_vertex(vertex: np.ndarray, polygons: list[Polygon]) -> np.ndarray:
