@@ -27,6 +27,7 @@ from bifurc.decisions import (
     unit_over_rounding,
 )
 from bifurc.function_problem import EquationProblem
+from bifurc.limits import is_time_over
 from bifurc.numerics.blur import (
     change_by_blur,
     distance_to_singular,
@@ -109,8 +110,9 @@ def _doubts_of_crossings(
     points: Sequence[MeetingPoint],
     surfaces: Sequence[Surface],
 ) -> Iterator[Doubt]:
-    """Whether curves have to cross once more next to singular points."""
-    if surfaces:
+    """Whether curves have to cross once more next to singular points; nothing where the
+    time is over, which is said of the whole search."""
+    if surfaces or is_time_over():
         return
     located = [point.point for point in points]
     branches = [one.branch for one in traced]
