@@ -52,7 +52,7 @@ class Sizes(NamedTuple):
         """Of which cells (c,) the area is not known well enough, nor that of all."""
         share = self.errors / max(self.areas.sum(), 1e-300)
         is_known = share.sum() <= WELL_KNOWN
-        are_vague: np.ndarray = (share > WELL_KNOWN / len(share)) & ~is_known
+        are_vague: np.ndarray = (share > WELL_KNOWN / max(len(share), 1)) & ~is_known
         return are_vague
 
     def with_part(self, others: Sizes, among: np.ndarray) -> Sizes:

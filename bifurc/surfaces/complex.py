@@ -62,9 +62,10 @@ class Cells(NamedTuple):
     @property
     def following(self) -> np.ndarray:
         """Number (e,) of the edge after each one around its polygon."""
-        after = np.arange(1, len(self.chart) + 1)
-        is_last = np.append(self.chart[1:] != self.chart[:-1], True)
-        after[is_last] = np.searchsorted(self.chart, self.chart)[is_last]
+        first = np.searchsorted(self.chart, self.chart)
+        end = np.searchsorted(self.chart, self.chart, side="right")
+        next_one = np.arange(1, len(self.chart) + 1)
+        after: np.ndarray = np.where(next_one < end, next_one, first)
         return after
 
     def misfits(self) -> np.ndarray:
@@ -291,7 +292,7 @@ def _are_nested(
 ) -> np.ndarray:
     """Whether of two corners (p,) and (p,), each ``between`` three charts and bounds (v,
     3), one lies on all bounds of the other."""
-    on_bounds = bounds_of(between.ravel(), n).reshape(len(between), -1, 2 * n)
+    on_bounds = bounds_of(between.ravel(), n).reshape(*between.shape, 2 * n)
     one, other = on_bounds[i].any(axis=1), on_bounds[j].any(axis=1)
     are_nested: np.ndarray = np.all(one <= other, axis=1) | np.all(other <= one, axis=1)
     return are_nested
