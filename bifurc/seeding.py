@@ -17,6 +17,7 @@ from bifurc.torus import wrap
 AT_ONCE = 10  # starts between two looks at the clock, fewer where these
 QUICK = 0.1  # s or more take
 CONFIDENCE = 0.95  # of the limit of the probability that something was missed
+STEPS = 8  # of Newton's iteration for that limit
 
 
 def random_seeds(
@@ -120,7 +121,20 @@ def missed_probability(hits: Sequence[int]) -> float:
     singles = sum(1 for count in hits if count == 1)
     limit = -math.log(1.0 - CONFIDENCE)
     if singles:
-        from scipy.special import gammaincinv
-
-        limit = float(gammaincinv(singles + 1, CONFIDENCE))
+        limit = _largest_poisson_mean(singles)
     return min(1.0, limit / starts)
+
+
+def _largest_poisson_mean(count: int) -> float:
+    """The mean of a Poisson distribution that gives no more than so many with the chance
+    that is left by the confidence."""
+    # scipy.special, which has it, takes longer to import than a small problem to solve
+    numbers = np.arange(count + 1)
+    factorials = np.append(0.0, np.cumsum(np.log(numbers[1:])))
+    mean = count + 1.0
+    for _ in range(STEPS):
+        chances = np.exp(numbers * math.log(mean) - mean - factorials)
+        mean += (
+            math.log(chances.sum() / (1.0 - CONFIDENCE)) * chances.sum() / chances[-1]
+        )
+    return mean

@@ -7,13 +7,10 @@ import math
 import numbers
 import sys
 from collections.abc import Container, Iterable, Mapping, Sequence
-from typing import Any
-
-import numpy as np
+from typing import Any, TypeGuard
 
 from bifurc.errors import ValueNotAllowed
 
-FLOATS = (int, float, np.integer, np.floating)  # numbers that are floats or become one
 # beyond it doubles tell an angle to less than 1e-12 rad, to which loops close
 MOST_TURNS = 1000
 SHORTEST, LONGEST = 1e-100, 1e100  # vectors whose squares are in the range of doubles
@@ -81,14 +78,21 @@ def check_number(name: str, value: object) -> None:
     """
     if type(value) is float and math.isfinite(value):
         return  # as a rule
-    if isinstance(value, FLOATS) and not isinstance(value, bool):
+    if _is_float(value) and not isinstance(value, bool):
         if not _is_finite(value):
             raise GeometryError(name, value, "a finite number")
     elif not _is_number_of_library(value):
         raise GeometryError(name, quoted(value), "a number")
 
 
-def _is_finite(value: float | np.integer | np.floating) -> bool:
+def _is_float(value: object) -> TypeGuard[float]:
+    """Whether a value is a float or becomes one: a float or an integer of Python or of
+    numpy, which takes long to import."""
+    is_scalar = hasattr(value, "dtype") and isinstance(value, numbers.Real)
+    return isinstance(value, int | float) or is_scalar
+
+
+def _is_finite(value: float) -> bool:
     try:
         return math.isfinite(value)
     except OverflowError:  # an integer beyond all floats
@@ -98,7 +102,7 @@ def _is_finite(value: float | np.integer | np.floating) -> bool:
 def _is_number_of_library(value: object) -> bool:
     """Whether a value that is no float is a real number of mpmath, sympy or
     `linkages.construction.exact`."""
-    if isinstance(value, bool | np.bool_ | np.ndarray):
+    if isinstance(value, bool) or hasattr(value, "dtype"):
         return False
     if isinstance(value, numbers.Complex):
         return isinstance(value, numbers.Real)
@@ -116,7 +120,7 @@ def check_angle(name: str, value: object, *, in_degrees: bool = False) -> None:
     check_number(name, value)
     turn, unit = (360.0, "deg") if in_degrees else (2 * math.pi, "rad")
     largest = MOST_TURNS * turn
-    if not isinstance(value, FLOATS):
+    if not _is_float(value):
         return
     angle = float(value)
     if not abs(angle) <= largest:

@@ -16,8 +16,9 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.curves.misclosure import as_floats
 from bifurc.errors import NOT_DEFINED
+from bifurc.limits import is_time_over
 from bifurc.numerics.null_spaces import TINY, Decomposition, decompose
-from bifurc.system import PreciseResidual, System, hessian_at
+from bifurc.system import PreciseResidual, System
 
 if TYPE_CHECKING:
     import mpmath
@@ -53,37 +54,52 @@ class NearMissValue(NamedTuple):
     error: float
 
 
-def near_miss_value(
-    problem: System, branch: Branch, rank: int, s: float
-) -> NearMissValue:
-    """Singular value number ``rank`` of F' at its minimum on a branch, at arclength
-    ``s``.
+def near_miss_values(
+    problem: System, branch: Branch, rank: int, arclengths: np.ndarray
+) -> list[NearMissValue]:
+    """Singular value number ``rank`` of F' at its minima on a branch, at ``arclengths``
+    (k,).
 
     Rounding in F leaves the place open by as much, over the singular value of each
     direction, and the value changes by l^T F''(r, du) with its singular vectors l and r.
-    Along the curve it does not change to first order.
+    Along the curve it does not change to first order. Past the end of the time values
+    are those of doubles.
     """
-    point = branch(s)
-    step = _visible_step(decompose(problem, point[None]), rank)
-    if np.linalg.norm(step) < LONGEST_STEP * problem.domain.scale:
-        point = point + step
-    decomposition = decompose(problem, point[None])
-    sigma = decomposition.sigma[0, :rank]
-    across = decomposition.right[0, :rank]
-    left = decomposition.left[0, :, rank - 1]
-    bend = np.tensordot(left, hessian_at(problem, point), axes=1) / problem.magnitude
-    gradient = bend @ across[-1]
-    shifts = np.abs(across @ gradient) * RESIDUAL_ROUNDING / np.maximum(sigma, TINY)
-    error = VALUE_ROUNDING + float(shifts.sum())
-    rough = NearMissValue(float(sigma[-1]), min(error, float(sigma[0])))
-    if rank < problem.n - 1 or not _is_to_be_refined(rough):
-        return rough
-    return _refined(problem, branch, s, rough)
+    points = branch(arclengths)
+    steps = _visible_steps(decompose(problem, points), rank)
+    is_short = np.linalg.norm(steps, axis=1) < LONGEST_STEP * problem.domain.scale
+    points[is_short] += steps[is_short]
+    values = _values_of_doubles(problem, points, rank)
+    if rank < problem.n - 1:
+        return values
+    return [
+        _refined(problem, branch, float(s), value)
+        if _is_to_be_refined(value)
+        else value
+        for s, value in zip(arclengths, values, strict=True)
+    ]
+
+
+def _values_of_doubles(
+    problem: System, points: np.ndarray, rank: int
+) -> list[NearMissValue]:
+    """The singular values of a number ``rank`` at points (k, n), with their errors."""
+    decomposition = decompose(problem, points)
+    sigma = decomposition.sigma[:, :rank]
+    across = decomposition.right[:, :rank]
+    left = decomposition.left[:, :, rank - 1]
+    hessians = problem.hessians(points) / problem.magnitude
+    gradients = np.einsum("km,kmij,kj->ki", left, hessians, across[:, -1])
+    shifts = np.abs(np.einsum("kri,ki->kr", across, gradients)) * RESIDUAL_ROUNDING
+    errors = VALUE_ROUNDING + (shifts / np.maximum(sigma, TINY)).sum(axis=1)
+    pairs = zip(sigma[:, -1], np.minimum(errors, sigma[:, 0]), strict=True)
+    return [NearMissValue(float(value), float(error)) for value, error in pairs]
 
 
 def _is_to_be_refined(rough: NearMissValue) -> bool:
-    """Whether a value of doubles is worse than it can be made."""
-    return rough.error > PRECISE * rough.value and rough.value > SMALLEST
+    """Whether a value of doubles is worse than it can be made in the time."""
+    is_open = rough.error > PRECISE * rough.value and rough.value > SMALLEST
+    return is_open and not is_time_over()
 
 
 def _refined(
@@ -99,15 +115,16 @@ def _refined(
     return precise
 
 
-def _visible_step(decomposition: Decomposition, rank: int) -> np.ndarray:
-    """The Gauss-Newton step (n,) of a ``rank`` at one point, along those directions in
-    which the residual is more than rounding: a small singular value amplifies that."""
-    components = decomposition.left[0, :, :rank].T @ decomposition.residuals[0]
+def _visible_steps(decomposition: Decomposition, rank: int) -> np.ndarray:
+    """The Gauss-Newton steps (k, n) of a ``rank``, along those directions in which the
+    residual is more than rounding: a small singular value amplifies that."""
+    left = decomposition.left[:, :, :rank]
+    components = np.einsum("kmr,km->kr", left, decomposition.residuals)
     is_visible = np.abs(components) > RESIDUAL_ROUNDING
-    sigma = np.maximum(decomposition.sigma[0, :rank][is_visible], TINY)
-    shares = components[is_visible] / sigma
-    step: np.ndarray = -shares @ decomposition.right[0, :rank][is_visible]
-    return step
+    shares = components / np.maximum(decomposition.sigma[:, :rank], TINY)
+    shares[~is_visible] = 0.0
+    steps: np.ndarray = -np.einsum("kr,kri->ki", shares, decomposition.right[:, :rank])
+    return steps
 
 
 # --- in many digits -------------------------------------------------------------------

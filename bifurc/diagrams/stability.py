@@ -233,9 +233,11 @@ def _moved(low: MovingSet, high: MovingSet) -> _Moved:
 def _partners(distances: np.ndarray) -> np.ndarray:
     """Which of the others (q,) each of some things is, so that the ``distances`` (q, q)
     are small together."""
-    from scipy.optimize import linear_sum_assignment  # it takes long to import
+    partners: np.ndarray = distances.argmin(axis=1)
+    if len(np.unique(partners)) < len(partners):
+        from scipy.optimize import linear_sum_assignment  # it takes long to import
 
-    partners: np.ndarray = linear_sum_assignment(distances)[1]
+        partners = linear_sum_assignment(distances)[1]
     return partners
 
 

@@ -255,8 +255,11 @@ class _FourierSeries:
 
     def rates(self, angles: np.ndarray) -> np.ndarray:
         """Derivatives at angles (...)."""
-        terms = 1j * self._orders * self._coefficients
-        return (self._waves(angles) @ terms).real
+        return (self._waves(angles) @ self._terms_of_rates).real
+
+    @property
+    def _terms_of_rates(self) -> np.ndarray:
+        return np.asarray(1j * self._orders * self._coefficients)
 
     def _waves(self, angles: np.ndarray) -> np.ndarray:
         """The terms of the series (..., k) at angles (...), without coefficients."""
@@ -268,10 +271,24 @@ class _FourierSeries:
     def roots(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         """Angles (k,), one between each of ``low`` and ``high`` (k,), at which the
         function, which has opposite signs there, is zero."""
-        offsets = _core.roots_of_waves(
+        return FIRST + _core.roots_of_waves(
             self._coefficients, low - FIRST, high - FIRST, ROOT_TOLERANCE
         )
-        return FIRST + offsets
+
+    def level_near(self, at: np.ndarray, reach: float) -> np.ndarray:
+        """Angles (k,), one within ``reach`` of each of those ``at`` (k,), at which the
+        function is level; these themselves where it is steep on one side only, as far as
+        rounding tells."""
+        low, high = at - reach, at + reach
+        has_one = self.rates(low) * self.rates(high) < 0
+        level = at.copy()
+        level[has_one] = FIRST + _core.roots_of_waves(
+            self._terms_of_rates,
+            low[has_one] - FIRST,
+            high[has_one] - FIRST,
+            ROOT_TOLERANCE,
+        )
+        return level
 
 
 class _Zeros(NamedTuple):
@@ -292,18 +309,15 @@ def _find_zeros(function: _FourierSeries, zero: float) -> _Zeros:
     contacts = np.empty(0)
     dips = _dips(function.samples)
     if len(dips):
-        from scipy.optimize.elementwise import find_minimum
-
         at = ANGLES[dips]
-        bracket = (at - step, at, at + step)
-        upright = (signs[dips],)
-        bottom = find_minimum(lambda x, sign: sign * function(x), bracket, args=upright)
+        bottoms = function.level_near(at, step)
+        depths = signs[dips] * function(bottoms)
         # a dip that goes through zero has a sign change on either side
-        is_crossed = bottom.f_x < -zero
-        middle = bottom.x[is_crossed]
+        is_crossed = depths < -zero
+        middle = bottoms[is_crossed]
         low = np.concatenate([low, at[is_crossed] - step, middle])
         high = np.concatenate([high, middle, at[is_crossed] + step])
-        contacts = bottom.x[np.abs(bottom.f_x) <= zero]
+        contacts = bottoms[np.abs(depths) <= zero]
     crossings = np.empty(0)
     if len(low):
         crossings = function.roots(low, high)

@@ -22,10 +22,11 @@ from bifurc.completeness import numbered_form
 from bifurc.curves.certificate import Certificate
 from bifurc.curves.minima import stand_out
 from bifurc.curves.monitor import dead_points
-from bifurc.curves.near_miss import near_miss_value
+from bifurc.curves.near_miss import near_miss_values
 from bifurc.decisions import closes_to_rounding
 from bifurc.limits import Deadline
 from bifurc.numerics.blur import change_by_blur
+from bifurc.numerics.connected_parts import connected_parts
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
 from bifurc.search.answer.completeness import judge_completeness
@@ -184,19 +185,15 @@ def _smallest_value(problem: Problem, traced: TracedBranch) -> float:
 def component_numbers(count: int, points: Sequence[MeetingPoint]) -> list[int]:
     """Number of the connected component of every form, counted from 0 in the order of
     the forms."""
-    # networkx, which could do this, takes longer to import than the search
-    component = {("form", form): form for form in range(count)}
-    for point in points:
-        meeting = [("form", form) for form, _ in point.passes]
-        meeting += [("surface", surface) for surface in point.surfaces]
-        for thing in meeting:
-            component.setdefault(thing, len(component))
-        joined = {component[thing] for thing in meeting}
-        for thing, number in component.items():
-            if number in joined:
-                component[thing] = min(joined)
-    first_forms = [component["form", form] for form in range(count)]
-    return [sorted(set(first_forms)).index(first) for first in first_forms]
+    surfaces = (
+        max((max(point.surfaces, default=-1) for point in points), default=-1) + 1
+    )
+    meeting = [
+        [form for form, _ in point.passes]
+        + [count + number for number in point.surfaces]
+        for point in points
+    ]
+    return connected_parts(count + surfaces, meeting)[:count]
 
 
 def _surfaces(
@@ -267,22 +264,30 @@ def near_misses_of(
     located = np.array([point.u for point in points]).reshape(-1, problem.n)
     errors = np.array([point.error for point in points])
     for form, branch in enumerate(traced):
-        arclengths, values = branch.minima
-        is_low = stand_out(problem, branch.branch, branch.profile, values)
-        arclengths = arclengths[is_low & ~np.isin(arclengths, branch.located)]
+        arclengths = _low_minima(problem, branch)
+        places = wrap(branch.branch(arclengths), periods)
+        apart = problem.domain.difference(places[:, None], located)
+        passed, reach = _passes_of(form, met)
+        # an end that stops short of a cusp is at it
+        is_known = np.any(np.linalg.norm(apart, axis=2) <= errors, axis=1)
+        is_known |= np.any(np.abs(arclengths[:, None] - passed) <= reach, axis=1)
+        arclengths, places = arclengths[~is_known], places[~is_known]
         if not len(arclengths):
             continue
-        places = wrap(branch.branch(arclengths), periods)
-        passed, reach = _passes_of(form, met)
+        rank = branch.profile.rank
+        sizes = near_miss_values(problem, branch.branch, rank, arclengths)
         for k in order_points(places, periods, problem.domain.scale):
-            s = float(arclengths[k])
-            gaps = np.linalg.norm(problem.domain.difference(places[k], located), axis=1)
-            # an end that stops short of a cusp is at it
-            if np.any(gaps <= errors) or np.any(np.abs(s - passed) <= reach):
-                continue
-            size = near_miss_value(problem, branch.branch, branch.profile.rank, s)
-            events.append(Event(form, s, places[k], *size))
+            events.append(Event(form, float(arclengths[k]), places[k], *sizes[k]))
     return tuple(events)
+
+
+def _low_minima(problem: Problem, traced: TracedBranch) -> np.ndarray:
+    """Arclengths (k,) of the minima of the singular value on a branch that stand out,
+    and are not those of singular points that were located there."""
+    arclengths, values = traced.minima
+    is_low = stand_out(problem, traced.branch, traced.profile, values)
+    low: np.ndarray = arclengths[is_low & ~np.isin(arclengths, traced.located)]
+    return low
 
 
 def _passes_of(form: int, met: Sequence[MeetingPoint]) -> tuple[np.ndarray, np.ndarray]:

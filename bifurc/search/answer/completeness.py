@@ -19,6 +19,7 @@ from bifurc.completeness import (
     Scope,
 )
 from bifurc.decisions import closes_to_rounding
+from bifurc.numerics.connected_parts import connected_parts
 from bifurc.search.findings import Findings
 from bifurc.search.seed_book import Fate, SeedFate
 from bifurc.seeding import missed_probability
@@ -108,19 +109,15 @@ def _hits_of_islands(findings: Findings) -> np.ndarray:
 def _islands_of_forms(findings: Findings) -> dict[SeedFate, int]:
     """The number of the island that each traced branch lies on, by the fate of seeds on
     the branch."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    points, branches = findings.points.values(), findings.branches
-    meet = np.zeros((len(points), len(branches)), dtype=bool)
-    for row, point in enumerate(points):
-        for column, branch in enumerate(branches):
-            distance, _ = branch.nearest(point.u, within=point.radius)
-            meet[row, column] = distance[0] <= point.radius
-    rows, columns = np.nonzero(meet)
-    size = len(points) + len(branches)
-    places = (rows + len(branches), columns)
-    links = coo_array((np.ones(len(rows)), places), shape=(size, size))
-    _, islands = connected_components(links, directed=False)
+    branches = findings.branches
+    meeting = [
+        [
+            number
+            for number, branch in enumerate(branches)
+            if branch.nearest(point.u, within=point.radius)[0][0] <= point.radius
+        ]
+        for point in findings.points.values()
+    ]
+    islands = connected_parts(len(branches), meeting)
     fates = [SeedFate(Fate.ON_FORM, number) for number in findings.traced]
-    return dict(zip(fates, islands.tolist(), strict=False))
+    return dict(zip(fates, islands, strict=True))

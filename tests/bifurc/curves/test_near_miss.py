@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bifurc.curves.continuation import trace_branch
-from bifurc.curves.near_miss import near_miss_value
+from bifurc.curves.near_miss import near_miss_values
 from bifurc.function_problem import FunctionProblem
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
@@ -27,6 +27,7 @@ def test_the_bound_of_a_near_miss_holds_on_a_hyperbola(gap):
 def test_where_the_singular_value_is_zero_the_value_is_bounded():
     axes = FunctionProblem(lambda u: np.array([u[0] * u[1]]), [[-2, 2], [-2, 2]])
     branch = trace_branch(axes, [1.0, 0.0])
-    value, error = near_miss_value(axes, branch, 1, branch.length / 2)
+    middle = np.array([branch.length / 2])
+    ((value, error),) = near_miss_values(axes, branch, 1, middle)
     assert value < 1e-12
     assert np.isfinite(error)
