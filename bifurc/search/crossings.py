@@ -183,9 +183,7 @@ def _zeros_on(tape: Tape, stretches: _Stretches) -> list[Crossing]:
     if not np.any(changes):
         return []
     changing = stretches.at(changes)
-    places = bracketed_roots(
-        lambda t: values(t, changing), low[changes], high[changes]
-    )
+    places = bracketed_roots(lambda t: values(t, changing), low[changes], high[changes])
     arclengths = changing.center + changing.radius * places
     pairs = zip(changing.curve.tolist(), arclengths.tolist(), strict=True)
     return [Crossing(curve, s) for curve, s in pairs]
@@ -201,7 +199,9 @@ def _different(
         ends = [zero.s for zero in zeros if zero.curve == curve]
         length, closed = branch.length, branch.closed
         within = SAME * length
-        places = sorted(s % length if closed else min(max(s, 0.0), length) for s in ends)
+        places = sorted(
+            s % length if closed else min(max(s, 0.0), length) for s in ends
+        )
         kept: list[float] = []
         for s in places:
             if not kept or s - kept[-1] > within:

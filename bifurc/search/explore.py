@@ -21,6 +21,7 @@ from bifurc.diagrams.diagram import Diagram
 from bifurc.diagrams.events import EventRequests, events_of
 from bifurc.diagrams.make_diagram import diagram_of, named_points
 from bifurc.errors import ProblemError
+from bifurc.function_problem import FunctionProblem
 from bifurc.limits import (
     CutOff,
     Deadline,
@@ -32,7 +33,9 @@ from bifurc.limits import (
 )
 from bifurc.problem import Problem
 from bifurc.search.answer.assemble import assemble_atlas
+from bifurc.search.answer.settled_in_boxes import settled_in_boxes
 from bifurc.search.factor_by_factor import explored_by_factors
+from bifurc.search.isolated_boxes import IsolatedInBoxes, isolated_in_boxes
 from bifurc.search.many_unknowns import explore_many_unknowns, has_many_unknowns
 from bifurc.search.own_units.restated import restated
 from bifurc.search.own_units.unit_problem import (
@@ -199,14 +202,37 @@ def _explored_along(
 def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
     """The atlas, factor by factor or in units of the search's own where the problem lets
     it."""
-    is_plain = is_of_equations(problem) and has_no_own_answers(problem)
-    if is_plain and request.seeds is None:
+    if not is_of_equations(problem) or not has_no_own_answers(problem):
+        return _explored_in_own_units(problem, request)
+    if request.seeds is None:
         atlas = explored_by_factors(
             problem, lambda part: _explored_in_own_units(part, request)
         )
         if atlas is not None:
             return atlas
-    return _explored_in_own_units(problem, request)
+    solutions = _solutions_of(problem, request)
+    atlas = _explored_in_own_units(problem, request)
+    if solutions is None:
+        return atlas
+    return settled_in_boxes(atlas, solutions, problem.domain)
+
+
+def _solutions_of(
+    problem: FunctionProblem, request: _Request
+) -> IsolatedInBoxes | None:
+    """All isolated solutions of as many equations as unknowns, as far as boxes show
+    them; None of other equations, and where there are to be no boxes."""
+    tape, domain = problem.recording.tape, problem.domain
+    has_bounds = not np.any(domain.has_assumed_bounds)
+    if tape is None or not problem.accuracy.is_exact or not has_bounds:
+        return None
+    if not request.settings.boxes:
+        return None
+    try:
+        with cut_off_after(current_deadline()):
+            return isolated_in_boxes(tape, domain, request.settings.boxes)
+    except CutOff:
+        return None
 
 
 def _explored_in_own_units(problem: Problem, request: _Request) -> Atlas:

@@ -37,14 +37,16 @@ from bifurc.torus import wrap, wrapped_periods
 
 NEWTON_STEPS = 4  # to where two factors vanish
 ROUNDING = 8 * np.finfo(float).eps
-IN_BOUNDS = 1e-6  # over the sizes: a crossing nearer to a bound may be of parts of curves
+IN_BOUNDS = (
+    1e-6  # over the sizes: a crossing nearer to a bound may be of parts of curves
+)
 LONGEST_RADIUS = 1e-3  # of a section about a crossing, over the sizes
 
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """Some factors, by their ``numbers``, explored together: their product on a
-    ``tape``, and its ``atlas``."""
+    """Some factors, by their ``numbers``, explored together: on a ``tape`` their
+    product, each of them once, and the ``atlas`` of that with their powers."""
 
     numbers: tuple[int, ...]
     tape: Tape
@@ -81,7 +83,7 @@ def explored_by_factors(
     factors = _factors_of(problem)
     if factors is None:
         return None
-    groups = [(number,) for number in range(len(factors.powers))]
+    groups: list[tuple[int, ...]] = [(number,) for number in range(len(factors.powers))]
     known: dict[tuple[int, ...], _Part] = {}
     while len(groups) > 1 and not is_time_over():
         for numbers in groups:
@@ -119,11 +121,10 @@ def _part_of(
     """Some factors explored together; None where they are no problem of their own, or
     have more than curves."""
     domain = problem.domain
-    tape = factors.product(numbers)
     try:
         own = TapeProblem(
-            tape,
-            domain.bounds,
+            factors.product(numbers),
+            domain.bounds.tolist(),
             names=domain.names,
             units=domain.units,
             periods=domain.periods.tolist(),
@@ -133,7 +134,8 @@ def _part_of(
     atlas = explored(own)
     if atlas.surfaces or atlas.near_motions:
         return None
-    return _Part(numbers, tape, atlas)
+    once = replace(factors, powers=(1,) * len(factors.powers))
+    return _Part(numbers, once.product(numbers), atlas)
 
 
 def _joined(
@@ -219,9 +221,13 @@ class _Union:
             rows = [tape.jacobians(place[None])[0, 0] for tape in tapes]
             slopes = np.array(rows) * self.sizes
             lengths = np.linalg.norm(slopes, axis=1)
+            if not np.all(lengths > 0.0):
+                return place, 1.0  # at a singular point of one of them
             directions = slopes / lengths[:, None]
             smallest = float(np.linalg.svd(directions)[1][-1])
-            step = np.linalg.lstsq(directions, np.array(values) / lengths, rcond=None)[0]
+            step = np.linalg.lstsq(directions, np.array(values) / lengths, rcond=None)[
+                0
+            ]
             place = place - self.sizes * step
         size = 1.0 + float((np.abs(place) / self.sizes).max())
         return place, ROUNDING * size / max(smallest, ROUNDING)
@@ -266,7 +272,9 @@ class _Union:
         order = order_branches(self.problem, [form.branch for _, _, form in owned])
         numbers = {owned[k][:2]: new for new, k in enumerate(order.tolist())}
         clusters = self._clusters(passes)
-        periods = wrapped_periods(self.problem.domain.periods, self.problem.domain.bounds)
+        periods = wrapped_periods(
+            self.problem.domain.periods, self.problem.domain.bounds
+        )
         met = self._crossings(clusters, numbers)
         own = [
             _renumbered(point, part, numbers)

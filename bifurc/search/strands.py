@@ -57,7 +57,7 @@ def missing_crossings(
         disc = _Disc(problem, point, branches, reach)
         beside = problem.domain.difference(np.array([p.u for p in points]), point.u)
         inside = np.flatnonzero(np.linalg.norm(beside, axis=1) < reach)
-        known = [points[k] for k in inside]
+        known = [points[k] for k in inside.tolist()]
         for one, other in itertools.combinations(disc.strands, 2):
             place = disc.missing_of(one, other, known)
             if place is not None:
@@ -110,9 +110,7 @@ class _Disc:
     ) -> np.ndarray | None:
         """Where two strands cross besides the ``known`` points, next to the middle (n,);
         None where they do not have to, or their ends do not tell."""
-        is_odd = _alternate(
-            one.offsets[[0, -1]], other.offsets[[0, -1]]
-        )
+        is_odd = _alternate(one.offsets[[0, -1]], other.offsets[[0, -1]])
         if is_odd is None:
             return None
         for point in known:
