@@ -199,6 +199,11 @@ def current_deadline() -> Deadline:
     return _deadline.get() or Deadline()
 
 
+def deadline_within(seconds: float, interrupt: HeldInterrupt | None = None) -> Deadline:
+    """The deadline after so many seconds, or that of what runs now where it is earlier."""
+    return Deadline(min(seconds, current_deadline().left), interrupt=interrupt)
+
+
 def is_time_over() -> bool:
     """Whether that deadline has passed; asked between any two steps that together may
     take long."""
@@ -280,6 +285,15 @@ def cut_off_after(deadline: Deadline) -> AbstractContextManager[None]:
     of the user's), or there is none, blocks end by themselves only.
     """
     return _Cut(deadline)
+
+
+def made_in_time(make: Callable[[], Value]) -> Value | None:
+    """What is made, or None where what runs now has to end before that is done."""
+    try:
+        with cut_off_after(current_deadline()):
+            return make()
+    except CutOff:
+        return None
 
 
 def left_behind(size: int, function: Callable[..., Any]) -> Callable[..., Any]:

@@ -16,8 +16,10 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Form
 from bifurc.branch import Branch
+from bifurc.completeness import Scope
 from bifurc.decisions import unit_over_rounding
 from bifurc.isometry import Isometry, recount_atlas
+from bifurc.limits import made_in_time
 from bifurc.numerics.blur import blur_along, change_by_blur
 from bifurc.problem import Problem
 from bifurc.torus import wrap
@@ -26,13 +28,19 @@ from linkages.decisions import keeps_angle
 from linkages.entry import Linkage
 from linkages.forms import name_forms
 from linkages.labels import FormLabels, largest_residual, subject_of
+from linkages.statements import LinkageClaim
 
 SAMPLES = 400  # of a form, to name it and to see what stands still
 
 
 def name_atlas(atlas: Atlas, linkage: Linkage) -> Atlas:
     """The atlas of a linkage with the names of its forms, their labels, and the loop as
-    its subject."""
+    its subject; where there is no time for names it says so."""
+    named = made_in_time(lambda: _named(atlas, linkage)) or _unnamed(atlas)
+    return replace(named, subject=subject_of(linkage.loop))
+
+
+def _named(atlas: Atlas, linkage: Linkage) -> Atlas:
     problem = ClosureSystem(linkage.loop)
     branches = [form.branch for form in atlas.forms]
     samples = [branch.sample(SAMPLES) for branch in branches]
@@ -42,20 +50,32 @@ def name_atlas(atlas: Atlas, linkage: Linkage) -> Atlas:
     for branch, identity in zip(branches, identities, strict=True):
         residual = largest_residual(problem, branch)
         labels.append(replace(identity.labels, max_residual=residual).as_values())
-    named = atlas.renamed([identity.name for identity in identities], labels)
-    return replace(named, subject=subject_of(linkage.loop))
+    return atlas.renamed([identity.name for identity in identities], labels)
+
+
+def _unnamed(atlas: Atlas) -> Atlas:
+    """The atlas, with a word that its forms have numbers only."""
+    claim = LinkageClaim.UNNAMED.claim(Scope.MOTIONS, None)
+    claims = (*atlas.completeness.claims, claim)
+    return replace(atlas, completeness=replace(atlas.completeness, claims=claims))
 
 
 def label_atlas(
     atlas: Atlas, problem: ClosureSystem, subject: Mapping[str, Any]
 ) -> Atlas:
-    """The atlas of a mechanism with labels on its forms, and what is its ``subject``."""
+    """The atlas of a mechanism with labels on its forms, and what is its ``subject``;
+    where there is no time for labels, and for what differs by whole turns, it says so."""
     from linkages.turns.translates import with_translates
 
-    names = [form.name for form in atlas.forms]
-    labels = [_labels(problem, form.branch).as_values() for form in atlas.forms]
-    labelled = replace(atlas.renamed(names, labels), subject=dict(subject))
-    return with_translates(labelled, problem.structure, problem.lattice)
+    known = replace(atlas, subject=dict(subject))
+
+    def labelled() -> Atlas:
+        names = [form.name for form in atlas.forms]
+        labels = [_labels(problem, form.branch).as_values() for form in atlas.forms]
+        named = known.renamed(names, labels)
+        return with_translates(named, problem.structure, problem.lattice)
+
+    return made_in_time(labelled) or _unnamed(known)
 
 
 def _labels(problem: Problem, branch: Branch) -> FormLabels:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from bifurc.atlas import Atlas
+from bifurc.limits import HeldInterrupt, deadline_within, until
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from linkages.entry import Linkage
@@ -26,7 +28,8 @@ def map_linkage(
     bifurcation, every near miss.
 
     ``seed`` is that of the random starts; ``progress`` is called with what was found
-    and how many. `linkages.labels.FormLabels` reads what a form is,
+    and how many. The budget of the settings holds for naming as well: where it ends
+    before, forms have numbers only, and the statement says so. `linkages.labels.FormLabels` reads what a form is,
     `linkages.labels.loop_of` the loop that an atlas is of, and
     `linkages.readout.readout.Readout` the joint variables of a mechanism, also of
     one that is a single loop. Every form
@@ -44,6 +47,10 @@ def map_linkage(
     >>> [point.name for point in atlas.bifurcations], str(atlas.completeness.level)
     (['B1', 'B2', 'B3'], 'proved')
     """
+    deadline = deadline_within(settings.budget)
     subject = as_subject(linkage)
-    found = explore(subject.traced, settings=settings, seed=seed, progress=progress)
-    return subject.labelled(found)
+    with HeldInterrupt() as interrupt, until(replace(deadline, interrupt=interrupt)):
+        found = explore(subject.traced, settings=settings, seed=seed, progress=progress)
+        atlas = subject.labelled(found)
+        interrupt.settle()
+    return atlas

@@ -9,7 +9,6 @@ import os
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -25,6 +24,7 @@ from bifurc.files.json_values import mapping_from_text, to_text
 from bifurc.files.layout import TABLES, atlas_frame, dataset_frame, read_atlas
 from bifurc.files.netcdf import append_seal, checksum, is_seal_broken, write_netcdf
 from bifurc.files.table import Attribute, Frame, Variable, make_variable
+from bifurc.release import installed_version
 from bifurc.settings import SearchSettings, TraceSettings
 
 if TYPE_CHECKING:
@@ -197,7 +197,7 @@ def _attributes(
     atlas: Atlas, frame: Frame, variables: Mapping[str, Variable]
 ) -> dict[str, Attribute]:
     """Attributes of the whole dataset: what it is and where it comes from."""
-    release = _release()
+    release = installed_version()
     filled = {name for one in variables.values() for name in one.dimensions}
     provenance = atlas.provenance
     settings = provenance.settings
@@ -233,13 +233,6 @@ def _attributes(
         "has_diagram": int(atlas.diagram is not None),
         "parameter": atlas.diagram.parameter if atlas.diagram else "",
     }
-
-
-def _release() -> str:
-    try:
-        return version("bifurc")
-    except PackageNotFoundError:
-        return "unknown"
 
 
 def _subject_attributes(atlas: Atlas) -> dict[str, Attribute]:

@@ -23,11 +23,11 @@ from bifurc.diagrams.make_diagram import diagram_of, named_points
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
 from bifurc.limits import (
-    CutOff,
     Deadline,
     HeldInterrupt,
     current_deadline,
-    cut_off_after,
+    deadline_within,
+    made_in_time,
     one_thread,
     until,
 )
@@ -75,10 +75,11 @@ def explore(
     monitored; from every singular point the directions in which other branches leave
     become further starts. ``progress`` is called with what was found and in which
     step, and how many.
-    Ctrl-C ends the search early, once it has begun: the atlas holds what was found,
-    and its provenance says so. When the budget of time is used up, the completeness and the provenance say
-    so. With a ``parameter``, an unknown by its name or symbol, or ``events``, functions of the
-    unknowns, the atlas holds a diagram; see `diagram_of`, also for ``is_flow``. Raises
+    Ctrl-C ends the search early, once it has begun: the atlas holds what was found, and
+    its provenance says so. When the budget of time is used up, or that of what it is a
+    part of, the completeness and the provenance say so. With a ``parameter``, an unknown
+    by its name or symbol, or ``events``, functions of the unknowns, the atlas holds a
+    diagram; see `diagram_of`, also for ``is_flow``. Raises
     `ProblemError` for settings or a seed that cannot be used.
 
     >>> import bifurc
@@ -103,7 +104,7 @@ def explore(
     # beside a rim of where equations are defined there are values that are no numbers
     quiet = np.errstate(all="ignore")
     with one_thread(problem.n), quiet, interrupt:
-        with until(Deadline(settings.budget, interrupt=interrupt)):
+        with until(deadline_within(settings.budget, interrupt)):
             atlas = _with_diagram(problem, request, parameter, events, is_flow)
         if interrupt.was_pressed:
             provenance = replace(atlas.provenance, interrupted=True, out_of_time=False)
@@ -135,15 +136,14 @@ def _diagram_in_time(
     is_flow: bool,
 ) -> Diagram:
     """The diagram of an atlas; one that says so where there is no time for it."""
-    try:
-        with cut_off_after(current_deadline()):
-            return diagram_of(problem, atlas, parameter, events, is_flow=is_flow)
-    except CutOff:
-        remark = (
-            "the time ended before folds, events, stability and Hopf points were known"
-        )
-        named = "" if parameter is None else str(parameter)
-        return Diagram(named, (), (), (), (remark,))
+    diagram = made_in_time(
+        lambda: diagram_of(problem, atlas, parameter, events, is_flow=is_flow)
+    )
+    if diagram is not None:
+        return diagram
+    remark = "the time ended before folds, events, stability and Hopf points were known"
+    named = "" if parameter is None else str(parameter)
+    return Diagram(named, (), (), (), (remark,))
 
 
 class _Request(NamedTuple):

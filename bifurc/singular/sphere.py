@@ -255,7 +255,8 @@ class _FourierSeries:
 
     def rates(self, angles: np.ndarray) -> np.ndarray:
         """Derivatives at angles (...)."""
-        return (self._waves(angles) @ self._terms_of_rates).real
+        rates: np.ndarray = (self._waves(angles) @ self._terms_of_rates).real
+        return rates
 
     @property
     def _terms_of_rates(self) -> np.ndarray:

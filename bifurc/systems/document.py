@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib.metadata import version
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from bifurc.atlas import Atlas, Form, MeetingPoint
 from bifurc.completeness import completeness_document
 from bifurc.files.layout import records_of
+from bifurc.release import installed_version
 from bifurc.singular.point import Invariants, Kind
 from bifurc.systems.verdict import verdict_of
 
@@ -39,7 +39,7 @@ def make_document(atlas: Atlas) -> dict[str, Json]:
         "near_motions": records_of(atlas, "near_motion"),
         "completeness": completeness_document(atlas.completeness),
         "seconds": provenance.seconds,
-        "version": version("bifurc"),
+        "version": installed_version(),
         "seed": provenance.seed,
         "tolerance": provenance.settings.tracing.tolerance,
     }

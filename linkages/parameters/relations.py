@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from bifurc.limits import Deadline
+from bifurc.limits import CutOff, Deadline, cut_off_after, until
 from linkages.decisions import holds_as_relation
 from linkages.entry import Entry, ParameterKind
 from linkages.parameters.members import Members
@@ -78,11 +78,12 @@ def precise_changes(
     ones only where Ctrl-C or the deadline ends it."""
     known: list[PreciseChange | None] = []
     try:
-        for change in changes:
-            if deadline.passed:
-                break
-            known.append(_precise_change(members, change))
-    except KeyboardInterrupt:
+        with until(deadline), cut_off_after(deadline):
+            for change in changes:
+                if deadline.passed:
+                    break
+                known.append(_precise_change(members, change))
+    except (KeyboardInterrupt, CutOff):
         pass
     return known
 

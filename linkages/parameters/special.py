@@ -25,7 +25,7 @@ from bifurc.equations.expression_problem import TapeProblem
 from bifurc.following.follow import FollowedPoint, FollowError, follow_singular_point
 from bifurc.following.rest_problem import RestProblem, rest_problems
 from bifurc.following.singular_problem import SingularPointProblem
-from bifurc.limits import Deadline
+from bifurc.limits import CutOff, Deadline, current_deadline, cut_off_after, until
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.numerics.singular_values import singular_values
 from bifurc.parametrised import ParametrisedProblem
@@ -228,6 +228,8 @@ class _SpecialSearch:
         atlas = map_linkage(linkage, settings=self.settings)
         if atlas.provenance.interrupted:
             raise KeyboardInterrupt
+        if self.deadline is not None and self.deadline.passed:
+            raise _TimeIsOver  # what was found so far is not the member's map
         return atlas
 
     def _from(self, u: np.ndarray, value: float, nullity: int = NULLITY) -> None:
@@ -370,10 +372,12 @@ def special_values(
         members, settings or SearchSettings(certify=False), deadline
     )
     is_whole = True
+    end = deadline or current_deadline()
     try:
-        search.look_over_range()
-        _settle(search)
-    except (KeyboardInterrupt, _TimeIsOver):
+        with until(end), cut_off_after(end):
+            search.look_over_range()
+            _settle(search)
+    except (KeyboardInterrupt, _TimeIsOver, CutOff):
         is_whole = False
     changes = sorted(search.changes, key=lambda change: change.value)
     return SpecialValues(tuple(map(search.compared, changes)), is_whole, search.apart)

@@ -1,16 +1,23 @@
 """From a loop to its map with named forms."""
 
+import time
+
 import numpy as np
 import pytest
 
+from bifurc.limits import Deadline, until
+from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
+from linkages import labelling
 from linkages.catalogue import UnknownLinkageError, entry
 from linkages.entry import UnknownParameterError
 from linkages.labels import FormLabels
 from linkages.linkage import load
 from linkages.loop import Loop
 from linkages.mapping import map_linkage
+from linkages.subject import as_subject
 from linkages.values import GeometryError
+from tests.linkages.mechanisms.known_mechanisms import geared_five_bar
 
 
 def test_the_forms_of_a_named_linkage_bear_the_names_of_its_source():
@@ -116,3 +123,37 @@ def test_lengths_whose_squares_are_no_doubles_are_refused(size):
     loop = Loop((size,) * 4, (0.0,) * 4, (0.0,) * 4)
     with pytest.raises(GeometryError, match="choose another unit"):
         map_linkage(loop)
+
+
+QUICK = SearchSettings(starts=20, certify=False)
+
+
+@pytest.mark.parametrize(
+    ("linkage", "slow"),
+    [(load("bennett"), "name_forms"), (geared_five_bar(), "largest_residual")],
+    ids=["loop", "mechanism"],
+)
+def test_where_there_is_no_time_for_names_forms_have_numbers(
+    linkage, slow, monkeypatch
+):
+    def last(*args: object) -> None:
+        while True:
+            time.sleep(0.01)
+
+    subject = as_subject(linkage)
+    found = explore(subject.traced, settings=QUICK)
+    named = subject.labelled(found)
+    monkeypatch.setattr(labelling, slow, last)
+    with until(Deadline(0.1)):
+        atlas = subject.labelled(found)
+    assert atlas.subject.keys() <= named.subject.keys()
+    assert [form.name for form in atlas.forms] == [form.name for form in found.forms]
+    said = [one.text for one in atlas.completeness.claims]
+    (unnamed,) = (one for one in said if "before forms were named" in one)
+    assert unnamed not in [one.text for one in named.completeness.claims]
+
+
+def test_the_search_of_a_map_has_what_is_left_of_a_budget_around_it():
+    with until(Deadline(0.0)):
+        atlas = map_linkage(load("bennett"))
+    assert atlas.provenance.out_of_time

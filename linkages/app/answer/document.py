@@ -5,7 +5,6 @@ for a mechanism that is a single loop."""
 
 from __future__ import annotations
 
-from importlib.metadata import version
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, NearMotion
 from bifurc.completeness import completeness_document
 from bifurc.decisions import is_tied
+from bifurc.release import installed_version
 from bifurc.singular.point import Kind
 from linkages.app.answer.verdict import is_without_gaps
 from linkages.app.texts.configurations import numbers_at
@@ -52,7 +52,7 @@ def make_document(atlas: Atlas) -> Document:
         "near_motions": [_near_motion(atlas, near) for near in atlas.near_motions],
         "completeness": _completeness(atlas),
         "seconds": atlas.provenance.seconds,
-        "version": version("bifurc"),
+        "version": installed_version(),
         "seed": atlas.provenance.seed,
         "tolerance": atlas.provenance.settings.tracing.tolerance,
         **subject_at(atlas).document(atlas),

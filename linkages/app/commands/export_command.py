@@ -315,8 +315,7 @@ def make_content(
                 f"{len(motions)}; name one with --form or --route"
             )
         return make_table(atlas, motions[0], trace).encode("utf-8")
-    from importlib.metadata import version
-
+    from bifurc.release import installed_version
     from linkages.app.reports.layers import parts_in_layers
     from linkages.export.glb import make_glb
     from linkages.export.model import model_of
@@ -324,7 +323,7 @@ def make_content(
 
     parts = parts_in_layers(atlas, forms)
     model = model_of(parts, subject_at(atlas).name, motions)
-    return make_glb(model, f"bifurc {version('bifurc')}")
+    return make_glb(model, f"bifurc {installed_version()}")
 
 
 def make_table(atlas: Atlas, motion: Motion, trace: tuple[str, ...] = ()) -> str:
