@@ -8,9 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from bifurc.domain import Domain
+from bifurc.equations.system import ScaledTape
 from bifurc.equations.tape import Tape, TapeWriter
 from bifurc.errors import ProblemError
-from bifurc.function_problem import EquationProblem, FunctionProblem
+from bifurc.function_problem import (
+    EXACT_HESSIAN,
+    EquationProblem,
+    FunctionProblem,
+    NumericalProblem,
+)
+from bifurc.seeding import start_region
+from bifurc.system import Accuracy
+
+PROBES = 15  # points at which the size of F' is seen
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +53,15 @@ class ParametrisedProblem:
         point = np.concatenate([u, p])[None]
         jacobian: np.ndarray = self.tape.compiled.jacobians(point)[0, :, : self.n]
         return jacobian
+
+    def at(self, p: np.ndarray) -> MemberProblem:
+        """The equations at the parameters ``p`` (q,), as a problem of its own."""
+        writer = TapeWriter(self.n)
+        numbers = [writer.unknown(k) for k in range(self.n)]
+        numbers += [writer.constant(float(value)) for value in p]
+        slots = self.tape.write_on(writer, numbers)
+        tape = writer.tape([slots[slot] for slot in self.tape.outputs.tolist()])
+        return MemberProblem(tape, self.domain)
 
     @staticmethod
     def recorded(
@@ -92,6 +111,31 @@ class ParametrisedProblem:
             _part(problem.domain, order[:n]),
             _part(problem.domain, order[n:]),
         )
+
+
+class MemberProblem(NumericalProblem):
+    """The equations on a ``tape`` of the unknowns of a ``domain``."""
+
+    def __init__(self, tape: Tape, domain: Domain):
+        self.domain = domain
+        self.accuracy = Accuracy(
+            derivatives="recorded",
+            equations=f"recorded ({tape.size} operations)",
+            hessian_error=EXACT_HESSIAN,
+        )
+        low, high = start_region(self).T
+        points = np.random.default_rng(0).uniform(low, high, (PROBES, tape.n))
+        jacobians = tape.compiled.jacobians(points)
+        self.magnitude = float(np.median(np.linalg.norm(jacobians, 2, axis=(1, 2))))
+        self.compiled: ScaledTape = ScaledTape(tape, self.magnitude, domain)
+
+    def residuals(self, points: np.ndarray) -> np.ndarray:
+        """F (k, m) at points (k, n)."""
+        return self.compiled.residuals(points)
+
+    def jacobians(self, points: np.ndarray) -> np.ndarray:
+        """F' (k, m, n) at points (k, n)."""
+        return self.compiled.jacobians(points)
 
 
 def _sizes(domain: Domain) -> np.ndarray:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
+from typing import Protocol
 
 import numpy as np
 
 from bifurc.decisions import is_start_solved
+from bifurc.domain import Domain
 from bifurc.limits import Deadline, current_deadline, is_time_over
 from bifurc.problem import Problem
 from bifurc.seeds import Seeds
@@ -18,6 +20,14 @@ AT_ONCE = 10  # starts between two looks at the clock, fewer where these
 QUICK = 0.1  # s or more take
 CONFIDENCE = 0.95  # of the limit of the probability that something was missed
 STEPS = 8  # of Newton's iteration for that limit
+
+
+class WithDomain(Protocol):
+    """What has unknowns."""
+
+    @property
+    def domain(self) -> Domain:
+        """The unknowns and their region."""
 
 
 def random_seeds(
@@ -82,7 +92,7 @@ def _projected(
     return np.concatenate(points), np.concatenate(gaps)
 
 
-def start_region(problem: Problem) -> np.ndarray:
+def start_region(problem: WithDomain) -> np.ndarray:
     """The box (n, 2) from which starts are drawn."""
     low, high = problem.domain.bounds.T
     periodic = np.isfinite(problem.domain.periods)

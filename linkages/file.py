@@ -101,7 +101,7 @@ def read_file(path: Path | str) -> Loop | Mechanism:
     with _errors_about(path):
         if known is not None and known.read is not None:
             return known.read(path)
-        content = _read_content(path)
+        content = read_content(path)
         if not _is_of_mechanism(content):
             return _read_loop(content, path.stem)[0]
         from linkages.files.mechanism_file import read_mechanism
@@ -109,8 +109,9 @@ def read_file(path: Path | str) -> Loop | Mechanism:
         return read_mechanism(content, path.stem)
 
 
-def _read_content(path: Path) -> Content:
-    """What a TOML file holds; raises `LinkageFileError` for equations."""
+def read_content(path: Path) -> Content:
+    """What a TOML file holds; raises `LinkageFileError` for equations, and
+    `TextFileError`."""
     content: Content = read_toml(path, WrittenNumber)
     if {"unknowns", "equations"} <= content.keys():
         message = f"it holds equations; `bifurc solve {path}` solves them"
@@ -136,7 +137,7 @@ def read_linkage(path: Path | str) -> tuple[Loop, np.ndarray | None]:
     known = format_of(path)
     is_toml = known is None or known.read is None
     with _errors_about(path):
-        content = _read_content(path) if is_toml else {}
+        content = read_content(path) if is_toml else {}
         if is_toml and not _is_of_mechanism(content):
             return _read_loop(content, path.stem)
     if not is_toml:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from bifurc.branch import Branch
@@ -95,13 +97,19 @@ class RestProblem(NumericalProblem):
 
 
 def rest_problems(
-    parametrised: ParametrisedProblem, branch: Branch, p: np.ndarray, reach: float
+    parametrised: ParametrisedProblem,
+    branch: Branch,
+    p: np.ndarray,
+    reach: float,
+    recounted: Callable[[np.ndarray], np.ndarray] = np.asarray,
 ) -> list[RestProblem]:
     """The problems of a rest near the member ``p`` (1,), whose curve is ``branch``: one
     for each unknown whose differences along it go to zero together, to first order, as the
-    parameter moves by no more than ``reach``."""
+    parameter moves by no more than ``reach``. ``recounted`` are points (k, n) of the curve
+    in the unknowns of the equations: shifted, and in other units."""
     s = branch.length * (np.arange(PLACES) + 0.5) / PLACES
-    places, tangents = branch(s), branch(s, derivative=1)
+    places, tangents = recounted(branch(s)), recounted(branch(s, derivative=1))
+    tangents = tangents - recounted(np.zeros((1, branch.n)))
     rates = _rates(parametrised, places, tangents, p)
     values = places - places.mean(axis=0)
     rates -= rates.mean(axis=0)

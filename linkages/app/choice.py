@@ -55,25 +55,30 @@ def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage | Mecha
     """The linkage called ``text``, or the linkage or mechanism read from the file
     ``text`` if that is one (or ends with .toml).
 
-    ``parameters`` are "key=value", angles in degrees. Raises `CommandError`,
+    ``parameters`` are "key=value", angles in degrees; those of a file are its numbers. Raises `CommandError`,
     `GeometryError`, `UnknownLinkageError` and `LinkageFileError`.
     """
-    if is_linkage_file(text) and parameters:
-        raise GeometryError(
-            "--param",
-            parameters[0],
-            "left out with a file, which holds the whole geometry",
-        )
-    values = {}
-    if parameters:
-        family: Entry | NetworkEntry = NETWORKS.get(text) or entry(text)
-        values = read_parameters(family.parameters, parameters)
     try:
-        linkage = load(text, **values)
+        linkage = _loaded(text, parameters)
     except OverflowError:
         raise CommandError(f"{text}: it holds a number that is too large") from None
     _require_size(text, linkage)
     return linkage
+
+
+def _loaded(text: str, parameters: Sequence[str]) -> Linkage | Mechanism:
+    """What is called ``text``, with parameters "key=value", those of a file among its
+    numbers."""
+    if not parameters:
+        return load(text)
+    if is_linkage_file(text):
+        from linkages.parameters.file_family import family_of_file
+
+        of_file = family_of_file(text)
+        member = of_file.build(**read_parameters(of_file.parameters, parameters))
+        return Linkage(member) if isinstance(member, Loop) else member
+    family: Entry | NetworkEntry = NETWORKS.get(text) or entry(text)
+    return load(text, **read_parameters(family.parameters, parameters))
 
 
 def _require_size(text: str, linkage: Linkage | Mechanism) -> None:

@@ -13,15 +13,15 @@ from linkages.app.exit_codes import CommandError
 from linkages.catalogue import entry
 from linkages.entry import (
     Entry,
-    Linkage,
     Parameter,
     ParameterKind,
     UnknownParameterError,
 )
-from linkages.linkage import is_linkage_file, load
+from linkages.linkage import is_linkage_file
 from linkages.parameters.equation_members import EquationMembers
+from linkages.parameters.file_family import family_of_file
+from linkages.parameters.mechanism_family import MechanismFamily
 from linkages.parameters.members import Members, range_of_members
-from linkages.parameters.table_family import family_of_table
 
 
 class ChosenMembers(NamedTuple):
@@ -36,7 +36,7 @@ def choose_members(source: str, texts: Sequence[str], most: int) -> ChosenMember
     or "key" a free one, of which there may be ``most``, from its value on the page of the
     family or from the middle. Angles are in degrees.
 
-    In a file with a table its entries are the parameters. Raises `CommandError`, and as
+    The parameters of a file are its numbers. Raises `CommandError`, and as
     `read_parameters`.
     """
     family = _family(source)
@@ -48,17 +48,18 @@ def choose_members(source: str, texts: Sequence[str], most: int) -> ChosenMember
     for name, (low, high) in ranges.items():
         if not low < values[name] < high:
             values[name] = 0.5 * (low + high)
-    family.build(**values)
+    members = Members(family, values, ranges)
+    members.check(values)
     refusals = {}
     for name, (low, high) in ranges.items():
-        found = range_of_members(family, values, name, low, high)
+        found = range_of_members(members, name, low, high)
         if not found.low < values[name] < found.high:
             raise CommandError(
                 f"--param {name}: there are no members beside its value: {found.refusal}"
             )
         ranges[name] = (found.low, found.high)
         refusals[name] = found.refusal
-    return ChosenMembers(Members(family, values, ranges), refusals)
+    return ChosenMembers(members, refusals)
 
 
 def choose_equations(path: str, texts: Sequence[str]) -> EquationMembers:
@@ -75,7 +76,7 @@ def choose_equations(path: str, texts: Sequence[str]) -> EquationMembers:
         if name not in system.values:
             known = ", ".join(system.values)
             raise CommandError(f"--param {name}: it must be one of {known}")
-        low, high = _span(name, span)
+        low, high = read_span(name, span)
         if name in bounds or name in values:
             raise CommandError(f"--param {name}: it is given twice")
         bounds[name] = (low, high)
@@ -97,8 +98,8 @@ def _require_count(free: Sequence[str], most: int, names: Sequence[str]) -> None
     )
 
 
-def _family(source: str) -> Entry:
-    """The family that has a name, or the table in a file; raises `CommandError`."""
+def _family(source: str) -> Entry | MechanismFamily:
+    """The family that has a name, or of what a file describes; raises `CommandError`."""
     if not is_linkage_file(source):
         return entry(source)
     if holds_equations(source):
@@ -106,16 +107,12 @@ def _family(source: str) -> Entry:
             f"{source}: these are equations, whose points `bifurc follow` follows; this "
             "takes a linkage"
         )
-    linkage = load(source)
-    if not isinstance(linkage, Linkage):
-        raise CommandError(
-            f"{source}: parameters can move of families, of single loops of revolute "
-            "joints in a file, and for `bifurc follow` of equations; this is a mechanism"
-        )
-    return family_of_table(linkage.loop)
+    return family_of_file(source)
 
 
-def _ranges(family: Entry, texts: Sequence[str]) -> dict[str, tuple[float, float]]:
+def _ranges(
+    family: Entry | MechanismFamily, texts: Sequence[str]
+) -> dict[str, tuple[float, float]]:
     """The free parameters that texts name, and from where to where they go."""
     ranges: dict[str, tuple[float, float]] = {}
     for text in texts:
@@ -126,7 +123,9 @@ def _ranges(family: Entry, texts: Sequence[str]) -> dict[str, tuple[float, float
     return ranges
 
 
-def _range(family: Entry, text: str) -> tuple[Parameter, float, float]:
+def _range(
+    family: Entry | MechanismFamily, text: str
+) -> tuple[Parameter, float, float]:
     """The free parameter that a text names, and from where to where it goes."""
     name, _, span = text.partition("=")
     known = {one.name: one for one in family.parameters}
@@ -136,18 +135,19 @@ def _range(family: Entry, text: str) -> tuple[Parameter, float, float]:
     if not span:
         low = min(parameter.low, parameter.default)
         return parameter, low, max(parameter.high, parameter.default)
-    ends = _span(name, span)
+    ends = read_span(name, span)
     if parameter.kind is ParameterKind.ANGLE:
         ends = (math.radians(ends[0]), math.radians(ends[1]))
     return parameter, *ends
 
 
-def _span(name: str, text: str) -> tuple[float, float]:
-    """The ends of a range "low:high"; raises `CommandError`."""
+def read_span(name: str, text: str, option: str = "--param") -> tuple[float, float]:
+    """The ends of a range "low:high" behind an option; raises `CommandError`."""
     parts = text.split(":")
+    message = f"{option} {name}: {text!r} is not allowed; write low:high"
     if len(parts) != 2:
-        raise CommandError(f"--param {name}: {text!r} is not allowed; write low:high")
-    ends = [read_number(name, part) for part in parts]
-    if not ends[0] < ends[1]:
-        raise CommandError(f"--param {name}: {text!r} is not allowed; write low:high")
-    return ends[0], ends[1]
+        raise CommandError(message)
+    low, high = [read_number(name, part, option) for part in parts]
+    if not low < high:
+        raise CommandError(message)
+    return low, high

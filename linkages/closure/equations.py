@@ -4,7 +4,7 @@ A cycle of pairs is closed when the product of the displacements along it is the
 identity (the product of exponentials in the reference configuration, Brockett 1984).
 Where a chain ends in a spherical joint, a point comes back to itself; between two of
 them, two points keep their distance. A mechanism that is made with errors has small
-displacements at both ends of every joint.
+displacements at both ends of every joint, and so has one of other lengths.
 """
 
 from __future__ import annotations
@@ -24,13 +24,15 @@ from bifurc.equations.tape import Tape
 from bifurc.function_problem import EXACT_HESSIAN
 from bifurc.problem import Problem
 from bifurc.system import Accuracy, Curvature
+from linkages.closure.changes import AS_GIVEN, Changes
 from linkages.closure.curvature import CurvatureBounds
-from linkages.closure.errors import JointErrors, no_errors
 from linkages.closure.motors import (
     IDENTITY,
     Motor,
     Number,
     Point,
+    combination,
+    is_zero,
     product,
     rotated_about,
     slide,
@@ -41,7 +43,7 @@ from linkages.decisions import is_rounding_of_zero
 from linkages.mechanisms.joint import Motion
 from linkages.structure.cycles import Step
 from linkages.structure.placement import Placement
-from linkages.structure.structure import Closure, ClosureKind, Share, Structure
+from linkages.structure.structure import Closure, ClosureKind, Structure
 
 # unknowns up to which compiled methods with dense matrices take no longer than those in
 # Python: for sections with spheres, and for curves of equations that are not sparse
@@ -58,24 +60,15 @@ class Equations:
 
 
 def parts_of_structure(
-    structure: Structure, errors: JointErrors | None = None
+    structure: Structure, changes: Changes = AS_GIVEN
 ) -> ClosureParts:
     """The closure equations of the mechanism of a ``structure`` in the variables of its
-    joints, with ``errors`` as it is made.
+    joints, with what ``changes``.
 
     Angles are in radians, slides in characteristic lengths. All derivatives are exact.
     """
-    unknowns = structure.unknowns
-    # in a step of the same angles more joints make it longer, by the root of their number
-    stride = math.sqrt(max(1.0, len(unknowns) / STRIDE_OF))
-    domain = Domain(
-        names=tuple(unknown.label for unknown in unknowns),
-        units=tuple(unknown.unit for unknown in unknowns),
-        periods=np.array([unknown.period for unknown in unknowns]),
-        bounds=np.array([[one.low, one.high] for one in unknowns]),
-        stride=stride,
-    )
-    equations = write_equations(structure, errors)
+    domain = domain_of(structure)
+    equations = write_equations(structure, changes)
     tape = equations.tape
     accuracy = Accuracy(
         derivatives="recorded",
@@ -102,6 +95,20 @@ def parts_of_structure(
     )
 
 
+def domain_of(structure: Structure) -> Domain:
+    """The unknowns of a structure and their region."""
+    unknowns = structure.unknowns
+    # in a step of the same angles more joints make it longer, by the root of their number
+    stride = math.sqrt(max(1.0, len(unknowns) / STRIDE_OF))
+    return Domain(
+        names=tuple(unknown.label for unknown in unknowns),
+        units=tuple(unknown.unit for unknown in unknowns),
+        periods=np.array([unknown.period for unknown in unknowns]),
+        bounds=np.array([[one.low, one.high] for one in unknowns]),
+        stride=stride,
+    )
+
+
 def bounds_of_structure(structure: Structure) -> Curvature:
     """Bounds on F'' from the geometry."""
     bounds = CurvatureBounds(structure, NEARLY_CLOSED)
@@ -109,18 +116,17 @@ def bounds_of_structure(structure: Structure) -> Curvature:
 
 
 def write_equations(
-    structure: Structure, errors: JointErrors | None = None
+    structure: Structure, changes: Changes = AS_GIVEN, writer: Recorder | None = None
 ) -> Equations:
-    """The equations of all closures, then those of the embedded spherical joints; with
-    ``errors`` those of the mechanism as it is made."""
-    writer = Recorder(len(structure.unknowns))
-    values = _values(structure, writer)
+    """The equations of all closures, then those of the embedded spherical joints, with
+    what ``changes``; on a tape of ``writer``, if it is given, whose first unknowns are
+    those of the structure."""
+    writer = writer or Recorder(len(structure.unknowns))
+    values = _values(structure, writer, changes)
     outputs: list[int] = []
     counts = []
-    if errors is None:
-        errors = no_errors(structure)
     for number in range(len(structure.closures)):
-        equations = _ChainWriter(structure, number, writer, values, errors)
+        equations = _ChainWriter(structure, number, writer, values, changes)
         slots = _slots(writer, equations.residuals())
         counts.append(len(slots))
         outputs += slots
@@ -134,25 +140,30 @@ def _unknown(writer: Recorder, number: int) -> RecordedNumber:
     return RecordedNumber(writer, writer.unknown(number))
 
 
-def _values(structure: Structure, writer: Recorder) -> list[Number]:
+def _values(structure: Structure, writer: Recorder, changes: Changes) -> list[Number]:
     """The value of every variable: an unknown, or the number at which it is locked."""
     values: list[Number] = []
     for number, variable in enumerate(structure.mechanism.variables):
         share = structure.share(number)
         if share is not None:
-            values.append(_followed(_unknown(writer, share.column), share))
-        else:
+            unknown = _unknown(writer, share.column)
+            rate, offset = changes.share(number) or (share.rate, share.offset)
+            values.append(_followed(unknown, rate, offset))
+            continue
+        value = changes.lock(number)
+        if value is None:
             assert variable.locked is not None
             unit = 1.0 if variable.motion.is_turn else structure.unit
-            values.append(variable.locked / unit)
+            value = variable.locked / unit
+        values.append(value)
     return values
 
 
-def _followed(value: Number, share: Share) -> Number:
+def _followed(value: Number, rate: Number, offset: Number) -> Number:
     """The value of a variable from that of its unknown."""
-    if share.rate != 1.0:
-        value = share.rate * value
-    return value + share.offset if share.offset != 0.0 else value
+    if not (isinstance(rate, float) and rate == 1.0):
+        value = rate * value
+    return value if is_zero(offset) else value + offset
 
 
 def _slots(writer: Recorder, residuals: Sequence[Number]) -> list[int]:
@@ -200,13 +211,13 @@ class _ChainWriter:
         number: int,
         writer: Recorder,
         values: Sequence[Number],
-        errors: JointErrors,
+        changes: Changes,
     ):
         self.structure = structure
         self.number = number
         self.writer = writer
         self.values = values
-        self.errors = errors
+        self.changes = changes
         self.placement = self._placement()
 
     @property
@@ -215,34 +226,54 @@ class _ChainWriter:
         return self.structure.closures[self.number]
 
     def _placement(self) -> Placement:
-        """The frame of the equations; made with errors no chain is planar or
-        spherical."""
+        """The frame of the equations; no chain is planar or spherical with displacements
+        that are not."""
         placement = self.structure.placement(self.closure)
-        if self.errors.are_none:
+        moved = []
+        for step in self.closure.chain:
+            elements = [*self.changes.before(step), *self.changes.after(step)]
+            moved += [motion for motion, _ in elements if motion.is_turn]
+            for number in self.structure.variables_of(step.pair):
+                if self.changes.lock(number) is not None:
+                    moved.append(self.structure.mechanism.variables[number].motion)
+        if not moved:
             return placement
-        return replace(placement, is_planar=False, is_spherical=False)
+        own = [m for step in self.closure.chain for m in self.structure.motions(step)]
+        both = Placement.of_chain([*own, *moved], self.structure.unit)
+        return replace(
+            placement,
+            is_planar=placement.is_planar and both.is_planar,
+            is_spherical=placement.is_spherical and both.is_spherical,
+        )
 
     def residuals(self) -> list[Number]:
         """The equations, 0 where the chain is closed; lengths in the structure's
         unit."""
         if self.closure.kind is ClosureKind.CYCLE:
             return self._of_cycle()
-        off_first, off_second = self.errors.points[self.number]
-        axes = self.placement.axes
-        first = self.placement.point(self.closure.first) + axes @ off_first
-        second = self.placement.point(self.closure.second) + axes @ off_second
-        arrival = self._moved(list(second))
-        gaps = [x - float(c) for x, c in zip(arrival, first, strict=True)]
+        off_first, off_second = self.changes.ends(self.number)
+        first = self._point(self.closure.first, off_first)
+        second = self._point(self.closure.second, off_second)
+        arrival = self._moved(second)
+        gaps = [x - c for x, c in zip(arrival, first, strict=True)]
         if self.closure.kind is ClosureKind.POINT:
             return gaps
         return [self._of_rod(_dot(gaps, gaps))]
+
+    def _point(self, place: np.ndarray, off: Sequence[Number]) -> Point:
+        """A place (3,) of the file and how far off it is, in the frame."""
+        point = self.placement.point(place)
+        axes = self.placement.axes
+        return [
+            float(c) + combination(row, off) for c, row in zip(point, axes, strict=True)
+        ]
 
     def _of_rod(self, square: Number) -> Number:
         """How much too long a rod is, for small errors, from the ``square`` of the
         distance of its ends."""
         rod = self.closure.rod
         assert rod is not None
-        rest = rod.length / self.structure.unit + float(self.errors.rods[self.number])
+        rest = rod.length / self.structure.unit + self.changes.rod(self.number)
         length: Number = rest
         if rod.leg is not None:
             length = rest + rod.leg.sign * self.values[rod.leg.variable]
@@ -253,16 +284,16 @@ class _ChainWriter:
         vector and the translation. It is zero at closure alone, at half turns it is
         not."""
         motor = IDENTITY
-        steps = map(self._elements_with_errors, self.closure.chain)
+        steps = map(self._elements_with_changes, self.closure.chain)
         for motion, value in _joined(chain.from_iterable(steps)):
             motor = product(motor, self._motor(motion, value))
         return [2.0 * number for number in (*motor.real[1:], *motor.dual[1:])]
 
-    def _elements_with_errors(self, step: Step) -> Iterator[tuple[Motion, Number]]:
-        """The same with the errors at both ends of the joint."""
-        yield from self.errors.before(step)
+    def _elements_with_changes(self, step: Step) -> Iterator[tuple[Motion, Number]]:
+        """The same with the displacements at both ends of the joint."""
+        yield from self.changes.before(step)
         yield from self._elements(step)
-        yield from self.errors.after(step)
+        yield from self.changes.after(step)
 
     def _elements(self, step: Step) -> Iterator[tuple[Motion, Number]]:
         """The elementary motions of a step, the last to act first, with their
@@ -270,7 +301,7 @@ class _ChainWriter:
         variables = self.structure.variables_of(step.pair)
         for number in variables[:: step.sign]:
             value = self.values[number]
-            if isinstance(value, float) and value == 0.0:
+            if is_zero(value):
                 continue
             motion = self.structure.mechanism.variables[number].motion
             yield motion, value if step.sign > 0 else -value
@@ -295,14 +326,14 @@ class _ChainWriter:
     def _moved(self, point: Point) -> Point:
         """Where the chain takes a ``point`` (3,) of its last body."""
         for step in reversed(self.closure.chain):
-            point = self._moved_by_all(point, self.errors.after(step))
+            point = self._moved_by_all(point, self.changes.after(step))
             if step.pair in self.structure.shifts:
                 point = self._carried(point, step)
             elif step.pair in self.structure.embedded:
                 point = self._turned_freely(point, step)
             else:
                 point = self._moved_by_all(point, self._elements(step))
-            point = self._moved_by_all(point, self.errors.before(step))
+            point = self._moved_by_all(point, self.changes.before(step))
         return point
 
     def _moved_by_all(
@@ -374,6 +405,6 @@ def _is_same(motion: Motion, other: Motion) -> bool:
 
 
 def _shifted(point: Point, direction: np.ndarray, distance: Number) -> Point:
-    if isinstance(distance, float) and distance == 0.0:
+    if is_zero(distance):
         return point
     return [x + distance * float(d) for x, d in zip(point, direction, strict=True)]

@@ -6,13 +6,12 @@ chains of its closures.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from linkages.closure.changes import Changes, Elements
 from linkages.mechanisms.joint import Motion
-from linkages.structure.cycles import Step
 from linkages.structure.structure import Structure
 from linkages.values import GeometryError
 
@@ -20,7 +19,7 @@ SIDES = 2  # bodies that a pair joins, and points that a closure brings together
 
 
 @dataclass(frozen=True, eq=False)
-class JointErrors:
+class JointErrors(Changes):
     """How far joints are off on the bodies that they join.
 
     ``turns`` (p, 2, 3), rad, and ``shifts`` (p, 2, 3) are those of the frames of each
@@ -36,36 +35,24 @@ class JointErrors:
     points: np.ndarray
     rods: np.ndarray
 
-    @property
-    def are_none(self) -> bool:
-        """Whether all of them are zero."""
-        arrays = (self.turns, self.shifts, self.points, self.rods)
-        return not any(np.any(array) for array in arrays)
-
-    def before(self, step: Step) -> Iterator[tuple[Motion, float]]:
-        """The displacement on the body from which a step begins: elementary motions,
-        the last to act first, and their values."""
-        return self._displacement(step, 0 if step.sign > 0 else 1)
-
-    def after(self, step: Step) -> Iterator[tuple[Motion, float]]:
-        """The displacement on the body to which a step leads."""
-        return self._displacement(step, 1 if step.sign > 0 else 0)
-
-    def _displacement(self, step: Step, side: int) -> Iterator[tuple[Motion, float]]:
-        if step.pair >= len(
-            self.places
-        ):  # no joint, but a body or a point that is free
-            return
-        place = self.places[step.pair]
-        shift = self.shifts[step.pair, side]
-        turn = self.turns[step.pair, side]
-        motions = [(False, shift), (True, turn)]
-        # on its way from moved body to base a chain has the inverse displacements
-        for is_turn, vector in motions[:: step.sign]:
+    def displacement(self, pair: int, side: int) -> Elements:
+        if pair >= len(self.places):  # no joint, but a body or a point that is free
+            return ()
+        motions = []
+        for is_turn, vectors in ((False, self.shifts), (True, self.turns)):
+            vector = vectors[pair, side]
             size = float(np.linalg.norm(vector))
             if size > 0.0:
-                motion = Motion(is_turn, vector / size, place)
-                yield motion, step.sign * size
+                motion = Motion(is_turn, vector / size, self.places[pair])
+                motions.append((motion, size))
+        return motions
+
+    def ends(self, closure: int) -> tuple[list[float], list[float]]:
+        first, second = self.points[closure].tolist()
+        return first, second
+
+    def rod(self, closure: int) -> float:
+        return float(self.rods[closure])
 
 
 def draw_errors(
@@ -87,11 +74,6 @@ def draw_errors(
     points = error * rng.normal(size=(closures, SIDES, 3))
     rods = error * rng.normal(size=closures)
     return JointErrors(_places(structure), turns, shifts, points, rods)
-
-
-def no_errors(structure: Structure) -> JointErrors:
-    """The errors of a mechanism that is exactly as it is given."""
-    return draw_errors(structure, 0.0, np.random.default_rng(0))
 
 
 def _places(structure: Structure) -> np.ndarray:

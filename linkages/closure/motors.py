@@ -7,6 +7,7 @@ stay so: the equations of planar and spherical chains come out short.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -89,16 +90,22 @@ def rotated_about(
     offsets = [one - float(c) for one, c in zip(point, center, strict=True)]
     result = []
     for row in range(3):
-        kept = _combination(along[row], offsets)
-        first = _combination(across[row], offsets)
-        second = _combination(turned[row], offsets)
+        kept = combination(along[row], offsets)
+        first = combination(across[row], offsets)
+        second = combination(turned[row], offsets)
         result.append(float(center[row]) + kept + cosine * first + sine * second)
     return result
 
 
-def _combination(weights: np.ndarray, numbers: Point) -> Number:
+def is_zero(number: Number) -> bool:
+    """Whether a number is zero without depending on an unknown."""
+    return isinstance(number, float) and number == 0.0
+
+
+def combination(weights: np.ndarray, numbers: Sequence[Number]) -> Number:
+    """The sum of weights (k,) times numbers (k,), without those that are zero."""
     total: Number = 0.0
     for weight, number in zip(weights, numbers, strict=True):
-        if weight != 0.0:
+        if weight != 0.0 and not is_zero(number):
             total = total + float(weight) * number
     return total

@@ -18,7 +18,7 @@ from linkages.loop import Loop
 
 if TYPE_CHECKING:
     # they import networkx, which a loop does not need
-    from linkages.closure.errors import JointErrors
+    from linkages.closure.changes import Changes
     from linkages.mechanisms.mechanism import Mechanism
     from linkages.structure.structure import Structure
     from linkages.turns.turn_lattice import TurnLattice
@@ -29,8 +29,8 @@ class ClosureSystem(NumericalProblem):
     mechanism in the variables of its joints.
 
     Angles are in radians, lengths in characteristic lengths. All derivatives are exact.
-    A mechanism with ``errors`` is that as it is made, in the same unknowns, and need not
-    close anywhere; ``structure`` is that of the mechanism, where it is there already.
+    A mechanism with ``changes`` is another one in the same unknowns, as it is made or of
+    other lengths, and need not close anywhere; ``structure`` is that of the mechanism, where it is there already.
     Raises `ProblemError` for a subject that is neither.
     """
 
@@ -39,11 +39,11 @@ class ClosureSystem(NumericalProblem):
     def __init__(
         self,
         subject: Loop | Mechanism,
-        errors: JointErrors | None = None,
+        changes: Changes | None = None,
         structure: Structure | None = None,
     ):
         self.subject = subject
-        self.parts = parts = _parts_of(subject, errors, structure)
+        self.parts = parts = _parts_of(subject, changes, structure)
         self.domain, self.accuracy = parts.domain, parts.accuracy
         self.compiled = parts.compiled
 
@@ -84,16 +84,17 @@ class ClosureSystem(NumericalProblem):
 
 def _parts_of(
     subject: Loop | Mechanism,
-    errors: JointErrors | None,
+    changes: Changes | None,
     structure: Structure | None,
 ) -> ClosureParts:
     """What the closure of a ``subject`` is made of."""
     if isinstance(subject, Loop):
         return parts_of_loop(subject)
+    from linkages.closure.changes import AS_GIVEN
     from linkages.closure.equations import parts_of_structure
     from linkages.mechanisms.mechanism import Mechanism
     from linkages.structure.structure import Structure
 
     if not isinstance(subject, Mechanism):
         raise ProblemError("subject", repr(subject), "a Loop or a Mechanism")
-    return parts_of_structure(structure or Structure(subject), errors)
+    return parts_of_structure(structure or Structure(subject), changes or AS_GIVEN)

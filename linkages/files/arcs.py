@@ -4,7 +4,7 @@ them (`linkages.files.figures`); the axes of all joints run through the centre."
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -38,6 +38,38 @@ def read_arcs(content: Content, name: str, unit: float) -> Mechanism:
     do (least squares). Raises `GeometryError` for anything wrong, and where arcs of
     these angles cannot be assembled next to the points.
     """
+    assembly = assembled_arcs(content, unit)
+    joints = joints_of_figure(
+        assembly.figure, assembly.places, assembly.are_apart, _axis_at
+    )
+    return Mechanism(joints, name)
+
+
+class ArcAssembly(NamedTuple):
+    """A ``figure`` of arcs with the ``places`` of all its points where arcs have their
+    angles."""
+
+    figure: Arcs
+    places: Places
+
+    def are_apart(self, points: Sequence[str]) -> bool:
+        """Whether points are in different directions from the centre."""
+        axes = [self.places[point] for point in points]
+        across = [np.cross(axes[0], axis) for axis in axes[1:]]
+        return any(not is_one_direction(float(np.linalg.norm(x))) for x in across)
+
+    def normal(self, arc: Piece) -> np.ndarray:
+        """The unit normal (3,) of the plane of an arc, from its start to its end."""
+        return _normal(f"arc {arc.name}", self.places[arc.start], self.places[arc.end])
+
+    def angle(self, arc: Piece) -> float:
+        """The angle of an arc, rad."""
+        return _angle_between(self.places, arc)
+
+
+def assembled_arcs(content: Content, unit: float) -> ArcAssembly:
+    """The arcs of a file, whose angles are in this ``unit``, in rad, with the places of
+    their points; raises `GeometryError` as `read_arcs`."""
 
     def angle(what: str, value: Any) -> float:
         check_number(what, value)
@@ -58,16 +90,10 @@ def read_arcs(content: Content, name: str, unit: float) -> Mechanism:
     points = {point: _direction(f"point {point}", row) for point, row in table.items()}
     figure = read_figure(content, kind, points)
     places = _assembled(figure)
+    assembly = ArcAssembly(figure, places)
     for arc in figure.pieces:
-        _normal(f"arc {arc.name}", places[arc.start], places[arc.end])
-
-    def are_apart(points: Sequence[str]) -> bool:
-        axes = [places[point] for point in points]
-        across = [np.cross(axes[0], axis) for axis in axes[1:]]
-        return any(not is_one_direction(float(np.linalg.norm(x))) for x in across)
-
-    joints = joints_of_figure(figure, places, are_apart, _axis_at)
-    return Mechanism(joints, name)
+        assembly.normal(arc)
+    return assembly
 
 
 def _axis_at(place: np.ndarray) -> tuple[Vector, Vector]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, TypeAlias
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from linkages.files.figures import (
     table_of_points,
 )
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.mechanisms.origin import counted_from_near, origin_of
+from linkages.mechanisms.origin import Coordinates, counted_from_near, origin_of
 from linkages.values import checked_list, checked_number, require
 
 Content: TypeAlias = Mapping[str, Any]
@@ -38,19 +38,11 @@ def read_bars(content: Content, name: str) -> Mechanism:
     do (least squares). Raises `GeometryError` for anything wrong, and where bars of
     these lengths cannot be assembled next to the points.
     """
-    table = table_of_points(content, "[x, y]")
-    near = counted_from_near(list(table.values()))
-    rows = zip(table, near.rows, strict=True)
-    points = {point: _complex(f"point {point}", row) for point, row in rows}
-    figure = read_figure(content, BARS, points)
-    places = _assembled(figure)
-    for bar in figure.pieces:
-        is_longer = places[bar.end] != places[bar.start]
-        require(is_longer, f"bar {bar.name}", "of length 0", "longer")
+    assembly, near = assembled_bars(content)
     joints = joints_of_figure(
-        figure,
-        places,
-        lambda points: len({places[point] for point in points}) > 1,
+        assembly.figure,
+        assembly.places,
+        assembly.are_apart,
         lambda place: ((place.real, place.imag, 0.0), (0, 0, 1)),
     )
     return Mechanism(
@@ -60,6 +52,33 @@ def read_bars(content: Content, name: str) -> Mechanism:
         origin=origin_of(content, near.origin),
         rounding=near.rounding,
     )
+
+
+class BarAssembly(NamedTuple):
+    """A ``figure`` of bars with the ``places`` of all its points where bars have their
+    lengths."""
+
+    figure: Bars
+    places: dict[str, complex]
+
+    def are_apart(self, points: Sequence[str]) -> bool:
+        """Whether points are at different places."""
+        return len({self.places[point] for point in points}) > 1
+
+
+def assembled_bars(content: Content) -> tuple[BarAssembly, Coordinates]:
+    """The bars of a file with the places of their points, and from where these are
+    counted; raises `GeometryError` as `read_bars`."""
+    table = table_of_points(content, "[x, y]")
+    near = counted_from_near(list(table.values()))
+    rows = zip(table, near.rows, strict=True)
+    points = {point: _complex(f"point {point}", row) for point, row in rows}
+    figure = read_figure(content, BARS, points)
+    places = _assembled(figure)
+    for bar in figure.pieces:
+        is_longer = places[bar.end] != places[bar.start]
+        require(is_longer, f"bar {bar.name}", "of length 0", "longer")
+    return BarAssembly(figure, places), near
 
 
 def _complex(what: str, row: object) -> complex:

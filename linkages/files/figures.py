@@ -251,7 +251,7 @@ def joints_of_figure(
     point and the direction of the axis at a place. Raises `GeometryError` for a point
     on no body, and where no points are fixed and a body hangs on one joint.
     """
-    bodies = _bodies(figure, are_apart)
+    bodies = bodies_of_figure(figure, are_apart)
     kind = figure.kind
     on_body = {point for points in bodies.values() for point in points}
     for name, one in figure.on_pieces.items():
@@ -277,7 +277,7 @@ def joints_of_figure(
     return tuple(joints)
 
 
-def _bodies(
+def bodies_of_figure(
     figure: Figure[Any, Any], are_apart: Callable[[Sequence[str]], bool]
 ) -> dict[str, list[str]]:
     """The points on every body, the frame first.

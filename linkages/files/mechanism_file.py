@@ -70,10 +70,10 @@ def read_mechanism(content: Content, name: str) -> Mechanism:
     given = checked_text("name", content.get("name", name))
     if "loops" in content and "joints" not in content:
         check_keys("key", content, OF_LOOPS)
-        return read_loops(content["loops"], given, _angle_unit(content))
+        return read_loops(content["loops"], given, angle_unit(content))
     if "arcs" in content and "joints" not in content:
         check_keys("key", content, OF_ARCS)
-        return read_arcs(content, given, _angle_unit(content))
+        return read_arcs(content, given, angle_unit(content))
     if "joints" not in content:
         check_keys("key", content, OF_BARS)
         return _with_layers(read_bars(content, given), content)
@@ -83,7 +83,7 @@ def read_mechanism(content: Content, name: str) -> Mechanism:
 
 def _read_joints(content: Content, name: str) -> Mechanism:
     """The mechanism of this ``name`` that the [[joints]] of a file describe."""
-    unit = _angle_unit(content)
+    unit = angle_unit(content)
     given_tables = checked_list("joints", content["joints"], "tables [[joints]]")
     tables, near = _from_near(given_tables)
     joints = [_read_joint(k, table, unit) for k, table in enumerate(tables, start=1)]
@@ -132,7 +132,8 @@ def _read_planar(content: Content, mechanism: Mechanism) -> bool:
     return is_planar
 
 
-def _angle_unit(content: Content) -> float:
+def angle_unit(content: Content) -> float:
+    """The unit of angles of a file, in rad; raises `GeometryError`."""
     unit = content.get("angles", "deg")
     if not isinstance(unit, str) or unit not in UNITS:
         allowed = '"deg", which it is where nothing is said, or "rad"'

@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.equations.tape import Tape
 from bifurc.parametrised import ParametrisedProblem
 from bifurc.singular.point import Kind
 from linkages.closure.system import ClosureSystem
 from linkages.entry import Entry, Linkage, Parameter
-from linkages.loop import Loop
-from linkages.parameters.parametrised_closure import parametrised_closure
+from linkages.parameters.parametrised_closure import (
+    closure_of_tables,
+    parametrised_closure,
+)
 from linkages.values import GeometryError
+
+if TYPE_CHECKING:
+    # they import networkx, which a loop does not need
+    from linkages.mechanisms.mechanism import Mechanism
+    from linkages.parameters.mechanism_family import MechanismFamily
 
 VALUES, HALVINGS = 100, 60  # of a parameter, to see how far there are members
 
@@ -60,14 +68,24 @@ class FreeParameters(Protocol):
         ``p`` (q,) built anew; raises `BifurcError` where there is none."""
 
 
+class PreciseEquations(NamedTuple):
+    """Closure equations on a ``tape`` of the unknowns and further numbers, and what these
+    are of parameters (q,) in mpmath numbers."""
+
+    tape: Tape
+    numbers_of: Callable[[Sequence[Any]], list[Any]]
+
+
 @dataclass(frozen=True, eq=False)
 class Members:
     """The members of a ``family`` with ``values`` of all parameters, of which some have
-    ``ranges`` (low, high) that hold these values."""
+    ``ranges`` (low, high) that hold these values. Those that ``are_precise`` have
+    equations that can be solved to many digits."""
 
-    family: Entry
+    family: Entry | MechanismFamily
     values: Mapping[str, float]
     ranges: Mapping[str, tuple[float, float]]
+    are_precise: bool = False
 
     @property
     def free(self) -> tuple[Parameter, ...]:
@@ -88,21 +106,67 @@ class Members:
     @cached_property
     def problem(self) -> ParametrisedProblem:
         """The closure equations with the free parameters among the unknowns."""
-        return parametrised_closure(self.family, self.values, self.ranges)
+        if isinstance(self.family, Entry):
+            return parametrised_closure(self.family, self.values, self.ranges)
+        return self.family.parametrised(
+            self.values, self.ranges, is_precise=self.are_precise
+        )
+
+    @property
+    def with_all_free(self) -> Members:
+        """The same with all parameters free, anywhere, to many digits."""
+        everywhere = dict.fromkeys(self.values, (-np.inf, np.inf))
+        return replace(self, ranges=everywhere, are_precise=True)
 
     def with_values(self, p: np.ndarray) -> dict[str, float]:
         """All parameters where the free ones are ``p`` (q,)."""
         return {**self.values, **dict(zip(self.ranges, p.tolist(), strict=True))}
 
-    def build(self, p: np.ndarray) -> Loop:
-        """The member at ``p`` (q,); raises `GeometryError` where there is none."""
-        return self.family.build(**self.with_values(p))
+    def check(self, values: Mapping[str, float]) -> None:
+        """Raise `GeometryError` where these values of all parameters make no member."""
+        if isinstance(self.family, Entry):
+            self.family.build(**values)
+        else:
+            self.family.offsets(values)
 
-    def load(self, p: np.ndarray) -> Linkage:
-        """The same with the names of its forms."""
-        patterns = self.family.patterns
-        named = () if patterns is None else patterns(**self.with_values(p))
-        return Linkage(self.build(p), named)
+    def load(self, p: np.ndarray) -> Linkage | Mechanism:
+        """The member at ``p`` (q,), with the names of its forms; raises `GeometryError`
+        where there is none."""
+        values = self.with_values(p)
+        if not isinstance(self.family, Entry):
+            return self.family.build(**values)
+        loop, patterns = self.family.build(**values), self.family.patterns
+        return Linkage(loop, () if patterns is None else patterns(**values))
+
+    def in_equations(self, points: np.ndarray, p: np.ndarray) -> np.ndarray:
+        """Configurations (k, n) of the atlas of the member at ``p`` (q,) in the unknowns
+        of `problem`."""
+        if isinstance(self.family, Entry):
+            return points
+        return self.family.in_equations(points, self.with_values(p))
+
+    def joint(self, unknown: int) -> str:
+        """What the joint of an unknown, by index, is called."""
+        if isinstance(self.family, Entry):
+            return f"joint {unknown + 1}"
+        return self.problem.domain.names[unknown]
+
+    def precise_equations(self) -> PreciseEquations:
+        """The closure equations for many digits, which no constant of a constructor
+        limits."""
+        family = self.family
+        if not isinstance(family, Entry):
+            tape, constants = family.precise_closure()
+            return PreciseEquations(tape, lambda p: [*p, *constants])
+        unit = family.build(**self.values).characteristic_length
+
+        def table(p: Sequence[Any]) -> list[Any]:
+            loop = family.build(
+                **{**self.values, **dict(zip(self.ranges, p, strict=True))}
+            )
+            return [*loop.twists, *loop.lengths, *loop.offsets]
+
+        return PreciseEquations(closure_of_tables(self.problem.n, unit), table)
 
     def points(self, atlas: Atlas) -> list[PointToFollow]:
         """The singular points of the atlas of the member from which parameters move."""
@@ -110,7 +174,7 @@ class Members:
             PointToFollow(
                 one.name,
                 one.kind,
-                one.point.u,
+                self.in_equations(one.point.u[None], self.start)[0],
                 self.start,
                 self.problem.n - one.point.rank,
             )
@@ -118,10 +182,17 @@ class Members:
         ]
 
     def anew(self, u: np.ndarray, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The closure equations (m,) at joint angles ``u`` (n,) and their derivatives
-        (m, n), of the member at ``p`` (q,)."""
-        closure = ClosureSystem(self.build(p))
-        return closure.residuals(u[None])[0], closure.jacobians(u[None])[0]
+        """The closure equations (m,) at unknowns ``u`` (n,) of `problem` and their
+        derivatives (m, n) by these, of the member at ``p`` (q,)."""
+        member = self.load(p)
+        closure = ClosureSystem(member.loop if isinstance(member, Linkage) else member)
+        # the unknowns of the member are these, shifted and in other units
+        ends = self.in_equations(np.stack([np.zeros(len(u)), np.ones(len(u))]), p)
+        rates = ends[1] - ends[0]
+        point = (u - ends[0]) / rates
+        return closure.residuals(point[None])[0], closure.jacobians(point[None])[
+            0
+        ] / rates
 
 
 @dataclass(frozen=True)
@@ -135,15 +206,15 @@ class MemberRange:
 
 
 def range_of_members(
-    family: Entry, values: Mapping[str, float], name: str, low: float, high: float
+    members: Members, name: str, low: float, high: float
 ) -> MemberRange:
-    """The part of a range of the parameter ``name``, about its value, in which the
-    constructor of a ``family`` makes members."""
+    """The part of a range of the parameter ``name``, about its value, in which there are
+    ``members``."""
     refusals = []
 
     def is_refused(value: float) -> bool:
         try:
-            family.build(**{**values, name: value})
+            members.check({**members.values, name: value})
         except GeometryError as error:
             refusals.append(str(error))
             return True
@@ -151,7 +222,7 @@ def range_of_members(
 
     ends = []
     for end in (low, high):
-        inside = values[name]
+        inside = members.values[name]
         for value in np.linspace(inside, end, VALUES)[1:].tolist():
             if not is_refused(value):
                 inside = value

@@ -18,11 +18,7 @@ from bifurc.equations.differentiation import with_null_vectors
 from bifurc.equations.tape import Tape
 from bifurc.following.rest_problem import RestProblem
 from bifurc.following.singular_problem import SingularPointProblem
-from linkages.entry import Entry
-from linkages.parameters.parametrised_closure import (
-    closure_of_tables,
-    parametrised_closure,
-)
+from linkages.parameters.members import Members, PreciseEquations
 from linkages.values import GeometryError
 
 if TYPE_CHECKING:
@@ -35,23 +31,21 @@ GUARD = 12  # further ones that are computed with
 
 
 class MovedChange:
-    """The equations ``problem``, of a change at ``values`` of the parameters of a
-    ``family``, whose parameter called ``free`` is the unknown one: at other members."""
+    """The equations ``problem``, of a change at the first of ``members``, all of whose
+    parameters are free; the one called ``free`` is the unknown one at others."""
 
     def __init__(
         self,
-        family: Entry,
-        values: Mapping[str, float],
+        members: Members,
         free: str,
         problem: SingularPointProblem | RestProblem,
         solution: np.ndarray,
     ):
-        self.family = family
-        self.names = tuple(values)
-        everywhere = dict.fromkeys(values, (-np.inf, np.inf))
-        closure = parametrised_closure(family, values, everywhere)
+        self.members = members
+        self.names = tuple(members.ranges)
+        closure = members.problem
         u, _ = problem.place(solution)
-        p = np.array(list(values.values()))
+        p = members.start
         self.problem: SingularPointProblem | RestProblem
         if isinstance(problem, RestProblem):
             tangents, resting = problem.tangents, problem.resting
@@ -63,7 +57,6 @@ class MovedChange:
         self._held = np.array(held)
         self._free = np.setdiff1d(np.arange(len(self.problem.start)), self._held)
         self._name = free
-        self._unit = family.build(**values).characteristic_length
 
     def at(self, values: Mapping[str, float]) -> dict[str, mpmath.mpf] | None:
         """All parameters where the others have these ``values``, the free one to `DIGITS`;
@@ -138,16 +131,18 @@ class MovedChange:
     def _precise_residual(self, place: Sequence[mpmath.mpf]) -> list[mpmath.mpf]:
         """The equations of the problem over mpmath numbers, with the member built of
         them."""
-        own = place[self.problem.parameters]
-        loop = self.family.build(**dict(zip(self.names, own, strict=True)))
-        table = [*loop.twists, *loop.lengths, *loop.offsets]
-        return self._residual_of(place, table)
+        equations = self._precise_equations
+        numbers = equations.numbers_of(place[self.problem.parameters])
+        return self._residual_of(place, numbers)
+
+    @cached_property
+    def _precise_equations(self) -> PreciseEquations:
+        return self.members.precise_equations()
 
     @cached_property
     def _residual_of(self) -> Callable[[Sequence[Any], Sequence[Any]], list[Any]]:
-        """The equations at a place and a table of numbers of any kind."""
-        n = self.problem.parametrised.n
-        tape = closure_of_tables(n, self._unit)
+        """The equations at a place and numbers of the geometry of any kind."""
+        n, tape = self.problem.parametrised.n, self._precise_equations.tape
         if isinstance(self.problem, RestProblem):
             return partial(_rest_residual, self.problem, tape)
         whole = with_null_vectors(tape, n, self.problem.basis)
@@ -158,13 +153,13 @@ def _singular_residual(
     problem: SingularPointProblem,
     whole: Tape,
     place: Sequence[Any],
-    table: Sequence[Any],
+    numbers: Sequence[Any],
 ) -> list[Any]:
-    """The equations of a singular point, from those of all tables on a tape."""
+    """The equations of a singular point, from the closure of any geometry on a tape."""
     import mpmath
 
     vectors = place[problem.parameters.stop :]
-    rows = whole.over([*place[: problem.parametrised.n], *table, *vectors], mpmath)
+    rows = whole.over([*place[: problem.parametrised.n], *numbers, *vectors], mpmath)
     weights = np.ones(len(rows))
     weighted = np.tile(problem.weights, problem.nullity + 1)
     weights[: len(weighted)] = weighted
@@ -172,14 +167,14 @@ def _singular_residual(
 
 
 def _rest_residual(
-    problem: RestProblem, tape: Tape, place: Sequence[Any], table: Sequence[Any]
+    problem: RestProblem, tape: Tape, place: Sequence[Any], numbers: Sequence[Any]
 ) -> list[Any]:
-    """The equations of a joint at rest, from the closure of all tables on a tape."""
+    """The equations of a joint at rest, from the closure of any geometry on a tape."""
     import mpmath
 
     count, n = problem.places.shape
     places = [place[n * k : n * (k + 1)] for k in range(count)]
-    closed = [row for u in places for row in tape.over([*u, *table], mpmath)]
+    closed = [row for u in places for row in tape.over([*u, *numbers], mpmath)]
     resting = problem.resting
     at_rest = [u[resting] - places[0][resting] for u in places[1:]]
     slid = []

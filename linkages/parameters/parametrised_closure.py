@@ -14,7 +14,7 @@ from bifurc.equations.valued import ValuedRecorder
 from bifurc.parametrised import ParametrisedProblem
 from linkages.closure.loop_parts import parts_of_loop
 from linkages.closure.motors import IDENTITY, Number, product, turn
-from linkages.entry import Entry, ParameterKind
+from linkages.entry import Entry, Parameter, ParameterKind
 
 X, Z = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 AT_ORIGIN = np.zeros(3)
@@ -44,14 +44,16 @@ def parametrised_closure(
     return ParametrisedProblem(
         tape=tape,
         domain=parts_of_loop(first).domain,
-        parameters=_domain(family, ranges),
+        parameters=domain_of_parameters(family.parameters, ranges),
     )
 
 
-def _domain(family: Entry, ranges: Mapping[str, tuple[float, float]]) -> Domain:
-    """Parameters of a family that have ``ranges``."""
+def domain_of_parameters(
+    parameters: Sequence[Parameter], ranges: Mapping[str, tuple[float, float]]
+) -> Domain:
+    """Those of the ``parameters`` that have ``ranges``."""
     units = {ParameterKind.ANGLE: "rad", ParameterKind.LENGTH: "length"}
-    kinds = {parameter.name: parameter.kind for parameter in family.parameters}
+    kinds = {parameter.name: parameter.kind for parameter in parameters}
     return Domain(
         names=tuple(ranges),
         units=tuple(units.get(kinds[name], "") for name in ranges),

@@ -10,14 +10,14 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from bifurc.limits import CutOff, Deadline, cut_off_after, until
 from linkages.decisions import holds_as_relation
-from linkages.entry import Entry, ParameterKind
+from linkages.entry import ParameterKind, WithParameters
 from linkages.parameters.members import Members
 from linkages.parameters.moved_changes import DIGITS, GUARD, MovedChange
 from linkages.parameters.special import MapChange
@@ -96,9 +96,8 @@ def _precise_change(members: Members, change: MapChange) -> PreciseChange | None
 
     (free,) = members.free
     values = members.with_values(np.array([change.value]))
-    moved = MovedChange(
-        members.family, values, free.name, change.problem, change.solution
-    )
+    first = replace(members, values=values).with_all_free
+    moved = MovedChange(first, free.name, change.problem, change.solution)
     precise = moved.at(values)
     if precise is None:
         return None
@@ -110,7 +109,7 @@ def _precise_change(members: Members, change: MapChange) -> PreciseChange | None
 
 
 def _relation(
-    family: Entry, free: str, members: Sequence[Mapping[str, Any]]
+    family: WithParameters, free: str, members: Sequence[Mapping[str, Any]]
 ) -> Relation | None:
     """The simplest relation that holds at the first one of the members and any other,
     checked at all others; None where there is none among those that are looked for."""
@@ -198,7 +197,7 @@ def _whole_numbers(shape: _Shape, member: Mapping[str, Any]) -> list[int] | None
 # --- of what relations are made -------------------------------------------------------
 
 
-def _shapes(family: Entry, free: str) -> Iterator[_Shape]:
+def _shapes(family: WithParameters, free: str) -> Iterator[_Shape]:
     """What relations with the parameter called ``free`` are looked for, simple ones
     first."""
     kinds = {one.name: one.kind for one in family.parameters}

@@ -11,8 +11,10 @@ Between members with different maps and no such value, further ones are mapped.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from enum import Enum
+from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -29,6 +31,7 @@ from bifurc.limits import CutOff, Deadline, current_deadline, cut_off_after, unt
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.numerics.singular_values import singular_values
 from bifurc.parametrised import ParametrisedProblem
+from bifurc.seeding import start_region
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
 from linkages.labels import FormLabels
@@ -86,14 +89,14 @@ class MapShape(NamedTuple):
     bifurcations: int
     other_points: int
     surfaces: int
-    at_rest: tuple[tuple[int, ...], ...]
+    at_rest: tuple[tuple[str, ...], ...]
 
 
 @dataclass(frozen=True, eq=False)
 class MapChange:
     """The map changes at this ``value`` of the parameter, known to ``error``: the
     ``kind`` says why, in a configuration ``u`` (n,) where there is one, and with the
-    ``joints`` (from 1) that rest along a form at this value alone; the maps ``before``,
+    ``joints`` that rest along a form at this value alone; the maps ``before``,
     ``at`` the value and ``after`` it, None where there is no member; the ``problem`` whose
     ``solution`` it is, None where there is none."""
 
@@ -105,7 +108,7 @@ class MapChange:
     at: MapShape | None = None
     after: MapShape | None = None
     point: Kind | None = None
-    joints: tuple[int, ...] = ()
+    joints: tuple[str, ...] = ()
     problem: SingularPointProblem | RestProblem | None = None
     solution: np.ndarray | None = None
 
@@ -114,7 +117,7 @@ class MapChange:
         """What happens there, in words."""
         words = WORDS[self.kind]
         if self.joints:
-            words += f" ({', '.join(f'joint {joint}' for joint in self.joints)})"
+            words += f" ({', '.join(self.joints)})"
         is_of_maps = self.kind in (ChangeKind.BETWEEN_MAPS, ChangeKind.MOTION)
         if is_of_maps or self.at is None:
             return words
@@ -176,7 +179,7 @@ class _SpecialSearch:
         if value in self.shapes:
             return
         atlas = self._map(value)
-        self.shapes[value] = _shape_or_none(atlas)
+        self.shapes[value] = self._shape(atlas)
         if atlas is None:
             return
         for event in atlas.near_misses:
@@ -188,6 +191,9 @@ class _SpecialSearch:
             self._from(u, value)
         for point in atlas.points:
             self._from(point.point.u, value, self.members.problem.n - point.point.rank)
+
+    def _shape(self, atlas: Atlas | None) -> MapShape | None:
+        return None if atlas is None else shape_of(atlas, self.members.joint)
 
     def look_beside(self, change: MapChange) -> None:
         """Map the member at a change, and those on both sides of it."""
@@ -212,10 +218,24 @@ class _SpecialSearch:
         return replace(
             change,
             before=None if step is None else self.shapes[value - step],
-            at=_shape_or_none(atlas),
+            at=self._shape(atlas),
             after=None if step is None else self.shapes[value + step],
-            point=None if atlas is None else _kind_at(atlas, change.u),
+            point=None if atlas is None else self._kind_at(atlas, change),
         )
+
+    def _kind_at(self, atlas: Atlas, change: MapChange) -> Kind | None:
+        """The kind of the singular point of the atlas at a change where its configuration
+        is, as near as parameters of this many digits lead to it; None where there is
+        none."""
+        if change.u is None:
+            return None
+        p = np.array([change.value])
+        for point in atlas.points:
+            (own,) = self.members.in_equations(point.point.u[None], p)
+            gap = torus.difference(own, change.u, atlas.periods)
+            if np.linalg.norm(gap) < NEARBY:
+                return point.kind
+        return None
 
     def _map(self, value: float) -> Atlas | None:
         """The map at a value; None where there is no member."""
@@ -234,9 +254,9 @@ class _SpecialSearch:
 
     def _from(self, u: np.ndarray, value: float, nullity: int = NULLITY) -> None:
         """Solve the equations of a bifurcation from a configuration (n,) of a member."""
-        problem = SingularPointProblem(
-            self.members.problem, u, np.array([value]), nullity
-        )
+        p = np.array([value])
+        (start,) = self.members.in_equations(u[None], p)
+        problem = SingularPointProblem(self.members.problem, start, p, nullity)
         points, gaps = problem.project(problem.start[None])
         (place,), (parameters,) = problem.place(points)
         found = float(parameters[0])
@@ -275,7 +295,10 @@ class _SpecialSearch:
         reach = REST_REACH * (high - low) / MEMBERS
         for form in atlas.forms:
             p = np.array([value])
-            for problem in rest_problems(self.members.problem, form.branch, p, reach):
+            recounted = partial(self.members.in_equations, p=p)
+            for problem in rest_problems(
+                self.members.problem, form.branch, p, reach, recounted
+            ):
                 self._from_rest(problem)
 
     def _from_rest(self, problem: RestProblem) -> None:
@@ -292,7 +315,7 @@ class _SpecialSearch:
             return  # it rests along the forms of other members as well
         lever = float(np.linalg.norm(right[:, -1] / sigma))
         error = ROUNDING * (abs(found) + lever * problem.magnitude)
-        joints = (problem.resting + 1,)
+        joints = (self.members.joint(problem.resting),)
         change = MapChange(found, error, ChangeKind.REST, None, joints=joints)
         self._add(replace(change, problem=problem, solution=points[0]))
 
@@ -325,7 +348,7 @@ class _SpecialSearch:
             return
         atlas = self.at[value] = self._map(value)
         beside = sorted(self.shapes, key=lambda one: abs(one - value))[:2]
-        if _shape_or_none(atlas) not in [self.shapes[one] for one in beside]:
+        if self._shape(atlas) not in [self.shapes[one] for one in beside]:
             self._add(MapChange(value, error, ChangeKind.MOTION, None))
 
     def _add(self, change: MapChange) -> None:
@@ -413,13 +436,7 @@ def _explain(search: _SpecialSearch, first: float, last: float, halvings: int) -
 
 def _region(problem: ParametrisedProblem) -> np.ndarray:
     """From where to where unknowns and parameters (n + q, 2) are drawn."""
-    half = 0.5 * problem.domain.periods
-    bounds = np.where(
-        np.isfinite(half)[:, None],
-        np.stack([-half, half], axis=1),
-        problem.domain.bounds,
-    )
-    return np.concatenate([bounds, problem.parameters.bounds])
+    return np.concatenate([start_region(problem), problem.parameters.bounds])
 
 
 def _is_held(jacobian: np.ndarray) -> bool:
@@ -432,21 +449,12 @@ def _is_held(jacobian: np.ndarray) -> bool:
     return bool(ranks[1] == ranks[0] + 1 < jacobian.shape[1])
 
 
-def _kind_at(atlas: Atlas, u: np.ndarray | None) -> Kind | None:
-    """The kind of the singular point of an atlas at a configuration (n,), as near as
-    parameters of this many digits lead to it; None where there is none."""
-    if u is None:
-        return None
-    for point in atlas.points:
-        gap = torus.difference(point.point.u, u, atlas.periods)
-        if np.linalg.norm(gap) < NEARBY:
-            return point.kind
-    return None
-
-
-def shape_of(atlas: Atlas) -> MapShape:
-    """What maps are compared by."""
-    at_rest = sorted(FormLabels.of(form).inactive_joints for form in atlas.forms)
+def shape_of(atlas: Atlas, joint: Callable[[int], str]) -> MapShape:
+    """What maps are compared by; ``joint`` names that of an unknown, by index."""
+    at_rest = sorted(
+        tuple(joint(number - 1) for number in FormLabels.of(form).inactive_joints)
+        for form in atlas.forms
+    )
     return MapShape(
         len(atlas.forms),
         atlas.components,
@@ -455,10 +463,6 @@ def shape_of(atlas: Atlas) -> MapShape:
         len(atlas.surfaces),
         tuple(at_rest),
     )
-
-
-def _shape_or_none(atlas: Atlas | None) -> MapShape | None:
-    return None if atlas is None else shape_of(atlas)
 
 
 def _weakest_places(atlas: Atlas) -> list[np.ndarray]:

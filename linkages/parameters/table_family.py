@@ -21,9 +21,9 @@ def family_of_table(loop: Loop) -> Entry:
     for k, (length, twist, offset) in enumerate(zip(*loop.arrays, strict=True)):
         link, room = f"link {links[k]}", loop.characteristic_length
         parameters += [
-            _parameter(f"a{links[k]}", length, f"length of {link}", room),
-            _parameter(f"alpha{links[k]}", twist, f"twist of {link}"),
-            _parameter(f"R{k + 1}", offset, f"offset of joint {k + 1}", room),
+            table_parameter(f"a{links[k]}", length, f"length of {link}", room),
+            table_parameter(f"alpha{links[k]}", twist, f"twist of {link}"),
+            table_parameter(f"R{k + 1}", offset, f"offset of joint {k + 1}", room),
         ]
 
     def construct(**values: Number) -> Loop:
@@ -37,7 +37,9 @@ def family_of_table(loop: Loop) -> Entry:
     return Entry(name, "", name, "", construct, tuple(parameters))
 
 
-def _parameter(name: str, entry: float, meaning: str, size: float = 0.0) -> Parameter:
+def table_parameter(
+    name: str, entry: float, meaning: str, size: float = 0.0
+) -> Parameter:
     """An entry of a table, of a loop of this ``size`` unless it is an angle, with the
     range that it has where none is given."""
     value = float(entry)

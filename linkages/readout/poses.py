@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from linkages.closure.changes import AS_GIVEN, Changes
 from linkages.mechanisms.joint import transforms
 from linkages.structure.rods import Rod
 from linkages.structure.structure import Structure
@@ -26,12 +27,14 @@ class TreeStep(NamedTuple):
 
 
 class Poses:
-    """The displacements of all bodies of a mechanism with a ``structure`` from the
-    reference configuration, the frame at rest. Lengths are in the user's unit."""
+    """The displacements of all bodies of a mechanism with a ``structure``, and with what
+    ``changes``, from the reference configuration, the frame at rest. Lengths are in the
+    user's unit."""
 
-    def __init__(self, structure: Structure):
+    def __init__(self, structure: Structure, changes: Changes = AS_GIVEN):
         self.structure = structure
         self.mechanism = structure.mechanism
+        self.changes = changes
 
     def at(self, points: np.ndarray) -> np.ndarray:
         """Homogeneous transforms (k, b, 4, 4) of the b bodies at configurations (k, n),
@@ -40,7 +43,8 @@ class Poses:
         count = self.structure.body_count
         poses = np.tile(np.eye(4), (len(points), count, 1, 1))
         for origin, goal, number, sign in self.tree:
-            motion = self._displacement(points, number)
+            first, last = (self.change(number, side) for side in (0, 1))
+            motion = first @ self._displacement(points, number) @ last
             if sign < 0:
                 motion = _inverse(motion)
             poses[:, goal] = poses[:, origin] @ motion
@@ -49,6 +53,15 @@ class Poses:
         frame = bodies.index(self.mechanism.frame)
         of_bodies = poses[:, : len(bodies)]
         return _inverse(poses[:, frame])[:, None] @ of_bodies
+
+    def change(self, pair: int, side: int) -> np.ndarray:
+        """The transform (4, 4) of what changes on the base (``side`` 0) of a pair, by
+        number, or on its moved body (1)."""
+        result = np.eye(4)
+        for motion, value in self.changes.displacement(pair, side):
+            size = value if motion.is_turn else self.structure.unit * value
+            result = result @ transforms(motion, np.array([size]))[0]
+        return result
 
     def rotations(self, points: np.ndarray, numbers: Sequence[int]) -> np.ndarray:
         """The rotations (p, k, 3, 3) of the moved bodies of some pairs, by ``numbers``

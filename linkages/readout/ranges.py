@@ -43,7 +43,7 @@ def variable_ranges(
     at_reference = _values_at_reference(readout, branch)
     if at_reference is None:
         middles = (values.min(axis=0) + values.max(axis=0)) / 2
-        away = _turns_of_middles(middles, readout.periods)
+        away = turns_of_middles(middles, readout.periods)
     else:
         away = whole_turns(at_reference, readout.periods)
     periods = np.where(np.isfinite(readout.periods), readout.periods, 0.0)
@@ -56,7 +56,7 @@ def variable_ranges(
     )
 
 
-def _turns_of_middles(middles: np.ndarray, periods: np.ndarray) -> np.ndarray:
+def turns_of_middles(middles: np.ndarray, periods: np.ndarray) -> np.ndarray:
     """The whole turns (v,) by which middles (v,) lie away from the turn about 0."""
     turns = np.zeros(len(periods), dtype=int)
     is_periodic = np.isfinite(periods)

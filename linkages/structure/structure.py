@@ -12,6 +12,7 @@ cover.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from copy import copy
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
@@ -137,6 +138,7 @@ class Structure:
         self.mechanism = self.hanging.held if self.holds_flaps else mechanism
         self.size = Size(self.mechanism)
         self.unit = self.size.characteristic_length
+        self.is_unscaled = False
         self.idle_turns: tuple[str, ...] = ()
         self.groups = Groups(self.mechanism, self.unit)
         # the turns that move nothing else are locked at 0, one after the other
@@ -373,7 +375,16 @@ class Structure:
         if any(step.pair in self._columns for step in closure.chain):
             return Placement(closure.first, np.eye(3), self.unit)
         motions = [m for step in closure.chain for m in self.motions(step)]
-        return Placement.of_chain(motions, self.unit)
+        placement = Placement.of_chain(motions, self.unit)
+        return replace(placement, origin=np.zeros(3)) if self.is_unscaled else placement
+
+    @property
+    def unscaled(self) -> Structure:
+        """The same, written about the origin of the file in a unit that is a power of two,
+        so that no coordinate of it is rounded."""
+        other = copy(self)
+        other.unit, other.is_unscaled = 2.0 ** round(np.log2(self.unit)), True
+        return other
 
     # --- unknowns ---------------------------------------------------------------------
 

@@ -39,10 +39,10 @@ def follow_command(
 
     A parameter is free as --param gamma or --param gamma=10:20, and has a value as --param
     gamma=14; angles are in degrees. What is there for all values of one parameter is
-    followed over that; what is there for one value alone is followed over two. In a file
-    with a table its entries are the parameters: a12, alpha12 and R1, and so on. In one of
-    equations they are its constants, as --param c=0.5:2, besides the parameter of its
-    diagram, whose folds are followed too.
+    followed over that; what is there for one value alone is followed over two. Of a file
+    numbers are the parameters: entries of a table (a12, alpha12, R1), lengths of bars
+    (A-B), coordinates of joints (J1.x); of equations the constants, as --param c=0.5:2,
+    besides the parameter of the diagram, whose folds are followed too.
 
     \b
     Examples:

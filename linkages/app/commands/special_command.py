@@ -38,13 +38,15 @@ def special_command(
 
     Every value is the solution of equations, and is known to nearly all digits of a
     double; maps beside it and at it show what changes. The parameter is free as --param
-    gamma or --param gamma=10:20, others have values; angles are in degrees. In a file with a
-    table its entries are the parameters: a12, alpha12 and R1, and so on.
+    gamma or --param gamma=10:20, others have values; angles are in degrees. Of a file
+    numbers are the parameters: entries of a table (a12, alpha12, R1), lengths of bars
+    (A-B), coordinates of joints (J1.x).
 
     \b
     Examples:
       bifurc special four-bar --param d=0.3:7
       bifurc special spherical-four-bar --param alpha12=20:160 --relations
+      bifurc special six_bar.toml --param A-B=0.5:2
     """
     from bifurc.limits import Deadline
     from linkages.app.output import say, say_json, say_next

@@ -266,9 +266,9 @@ def _shape_text(shape: MapShape | None) -> str:
         text += f", {count_of(shape.other_points, 'other singular point')}"
     if shape.surfaces:
         text += f", {count_of(shape.surfaces, 'surface')}"
-    at_rest = [", ".join(map(str, joints)) for joints in shape.at_rest if joints]
+    at_rest = [", ".join(joints) for joints in shape.at_rest if joints]
     if at_rest:
-        text += f"; at rest in a form: joints {' and in another '.join(at_rest)}"
+        text += f"; at rest in a form: {' and in another '.join(at_rest)}"
     return text
 
 

@@ -82,7 +82,8 @@ def test_the_equations_of_a_family_are_those_of_each_of_its_members(name):
 
 def test_there_are_members_up_to_the_end_that_geometry_sets():
     family = entry("four-bar")
-    found = range_of_members(family, family.defaults, "d", 0.3, 9.0)
+    chosen = Members(family, family.defaults, {})
+    found = range_of_members(chosen, "d", 0.3, 9.0)
     assert found.low == 0.3
     assert found.high == pytest.approx(1 + 2.4 + 2, abs=1e-12)
     assert "sum of the others" in found.refusal
@@ -206,9 +207,9 @@ def test_the_ends_of_a_range_are_looked_at_and_joints_rest_where_links_are_alike
     assert (first.before.components, first.after.components) == (2, 1)
     assert last.kind is ChangeKind.REST
     assert last.value == pytest.approx(gamma, abs=1e-12)
-    assert last.joints == (1, 2)
+    assert last.joints == ("joint 1", "joint 2")
     # along one form the one, along another one the other
-    assert {(1,), (2,)} <= set(last.at.at_rest)
+    assert {("joint 1",), ("joint 2",)} <= set(last.at.at_rest)
     assert {*last.before.at_rest, *last.after.at_rest} == {()}
 
 
