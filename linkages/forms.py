@@ -22,6 +22,7 @@ from linkages.decisions import (
     has_symmetry,
     is_alike_in_geometry,
     is_same_length,
+    is_symmetric_to_rounding,
     keeps_angle,
     matches_pattern,
 )
@@ -38,11 +39,13 @@ LETTERS = "abcdefghijklmnopqrstuvwxyz"
 
 @dataclass(frozen=True)
 class FormIdentity:
-    """What a form is: its ``name``, empty where nothing is recognised, and its
-    ``labels``, in which the closure error is left open."""
+    """What a form is: its ``name``, empty where nothing is recognised, its ``labels``, in
+    which the closure error is left open, and its ``asymmetry``: the largest sine of half
+    of what angles miss of the symmetry in the labels, 0 where that is rounding."""
 
     name: str
     labels: FormLabels
+    asymmetry: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -78,11 +81,12 @@ def identify_form(
     if theta.ndim != 2 or theta.shape[1] != loop.n or not len(theta):
         allowed = f"(m, {loop.n}) with m >= 1"
         raise GeometryError("shape of the samples", theta.shape, allowed)
-    labels = _labels(theta, by_rounding)
+    symmetry, asymmetry = _symmetry(theta, by_rounding)
+    labels = replace(_labels(theta, by_rounding), symmetry=symmetry)
     name = _name_by_pattern(theta, (*patterns, *_planar_patterns(loop)))
     if not name:
         name = _name_by_inactive_joints(theta, loop, labels.inactive_joints)
-    return FormIdentity(name, labels)
+    return FormIdentity(name, labels, asymmetry)
 
 
 def name_forms(
@@ -134,8 +138,7 @@ def _distinct_name(name: str, rank: int, count: int) -> str:
 
 
 def _labels(theta: np.ndarray, by_rounding: float) -> FormLabels:
-    """The joints that keep their angle modulo 2 pi, these angles in (-pi, pi], and the
-    symmetry."""
+    """The joints that keep their angle modulo 2 pi, and these angles in (-pi, pi]."""
     full_turns = _full_turns(theta)
     mean = np.arctan2(np.sin(theta).mean(axis=0), np.cos(theta).mean(axis=0))
     deviation = np.abs(torus.difference(theta, mean, full_turns))
@@ -146,7 +149,6 @@ def _labels(theta: np.ndarray, by_rounding: float) -> FormLabels:
     return FormLabels(
         inactive_joints=tuple(int(i) + 1 for i in still),
         inactive_angles=tuple(float(angle) for angle in angles),
-        symmetry=_symmetry(theta),
     )
 
 
@@ -155,19 +157,23 @@ def _full_turns(theta: np.ndarray) -> np.ndarray:
     return np.full(theta.shape[-1], 2 * np.pi)
 
 
-def _symmetry(theta: np.ndarray) -> Symmetry:
-    """The equation between all angles and those some joints further on; half the loop
-    first."""
+def _symmetry(theta: np.ndarray, by_rounding: float) -> tuple[Symmetry, float]:
+    """The equation between all angles and those some joints further on, half the loop
+    first, and what the angles miss of it, 0 where that is rounding."""
     n = theta.shape[1]
+    unit = unit_over_rounding(is_symmetric_to_rounding, by_rounding)
     for step in range(n // 2, 0, -1):
         if n % step:
             continue
         further = np.roll(np.arange(n), -step)
         for sign in (1, -1):
             difference = partial(_half_sines, further, sign)
-            if _holds_along(difference, theta, has_symmetry):
-                return Symmetry.of_step(step, sign)
-    return Symmetry.NONE
+            if not _holds_along(difference, theta, has_symmetry):
+                continue
+            missed = float(np.abs(difference(theta)).max())
+            is_exact = is_symmetric_to_rounding(missed, unit)
+            return Symmetry.of_step(step, sign), 0.0 if is_exact else missed
+    return Symmetry.NONE, 0.0
 
 
 def _half_sines(further: np.ndarray, sign: int, theta: np.ndarray) -> np.ndarray:

@@ -16,7 +16,7 @@ import numpy as np
 
 from bifurc.atlas import Atlas, Form
 from bifurc.branch import Branch
-from bifurc.completeness import Scope
+from bifurc.completeness import Claim, Scope
 from bifurc.decisions import unit_over_rounding
 from bifurc.isometry import Isometry, recount_atlas
 from bifurc.limits import made_in_time
@@ -26,7 +26,7 @@ from bifurc.torus import wrap
 from linkages.closure.system import ClosureSystem
 from linkages.decisions import keeps_angle
 from linkages.entry import Linkage
-from linkages.forms import name_forms
+from linkages.forms import FormIdentity, name_forms
 from linkages.labels import FormLabels, largest_residual, subject_of
 from linkages.statements import LinkageClaim
 
@@ -50,13 +50,26 @@ def _named(atlas: Atlas, linkage: Linkage) -> Atlas:
     for branch, identity in zip(branches, identities, strict=True):
         residual = largest_residual(problem, branch)
         labels.append(replace(identity.labels, max_residual=residual).as_values())
-    return atlas.renamed([identity.name for identity in identities], labels)
+    named = atlas.renamed([identity.name for identity in identities], labels)
+    return _saying(named, *nearly_symmetric(identities))
+
+
+def nearly_symmetric(identities: Sequence[FormIdentity]) -> list[Claim]:
+    """The claim that forms have their symmetries only nearly, where some do."""
+    missed = [one.asymmetry for one in identities if one.asymmetry]
+    if not missed:
+        return []
+    kind = LinkageClaim.NEARLY_SYMMETRIC
+    return [kind.claim(Scope.MOTIONS, None, forms=len(missed), missed=max(missed))]
 
 
 def _unnamed(atlas: Atlas) -> Atlas:
     """The atlas, with a word that its forms have numbers only."""
-    claim = LinkageClaim.UNNAMED.claim(Scope.MOTIONS, None)
-    claims = (*atlas.completeness.claims, claim)
+    return _saying(atlas, LinkageClaim.UNNAMED.claim(Scope.MOTIONS, None))
+
+
+def _saying(atlas: Atlas, *more: Claim) -> Atlas:
+    claims = (*atlas.completeness.claims, *more)
     return replace(atlas, completeness=replace(atlas.completeness, claims=claims))
 
 

@@ -5,6 +5,8 @@ import pytest
 
 from linkages.catalogue import entry
 from linkages.forms import identify_form, name_forms
+from linkages.labelling import nearly_symmetric
+from linkages.linkage import load
 from linkages.loop import Loop
 from linkages.mapping import map_linkage
 from linkages.values import GeometryError
@@ -174,3 +176,32 @@ def test_equal_links_are_equal_but_for_rounding(error):
     atlas = map_linkage(Loop(lengths, zeros, zeros))
     names = {form.name for form in atlas.forms}
     assert names == {"kite form", "folded form (joints 1,3 inactive)"}
+
+
+def test_what_a_form_misses_of_its_symmetry_is_said_unless_it_is_rounding():
+    turn = np.linspace(0.0, 2 * np.pi, 50)
+    exact = np.stack([turn, 0.5 * np.sin(turn)] * 2, axis=1)
+    loop = entry("bennett").build()
+    for missed, by_rounding, said in (
+        (0.0, 0.0, 0.0),
+        (2e-6, 0.0, 1e-6),
+        (2e-6, 1e-5, 0.0),
+    ):
+        angles = exact + np.array([missed, 0.0, 0.0, 0.0])
+        identity = identify_form(angles, loop, by_rounding=by_rounding)
+        assert identity.labels.symmetry == "theta_i = theta_{i+2}"
+        assert identity.asymmetry == pytest.approx(said, rel=1e-6)
+
+
+def test_a_linkage_that_nearly_has_a_symmetry_says_so():
+    lengths, twists, offsets = entry("bennett").build().arrays
+    atlas = map_linkage(load("bennett"))
+    loop = Loop(lengths, twists, offsets)
+    samples = atlas.forms[0].branch.sample(100) + np.array([1e-6, 0.0, 0.0, 0.0])
+    (identity,) = name_forms([samples], loop)
+    assert identity.asymmetry == pytest.approx(5e-7, rel=1e-3)
+    said = nearly_symmetric([identity])
+    assert [one.text for one in said] == [
+        "the symmetry of 1 form holds only nearly: sines of half of what the angles miss of "
+        "it are up to 5.0e-07"
+    ]
