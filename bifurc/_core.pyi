@@ -1,5 +1,7 @@
 """Compiled parts of bifurc: `bifurc/core`."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 class Curve:
@@ -261,3 +263,81 @@ class Tape:
         enough: float,
         most: float,
     ) -> np.ndarray | None: ...
+
+def called_equations(
+    unknowns: int,
+    residuals: Callable[[np.ndarray], np.ndarray],
+    jacobians: Callable[[np.ndarray], np.ndarray],
+) -> object: ...
+def tape_equations(tape: Tape, magnitude: float) -> object: ...
+def normal_corrections(
+    equations: object, scale: float, points: np.ndarray, planes: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]: ...
+def slopes_above(
+    equations: object, points: np.ndarray, planes: np.ndarray
+) -> np.ndarray: ...
+def follow_rays(
+    equations: object,
+    scale: float,
+    centers: np.ndarray,
+    planes: np.ndarray,
+    positions: np.ndarray,
+    shares: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
+def tangent_plane(
+    equations: object, center: np.ndarray, near: np.ndarray, negligible: float
+) -> tuple[np.ndarray, np.ndarray, float]: ...
+def clip(
+    vertices: np.ndarray,
+    labels: np.ndarray,
+    normal: np.ndarray,
+    offset: float,
+    label: int,
+) -> tuple[np.ndarray, np.ndarray]: ...
+
+class Front:
+    """The charts of a surface that is being covered: `bifurc.surfaces.covering`."""
+
+    def __init__(
+        self,
+        periods: np.ndarray,
+        height: float,
+        agree: float,
+        on_disk: float,
+        towards: float,
+    ) -> None: ...
+    def __len__(self) -> int: ...
+    def overlaps(
+        self, center: np.ndarray, basis: np.ndarray, radius: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
+    def add(
+        self,
+        center: np.ndarray,
+        basis: np.ndarray,
+        radius: float,
+        is_clear: bool,
+        vertices: np.ndarray,
+        labels: np.ndarray,
+        numbers: np.ndarray,
+        positions: np.ndarray,
+        heights: np.ndarray,
+    ) -> None: ...
+    def next_open(self) -> tuple[int, np.ndarray] | None: ...
+    def add_dead_end(self, chart: int, direction: np.ndarray) -> None: ...
+    def charts(
+        self, first: int, count: int
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
+    def polygon(self, chart: int) -> tuple[np.ndarray, np.ndarray]: ...
+
+def fitting_disk(
+    equations: object,
+    scale: float,
+    center: np.ndarray,
+    basis: np.ndarray,
+    normal: np.ndarray,
+    largest: float,
+    smallest: float,
+    bend: float,
+    agree: float,
+    negligible: float,
+) -> tuple[float, bool] | None: ...

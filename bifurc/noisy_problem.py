@@ -75,7 +75,7 @@ class NoisyMethods(NumericalProblem):
     def shortcuts(self) -> Shortcuts:
         """What is done in one call, with errors in points of a valley; sparse matrices
         have none."""
-        shortcuts = super().shortcuts
+        shortcuts = super().shortcuts._replace(equations=None)
         correct = shortcuts.valley_corrector
         if correct is None:
             return shortcuts

@@ -253,7 +253,8 @@ class Shortcuts(NamedTuple):
     ``jacobian`` gives F' (m, n) at one point (n,), as a sparse matrix. ``bordered_solver``
     gives what solves systems with F' (m, n) at a point (n,), over the magnitude, and
     under it a row ``tangent`` (n,), or None where that matrix is to be factored; ``m`` is
-    its number of equations. ``valley_corrector`` corrects all points at the nodes of a
+    its number of equations. ``equations`` hands F and F', over a magnitude, to the
+    compiled methods that are the same for all systems. ``valley_corrector`` corrects all points at the nodes of a
     piece of the valley along which the system is nearly solved
     (`bifurc.curves.valley_problem`).
     """
@@ -262,6 +263,7 @@ class Shortcuts(NamedTuple):
     jacobian: Callable[[np.ndarray], np.ndarray | sparray] | None = None
     bordered_solver: Callable[[np.ndarray, np.ndarray], Solver | None] | None = None
     valley_corrector: NodeCorrector | None = None
+    equations: Callable[[float], object] | None = None
 
 
 NO_SHORTCUTS = Shortcuts()

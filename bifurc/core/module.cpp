@@ -9,6 +9,7 @@
 #include "bifurc/core/march.hpp"
 #include "bifurc/core/numpy.hpp"
 #include "bifurc/core/returns.hpp"
+#include "bifurc/core/sheet_module.hpp"
 #include "bifurc/core/singular_values.hpp"
 #include "bifurc/core/tape_bindings.hpp"
 #include "bifurc/core/turnings.hpp"
@@ -347,4 +348,5 @@ NB_MODULE(_core, module) {
     module.def("valley_jacobians", &bifurc::python::valley_jacobians, "residuals"_a, "jacobians"_a, "hessians"_a);
     bifurc::python::bind_arcs(module);
     bifurc::python::bind_tape(module);
+    bifurc::python::bind_sheets(module);
 }

@@ -96,6 +96,17 @@ public:
         return vector;
     }
 
+    // The right singular vectors (count, columns) of the ``count`` largest singular values of matrix ``lane`` of
+    // those that were taken apart last, none of which is zero.
+    Matrix<double> leading_vectors(Index lane, View<const double> matrix, Index count) const {
+        Matrix<double> vectors(count, matrix.columns);
+        for (Index number = 0; number < count; ++number) {
+            const std::vector<double> right = right_vector_of(row_of(number, lane), lane, matrix);
+            std::copy(right.begin(), right.end(), vectors.row(number).begin());
+        }
+        return vectors;
+    }
+
 private:
     using Abreast = std::array<double, lanes>;  // a number of each matrix
     static constexpr int most_sweeps = 40;
@@ -128,22 +139,26 @@ private:
         }
         Matrix<double> vectors(static_cast<Index>(kept.size()), matrix.columns);
         for (Index i = 0; i < vectors.rows(); ++i) {
-            const std::vector<double> vector = vector_of(kept[i], lane);
-            const Vector<double> right = vectors.row(i);
-            if (is_tall_) {
-                std::copy(vector.begin(), vector.end(), right.begin());
-                continue;
-            }
-            for (Index row = 0; row < matrix.rows; ++row) {
-                for (Index j = 0; j < matrix.columns; ++j) right[j] += vector[row] * matrix(row, j);
-            }
-            double largest_entry = 0.0;  // its square may be no number
-            for (double entry : right) largest_entry = std::max(largest_entry, std::abs(entry));
-            for (double& entry : right) entry /= largest_entry;
-            const double size = length(right);
-            for (double& entry : right) entry /= size;
+            const std::vector<double> right = right_vector_of(kept[i], lane, matrix);
+            std::copy(right.begin(), right.end(), vectors.row(i).begin());
         }
         return vectors;
+    }
+
+    // The right singular vector (columns) that belongs to row ``row`` of R, which is not zero.
+    std::vector<double> right_vector_of(Index row, Index lane, View<const double> matrix) const {
+        const std::vector<double> vector = vector_of(row, lane);
+        if (is_tall_) return vector;
+        std::vector<double> right(matrix.columns);
+        for (Index i = 0; i < matrix.rows; ++i) {
+            for (Index j = 0; j < matrix.columns; ++j) right[j] += vector[i] * matrix(i, j);
+        }
+        double largest_entry = 0.0;  // its square may be no number
+        for (double entry : right) largest_entry = std::max(largest_entry, std::abs(entry));
+        for (double& entry : right) entry /= largest_entry;
+        const double size = length(right);
+        for (double& entry : right) entry /= size;
+        return right;
     }
 
     // Takes from ``vector`` what it has along orthonormal rows, and divides it by the length that is

@@ -11,7 +11,7 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
@@ -160,6 +160,7 @@ class ScaledTape:
             jacobian=self.sparse_jacobian if is_sparse else None,
             bordered_solver=self.bordered_solver if is_bordered else None,
             valley_corrector=self.valley_points_at_nodes if self.is_small else None,
+            equations=cache(partial(_core.tape_equations, self.tape.compiled)),
         )
 
     def sparse_jacobian(self, point: np.ndarray) -> csc_array:

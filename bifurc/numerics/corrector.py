@@ -4,10 +4,12 @@ system."""
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
+from bifurc import _core
 from bifurc.limits import is_time_over, left_behind
 from bifurc.numerics.bordered import (
     Bordered,
@@ -19,18 +21,14 @@ from bifurc.system import (
     SphereProjection,
     System,
     jacobian_at,
-    relative_gaps,
     relative_jacobians,
     relative_residuals,
 )
 
 ACROSS_STEPS = 30  # of one point onto a curve
-NORMAL_STEPS = 10  # of points onto a surface
-SETTLED = 1e-9  # last step of these, over the scale
 LEAST_SQUARES_STEPS = 80  # of one random start
 LEAST_WEIGHT = 1e-15  # on the length of a step, at which what it solves is regular
 SPHERE_STEPS = 25  # of one start on a small sphere
-DAMPING = 1e-14  # of normal equations, over the largest squared singular value
 # residual left by one step, as a share, above which a factorisation made elsewhere is
 # given up
 SLOW = 0.05
@@ -117,26 +115,12 @@ def last_step(tolerance: float, scale: float) -> float:
 
 class NormalCorrections(NamedTuple):
     """Points (k, n) corrected straight to a tangent plane, the relative residuals
-    ``gaps`` (k,) that are left, the lengths of the ``first`` step, the ``second`` and
-    the ``last`` (k,); a step that was not needed has none."""
+    ``gaps`` (k,) that are left, and whether the last step ``is_settled`` (k,): too small
+    to matter."""
 
     points: np.ndarray
     gaps: np.ndarray
-    first: np.ndarray
-    second: np.ndarray
-    last: np.ndarray
-
-    def are_settled(self, problem: System) -> np.ndarray:
-        """Whether the last step (k,) was too small to matter."""
-        settled: np.ndarray = self.last < SETTLED * problem.domain.scale
-        return settled
-
-    @property
-    def contractions(self) -> np.ndarray:
-        """The second step (k,) over the first: where no other solution is near it is
-        small (Deuflhard 2004, section 2.1)."""
-        ratios: np.ndarray = self.second / np.maximum(self.first, 1e-300)
-        return ratios
+    is_settled: np.ndarray
 
 
 def correct_normal(
@@ -151,58 +135,33 @@ def correct_normal(
 def normal_corrections(
     problem: System, points: np.ndarray, bases: np.ndarray
 ) -> NormalCorrections:
-    """How ``points`` (k, n) are corrected straight to tangent planes (k, n, 2).
+    """How ``points`` (k, n) are corrected straight to tangent spaces with the bases (k,
+    n, d) or (n, d).
 
     Gauss-Newton on ``[F'; T^T] d = [-F; 0]``, as for curves, by normal equations: far
     faster than an SVD of every matrix, and what a step loses to rounding the next one
-    mends. `DAMPING` keeps them regular at singular points.
+    mends. A little damping keeps them regular at singular points.
     """
-    if not len(points):
-        nothing = np.empty(0)
-        return NormalCorrections(points, nothing, nothing, nothing, nothing)
-    points = points.copy()
-    border = bases @ np.swapaxes(bases, 1, 2) + DAMPING * np.eye(problem.n)
-    lengths = np.zeros((NORMAL_STEPS, len(points)))
-    last = np.zeros(len(points))
-    unsettled = np.arange(len(points))
-    for number in range(NORMAL_STEPS):
-        steps = _normal_steps(problem, points[unsettled], border[unsettled])
-        points[unsettled] += limited(steps, 0.5 * problem.domain.scale)
-        last[unsettled] = np.linalg.norm(steps, axis=1)
-        lengths[number, unsettled] = last[unsettled]
-        unsettled = unsettled[last[unsettled] >= SETTLED * problem.domain.scale]
-        if not len(unsettled):
-            break
-    gaps = relative_gaps(problem, points)
-    return NormalCorrections(points, gaps, lengths[0], lengths[1], last)
+    spaces = np.broadcast_to(bases, (len(points), *bases.shape[-2:]))
+    return NormalCorrections(
+        *_core.normal_corrections(
+            compiled_equations(problem),
+            problem.domain.scale,
+            np.ascontiguousarray(points, dtype=float),
+            np.ascontiguousarray(spaces),
+        )
+    )
 
 
-def _normal_steps(
-    problem: System, points: np.ndarray, border: np.ndarray
-) -> np.ndarray:
-    """Steps (k, n) of Gauss-Newton from points (k, n), with a symmetric ``border`` (k, n,
-    n)."""
-    residuals = relative_residuals(problem, points)[:, :, None]
-    jacobians = relative_jacobians(problem, points)
-    transposed = np.swapaxes(jacobians, 1, 2)
-    with np.errstate(over="ignore", invalid="ignore"):  # such points stay
-        matrices = transposed @ jacobians + border
-        right = (transposed @ residuals)[:, :, 0]
-    return -_solutions(matrices, right)
-
-
-def _solutions(matrices: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Solutions (k, n) of symmetric systems (k, n, n), shortest ones where a matrix is
-    singular; zeros where F' is too large for its square to be a number."""
-    is_finite = np.isfinite(matrices).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
-    sound = np.where(is_finite[:, None, None], matrices, np.eye(matrices.shape[1]))
-    known = np.where(is_finite[:, None], right, 0.0)
-    try:
-        solutions: np.ndarray = np.linalg.solve(sound, known[:, :, None])[:, :, 0]
-    except np.linalg.LinAlgError:  # some matrix is singular to the last bit
-        inverses = np.linalg.pinv(sound, hermitian=True)
-        solutions = (inverses @ known[:, :, None])[:, :, 0]
-    return solutions
+def compiled_equations(problem: System) -> object:
+    """F and F', over the magnitude, for the compiled methods that are the same for all
+    systems: many points at a time where Python makes them."""
+    equations = problem.shortcuts.equations
+    if equations is not None:
+        return equations(problem.magnitude)
+    residuals = partial(relative_residuals, problem)
+    jacobians = partial(relative_jacobians, problem)
+    return _core.called_equations(problem.n, residuals, jacobians)
 
 
 def limited(steps: np.ndarray, longest: float) -> np.ndarray:

@@ -11,7 +11,7 @@ import numpy as np
 from bifurc.numerics.corrector import correct_normal
 from bifurc.problem import Problem
 from bifurc.surfaces.disk import RIM, Disk, TangentPlane
-from bifurc.surfaces.sheet import slopes_at
+from bifurc.surfaces.sheet import slopes_above
 
 # Rise of the surface towards a bound above the tangent plane, over that in the plane, at
 # which the bound is too bent, and the radius over what it was then.
@@ -66,8 +66,8 @@ def turns_back(
             return False
         flat = plane.center + plane.basis @ y
         tops, _ = correct_normal(problem, flat[None], plane.basis[None])
-        slopes = np.array([_slope(problem, tops, plane, axis) for axis in np.eye(2)])
-        step = -np.linalg.solve(bend, sign * slopes[:, unknown])
+        slopes = slopes_above(problem, tops, plane.basis[None])[0, unknown]
+        step = -np.linalg.solve(bend, sign * slopes)
         if np.linalg.norm(step) < LAST * radius:
             return bool(problem.domain.are_inside(tops)[0])
     return False
@@ -89,12 +89,3 @@ def _bend(rises: np.ndarray, radius: float) -> np.ndarray:
     terms = np.stack([one**2 / 2, one * other, other**2 / 2], axis=1)
     a, b, c = np.linalg.lstsq(terms, rises, rcond=None)[0]
     return np.array([[a, b], [b, c]])
-
-
-def _slope(
-    problem: Problem, points: np.ndarray, plane: TangentPlane, axis: np.ndarray
-) -> np.ndarray:
-    """The slope (n,) of the surface at a solution (1, n) along an ``axis`` (2,)."""
-    slopes, _ = slopes_at(problem, points, plane.basis[None], axis[None])
-    slope: np.ndarray = slopes[0]
-    return slope

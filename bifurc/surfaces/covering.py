@@ -14,7 +14,6 @@ both charts are cut along the same line up to fourth order.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum
@@ -22,14 +21,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bifurc import _core
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.corrector import correct_normal
-from bifurc.numerics.null_spaces import (
-    cosines_between_planes,
-    null_spaces,
-    planes_next_to,
-)
+from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.surfaces.area import Sizes, cell_sizes
 from bifurc.surfaces.beside_bounds import disk_beside_bounds, turns_back
@@ -41,7 +37,14 @@ from bifurc.surfaces.complex import (
     without_empty_polygons,
 )
 from bifurc.surfaces.crossing_sheets import has_uncovered_crossing
-from bifurc.surfaces.disk import AGREE, BEND, Disk, TangentPlane, fitting_disk
+from bifurc.surfaces.disk import (
+    AGREE,
+    BEND,
+    Disk,
+    TangentPlane,
+    fitting_disk,
+    tangent_plane_at,
+)
 from bifurc.surfaces.other_sheets import solutions_across
 from bifurc.surfaces.polygon import BORDER, FlatCharts, Polygon, octagon
 from bifurc.surfaces.sheet import follow_sheets
@@ -191,15 +194,29 @@ class _UnfitPlace(NamedTuple):
 
 class _Overlaps(NamedTuple):
     """Charts that overlap a disk: their ``numbers`` (k,), the ``positions`` (k, 2) of
-    their centres in its plane, and the ``heights`` (k,) above it."""
+    their centres in its plane, and the ``heights`` (k,) above it, their ``radii`` (k,),
+    and whether other sheets ``are_clear`` of them (k,)."""
 
     numbers: np.ndarray
     positions: np.ndarray
     heights: np.ndarray
+    radii: np.ndarray
+    are_clear: np.ndarray
 
     def part(self, rows: np.ndarray) -> _Overlaps:
         """The charts ``rows`` of these."""
-        return _Overlaps(self.numbers[rows], self.positions[rows], self.heights[rows])
+        return _Overlaps(*(column[rows] for column in self))
+
+
+class _Charts(NamedTuple):
+    """The ``centers`` (c, n) of charts, the ``bases`` (c, n, 2) of their planes, their
+    ``radii`` (c,), and whether other sheets ``are_clear`` of them (c,): what lies in such
+    a chart is on its sheet."""
+
+    centers: np.ndarray
+    bases: np.ndarray
+    radii: np.ndarray
+    are_clear: np.ndarray
 
 
 class _Cover:
@@ -216,32 +233,26 @@ class _Cover:
 
     def _forget_charts(self) -> None:
         """Begin without charts."""
-        problem = self.problem
-        self._centers = np.empty((0, problem.n))
-        self._bases = np.empty((0, problem.n, 2))
-        self._radii = np.empty(0)
-        # where no other sheet is near: what lies in such a chart is on its sheet
-        self._are_clear = np.empty(0, dtype=bool)
-        self._polygons: list[Polygon] = []
-        # directions of each chart in which no chart could be made
-        self._dead_ends: list[list[np.ndarray]] = []
+        # in two disks of radius R that touch, bent by BEND, one centre lies up to 4
+        # BEND R above the other's plane
+        self._front = _core.Front(
+            self.problem.domain.periods,
+            height=3 * BEND,
+            agree=AGREE,
+            on_disk=ON_DISK,
+            towards=TOWARDS,
+        )
         self._unfit_places: list[_UnfitPlace] = []
         self._unfit_seeds: list[np.ndarray] = []
-        self._open: deque[int] = deque()
         # number of charts from which other sheets have been looked for
         self._looked_from = 0
 
     def cells(self) -> tuple[FlatCharts, Cells]:
         """The charts made so far but for those of whose polygons the others leave
         nothing, and their polygons fitted together."""
-        charts = FlatCharts(
-            centers=self._centers,
-            bases=self._bases,
-            radii=self._radii,
-            are_clear=self._are_clear,
-            polygons=self._polygons,
-        )
-        charts = without_empty_polygons(charts)
+        count = len(self._front)
+        polygons = [Polygon(*self._front.polygon(i)) for i in range(count)]
+        charts = without_empty_polygons(FlatCharts(*self._charts(), polygons))
         return charts, fitted_cells(self.problem, charts)
 
     def shrink(self, charts: FlatCharts, too_large: np.ndarray) -> None:
@@ -253,37 +264,43 @@ class _Cover:
             disk = Disk(radius, bool(charts.are_clear[i]))
             self.add(charts.centers[i], charts.bases[i], disk)
 
+    def _charts(self, first: int = 0) -> _Charts:
+        """The charts from this number on."""
+        return _Charts(*self._front.charts(first, len(self._front) - first))
+
     @property
     def has_charts_to_look_from(self) -> bool:
         """Whether there are charts that other sheets may be near, from which none was
         looked for."""
-        return not np.all(self._are_clear[self._looked_from :])
+        return not np.all(self._charts(self._looked_from).are_clear)
 
     def are_covered(self, points: np.ndarray) -> np.ndarray:
         """Which solutions (k, n) lie in a chart, and on its sheet (k,)."""
-        point, chart, y = self._charts_under(points)
+        charts = self._charts()
+        point, chart, y = self._charts_under(points, charts)
         are_covered = np.zeros(len(points), dtype=bool)
-        is_clear = self._are_clear[chart]
+        is_clear = charts.are_clear[chart]
         are_covered[point[is_clear]] = True
         is_open = ~is_clear & ~are_covered[point]
         point, chart, y = point[is_open], chart[is_open], y[is_open]
-        planes = self._bases[chart]
-        ends, are_reached = follow_sheets(self.problem, self._centers[chart], planes, y)
+        planes = charts.bases[chart]
+        centers = charts.centers[chart]
+        ends, are_reached = follow_sheets(self.problem, centers, planes, y)
         on_sheet = ~are_reached | self._are_same(ends, points[point], planes)
         are_covered[point[on_sheet]] = True
         return are_covered
 
     def _charts_under(
-        self, points: np.ndarray
+        self, points: np.ndarray, charts: _Charts
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Numbers (p,) of solutions (k, n), and of charts (p,) in whose disks they lie or
         little above them, with the positions (p, 2) there."""
-        offset = self.problem.domain.difference(points[:, None], self._centers)
+        offset = self.problem.domain.difference(points[:, None], charts.centers)
         distance = np.linalg.norm(offset, axis=2)
-        point, chart = np.nonzero(distance < RIM * self._radii)
+        point, chart = np.nonzero(distance < RIM * charts.radii)
         offset = offset[point, chart]
-        y = np.einsum("ki,kij->kj", offset, self._bases[chart])
-        in_plane = np.einsum("kij,kj->ki", self._bases[chart], y)
+        y = np.einsum("ki,kij->kj", offset, charts.bases[chart])
+        in_plane = np.einsum("kij,kj->ki", charts.bases[chart], y)
         height = np.linalg.norm(offset - in_plane, axis=1)
         is_low = height < STEEPEST * np.linalg.norm(y, axis=1) + ROUNDING
         return point[is_low], chart[is_low], y[is_low]
@@ -336,34 +353,27 @@ class _Cover:
     def look_across(self) -> np.ndarray:
         """Solutions (k, n) on other sheets, next to charts from which none were looked
         for."""
-        first, self._looked_from = self._looked_from, len(self._radii)
-        charts = first + np.flatnonzero(~self._are_clear[first:])
+        charts = self._charts(self._looked_from)
+        self._looked_from = len(self._front)
+        some = ~charts.are_clear
         return solutions_across(
-            self.problem,
-            self._centers[charts],
-            self._bases[charts],
-            self._radii[charts],
+            self.problem, charts.centers[some], charts.bases[some], charts.radii[some]
         )
 
     def grow(self, charts: int, deadline: Deadline) -> Covering:
         """Add charts at open vertices until there are none, or until a limit is
         reached."""
-        while self._open:
+        while (place := self._front.next_open()) is not None:
             if deadline.passed:
                 return Covering.OUT_OF_TIME
             if self._undecided > MOST_UNDECIDED:
                 return Covering.UNDECIDED
-            i = self._open[0]
-            y = self._open_vertex(i)
-            if y is None:
-                self._open.popleft()
-                continue
-            if len(self._centers) >= charts:
+            if len(self._front) >= charts:
                 return Covering.CHART_LIMIT
-            direction = y / np.linalg.norm(y)
+            i, direction = place
             placement = self._make_next(i, direction)
             if placement is not Placement.MADE:
-                self._dead_ends[i].append(direction)
+                self._front.add_dead_end(i, direction)
             if placement is Placement.UNFIT:
                 self._unfit_places.append(_UnfitPlace(i, direction))
         return Covering.COMPLETE
@@ -383,9 +393,8 @@ class _Cover:
     def _above(self, place: _UnfitPlace) -> np.ndarray:
         """Where on the rim of a chart (n,) no other one fits."""
         i, direction = place
-        above: np.ndarray = (
-            self._centers[i] + self._radii[i] * self._bases[i] @ direction
-        )
+        (center,), (basis,), (radius,), _ = self._front.charts(i, 1)
+        above: np.ndarray = center + radius * basis @ direction
         return above
 
     def _has_a_reason(self, hole: np.ndarray) -> bool:
@@ -396,37 +405,25 @@ class _Cover:
 
     def _is_hole(self, place: _UnfitPlace) -> bool:
         """Whether the polygon of a chart has a vertex outside the disk there."""
-        vertices = self._polygons[place.chart].vertices
+        vertices, _ = self._front.polygon(place.chart)
         size = np.linalg.norm(vertices, axis=1)
         is_there = vertices @ place.direction >= TOWARDS * size
-        is_outside = size > (1.0 + HOLE) * self._radii[place.chart]
+        *_, (radius,), _ = self._front.charts(place.chart, 1)
+        is_outside = size > (1.0 + HOLE) * radius
         return bool(np.any(is_there & is_outside))
-
-    def _open_vertex(self, i: int) -> np.ndarray | None:
-        """The vertex (2,) of polygon i farthest outside the disk, in no direction that
-        is a dead end; None if there is none."""
-        vertices = self._polygons[i].vertices
-        size = np.linalg.norm(vertices, axis=1)
-        for k in np.argsort(-size):
-            if size[k] <= self._radii[i] * (1.0 + ON_DISK):
-                return None
-            y: np.ndarray = vertices[k]
-            if all(y @ d < TOWARDS * size[k] for d in self._dead_ends[i]):
-                return y
-        return None
 
     def _make_next(self, i: int, direction: np.ndarray) -> Placement:
         """Make the chart about the solution above the rim of chart i, in a direction
         (2,)."""
-        basis, radius = self._bases[i], self._radii[i]
-        start = self._centers[i] + radius * basis @ direction
-        if self._are_clear[i]:
+        (center,), (basis,), (radius,), (is_clear,) = self._front.charts(i, 1)
+        start = center + radius * basis @ direction
+        if is_clear:
             centers, gaps = correct_normal(self.problem, start[None], basis[None])
             is_there = gaps[0] < SOLVED
         else:
             rim = (radius * direction)[None]
             centers, are_reached = follow_sheets(
-                self.problem, self._centers[i][None], basis[None], rim
+                self.problem, center[None], basis[None], rim
             )
             is_there = are_reached[0]
         distance = np.linalg.norm(centers[0] - start)
@@ -437,15 +434,12 @@ class _Cover:
     def _make(self, center: np.ndarray, basis: np.ndarray, radius: float) -> Placement:
         """Make the chart, of at most ``radius``, about a solution (n,) with a tangent
         plane next to ``basis``."""
-        sigma, right = null_spaces(self.problem, center[None])
-        plane = planes_next_to(sigma, right, basis)[0]
-        if cosines_between_planes(basis, plane)[-1] < SMOOTH:
+        tangent_plane, cosine = tangent_plane_at(self.problem, center, basis)
+        plane = tangent_plane.basis
+        if cosine < SMOOTH:
             return Placement.UNFIT
         if self._is_close_to_a_center(center, plane):
             return Placement.COVERED
-        # without equations across it there is no other sheet
-        normal = right[0, -3] if self.problem.n > 2 else np.zeros(self.problem.n)
-        tangent_plane = TangentPlane(center, plane, normal)
         disk = self._disk(tangent_plane, radius)
         if disk is None:
             return Placement.UNFIT
@@ -470,7 +464,7 @@ class _Cover:
         """Whether a chart about ``center`` (n,) would be close to another one."""
         near = self._near_charts(center, basis, self._largest)
         distances = np.linalg.norm(near.positions, axis=1)
-        close = near.part(distances / self._radii[near.numbers] < TOO_CLOSE)
+        close = near.part(distances / near.radii < TOO_CLOSE)
         same = self._on_sheet(center, basis, is_clear=True, near=close)
         return len(same.numbers) > 0
 
@@ -484,22 +478,13 @@ class _Cover:
 
     def add(self, center: np.ndarray, basis: np.ndarray, disk: Disk) -> None:
         """Add a chart and cut its polygon and those of all charts that overlap it."""
-        number, radius = len(self._radii), disk.radius
+        radius = disk.radius
         plane = TangentPlane(center, basis, np.zeros(self.problem.n))
         polygon = self._cut_by_bounds(octagon(radius), plane, radius)
         near = self._near_charts(center, basis, radius)
-        overlaps = self._on_sheet(center, basis, disk.is_clear, near)
-        for i, x, height in zip(*overlaps, strict=True):
-            other_radius = self._radii[i]
-            polygon = _cut(polygon, radius, x, height, other_radius, int(i))
-            self._cut_by_chart(int(i), center, radius, number)
-        self._centers = np.concatenate([self._centers, center[None]])
-        self._bases = np.concatenate([self._bases, basis[None]])
-        self._radii = np.append(self._radii, radius)
-        self._are_clear = np.append(self._are_clear, disk.is_clear)
-        self._polygons.append(polygon)
-        self._dead_ends.append([])
-        self._open.append(number)
+        others = self._on_sheet(center, basis, disk.is_clear, near)
+        charts = others.numbers, others.positions, others.heights
+        self._front.add(center, basis, radius, disk.is_clear, *polygon, *charts)
 
     def _cut_by_bounds(
         self, polygon: Polygon, plane: TangentPlane, radius: float
@@ -507,6 +492,9 @@ class _Cover:
         """The part of a polygon inside the bounds. What lies outside by rounding is not
         cut off: a surface may run in a bound, or touch it."""
         domain, center, basis = self.problem.domain, plane.center, plane.basis
+        farthest_vertex = np.linalg.norm(polygon.vertices, axis=1).max()
+        if np.all(np.abs(domain.bounds - center[:, None]) > farthest_vertex):
+            return polygon
         low, high = domain.bounds.T
         for side, rooms in enumerate((center - low, high - center)):
             sign = 2.0 * side - 1.0
@@ -520,41 +508,18 @@ class _Cover:
                     polygon = polygon.clip(normal, room, label)
         return polygon
 
-    def _cut_by_chart(
-        self, i: int, center: np.ndarray, radius: float, label: int
-    ) -> None:
-        """Cut polygon i where its disk intersects the one about ``center`` (n,)."""
-        basis = self._bases[i]
-        offset = self.problem.domain.difference(center, self._centers[i])
-        x = basis.T @ offset
-        height = float(np.linalg.norm(offset - basis @ x))
-        polygon = self._polygons[i]
-        self._polygons[i] = _cut(polygon, self._radii[i], x, height, radius, label)
-        self._open.append(i)
-
     def _near_charts(
         self, center: np.ndarray, basis: np.ndarray, radius: float
     ) -> _Overlaps:
         """The charts that overlap a disk about ``center`` (n,), or lie above it."""
-        offset = self.problem.domain.difference(self._centers, center)
-        distance = np.linalg.norm(offset, axis=1)
-        near = np.flatnonzero(distance < radius + self._radii)
-        x = offset[near] @ basis
-        in_plane = x @ basis.T
-        height = np.linalg.norm(offset[near] - in_plane, axis=1)
-        # in two disks of radius R that touch, bent by BEND, one centre lies up to 4
-        # BEND R above the other's plane
-        is_low = height < 3 * BEND * np.maximum(radius, distance[near])
-        cosines = cosines_between_planes(self._bases[near], basis)
-        same_sheet = is_low & (cosines[:, -1] > AGREE)
-        return _Overlaps(near[same_sheet], x[same_sheet], height[same_sheet])
+        return _Overlaps(*self._front.overlaps(center, basis, radius))
 
     def _on_sheet(
         self, center: np.ndarray, basis: np.ndarray, is_clear: bool, near: _Overlaps
     ) -> _Overlaps:
         """Those of the charts whose centres are on the sheet of the solution ``center``
         (n,): above its plane ``basis`` the sheet leads to them."""
-        is_open = ~(self._are_clear[near.numbers] & is_clear)
+        is_open = ~(near.are_clear & is_clear)
         if not np.any(is_open):
             return near
         numbers = near.numbers[is_open]
@@ -563,26 +528,8 @@ class _Cover:
         ends, are_reached = follow_sheets(
             self.problem, starts, planes, near.positions[is_open]
         )
-        is_same = self._are_same(ends, self._centers[numbers], planes)
+        is_same = self._are_same(ends, self._charts().centers[numbers], planes)
         self._undecided += int(np.count_nonzero(~are_reached))
         is_on_sheet = np.ones(len(near.numbers), dtype=bool)
         is_on_sheet[is_open] = ~are_reached | is_same
         return near.part(is_on_sheet)
-
-
-def _cut(
-    polygon: Polygon,
-    radius: float,
-    x: np.ndarray,
-    height: float,
-    other_radius: float,
-    label: int,
-) -> Polygon:
-    """A polygon cut where its disk of ``radius`` intersects the one about ``x`` (2,),
-    of ``other_radius``, whose centre lies at a ``height``."""
-    distance = float(np.linalg.norm(x))
-    if distance == 0.0:
-        return polygon
-    bent = distance**2 + 0.5 * height**2
-    offset = (bent + radius**2 - other_radius**2) / (2.0 * distance)
-    return polygon.clip(x / distance, offset, label)

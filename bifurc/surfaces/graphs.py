@@ -7,15 +7,11 @@ import numpy as np
 from bifurc.numerics.corrector import normal_corrections
 from bifurc.problem import Problem
 from bifurc.surfaces.polygon import BORDER, FlatCharts
-from bifurc.surfaces.sheet import follow_along
-from bifurc.system import relative_jacobians
+from bifurc.surfaces.sheet import SOLVED, follow_along, slopes_above
 
-# Relative residual above which a point is no solution.
-SOLVED = 1e-9
 # Rounds by which points of a graph are moved onto bounds, how far, over the radius, one
 # goes, and how far off, over the scale, the last may be.
 ROUNDS, FARTHEST, AT_BOUND = 12, 0.5, 1e-12
-FULL_RANK = 1e-6  # least entry on the diagonal of a triangular factor, over the largest
 
 
 class Graphs:
@@ -88,17 +84,7 @@ class Graphs:
     def slopes(self, points: np.ndarray) -> np.ndarray:
         """Derivatives (k, n, 2) of the graphs by the position, at their points (k,
         n)."""
-        jacobians = relative_jacobians(self._problem, points)
-        matrices = np.concatenate([jacobians, np.swapaxes(self._planes, 1, 2)], axis=1)
-        q, r = np.linalg.qr(matrices)
-        diagonals = np.abs(np.diagonal(r, axis1=1, axis2=2))
-        is_plain = diagonals.min(axis=1) > FULL_RANK * diagonals.max(axis=1)
-        slopes = np.empty((*points.shape, 2))
-        right = np.swapaxes(q[is_plain, -2:], 1, 2)
-        slopes[is_plain] = np.linalg.solve(r[is_plain], right)
-        # F' may have a lower rank all over a surface
-        slopes[~is_plain] = np.linalg.pinv(matrices[~is_plain])[:, :, -2:]
-        return slopes
+        return slopes_above(self._problem, points, self._planes)
 
     def onto_bounds(
         self, positions: np.ndarray, on_bound: np.ndarray

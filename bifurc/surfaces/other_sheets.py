@@ -34,7 +34,7 @@ def solutions_across(
     chart, which = np.nonzero(np.abs(distances) < FARTHEST * radii[:, None])
     aside = distances[chart, which][:, None] * normals[chart]
     corrected = normal_corrections(problem, centers[chart] + aside, bases[chart])
-    is_solved = corrected.are_settled(problem) & (corrected.gaps < SOLVED)
+    is_solved = corrected.is_settled & (corrected.gaps < SOLVED)
     offset = problem.domain.difference(corrected.points, centers[chart])
     is_away = np.linalg.norm(offset, axis=1) > AWAY * np.linalg.norm(aside, axis=1)
     is_inside = problem.domain.are_inside(corrected.points)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bifurc import _core
 from bifurc.numerics.binary_forms import unit_vectors
 
 OUTLINE = -1  # label of an edge that nothing has cut yet
@@ -29,36 +30,9 @@ class Polygon(NamedTuple):
         """The part where ``normal . y <= offset``; the edge along the cut gets
         ``label``.
 
-        The same polygon where the line misses it, an empty one where nothing is left.
+        All of it where the line misses it, an empty one where nothing is left.
         """
-        if self.is_empty:
-            return self
-        height: list[float] = (self.vertices @ normal - offset).tolist()
-        if max(height) <= 0.0:
-            return self
-        if min(height) > 0.0:
-            return Polygon(self.vertices[:0], self.labels[:0])
-        count = len(height)
-        next_height = height[1:] + height[:1]
-        edges = range(count)
-        leaves = next(i for i in edges if height[i] <= 0.0 < next_height[i])
-        enters = next(i for i in edges if next_height[i] <= 0.0 < height[i])
-        count_inside = (leaves - enters) % count
-        inside = [(enters + 1 + i) % count for i in range(count_inside)]
-        begin = self._crossing(leaves, height[leaves], next_height[leaves])
-        end = self._crossing(enters, height[enters], next_height[enters])
-        new_labels = [label, self.labels[enters]]
-        return Polygon(
-            np.concatenate([self.vertices[inside], [begin, end]]),
-            np.concatenate([self.labels[inside], new_labels]),
-        )
-
-    def _crossing(self, edge: int, begin: float, end: float) -> np.ndarray:
-        """The point (2,) of an edge on the line, from the heights of its two ends."""
-        first = self.vertices[edge]
-        last = self.vertices[(edge + 1) % len(self.vertices)]
-        point: np.ndarray = first + begin / (begin - end) * (last - first)
-        return point
+        return Polygon(*_core.clip(*self, np.asarray(normal), offset, label))
 
 
 def octagon(radius: float) -> Polygon:

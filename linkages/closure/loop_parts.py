@@ -91,7 +91,10 @@ class ScrewSystem:
     def shortcuts(self) -> Shortcuts:
         """How points at the nodes of a piece of the valley are corrected along which the
         loop nearly closes."""
-        return Shortcuts(valley_corrector=self._valley_points_at_nodes)
+        return Shortcuts(
+            valley_corrector=self._valley_points_at_nodes,
+            equations=partial(_core.equations, self.geometry),
+        )
 
     def _valley_points_at_nodes(self, nodes: CurveNodes) -> np.ndarray | None:
         return _core.valley_points_at_nodes(self.geometry, *nodes)

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "bifurc/core/bindings.hpp"
+#include "bifurc/core/equations_bindings.hpp"
 #include "bifurc/core/valley_bindings.hpp"
 #include "linkages/core/closure.hpp"
 #include "linkages/core/slices_module.hpp"
@@ -32,6 +33,12 @@ nb::object hessians(const Table& thetas, const Table& geometry) {
     bifurc::numpy::Array<double> out({at.rows, closure.equations(), closure.unknowns(), closure.unknowns()});
     for (Index i = 0; i < at.rows; ++i) closure.hessian(at.row(i), out.entry(i));
     return out.release();
+}
+
+// The closure over a magnitude, for what bifurc makes of any equations.
+nb::capsule equations(const Table& geometry, double magnitude) {
+    const auto make = [](const Table& of) { return Closure(view(of)); };
+    return python::hand_over(std::make_unique<bifurc::EquationsOf<Closure, Table>>(geometry, make, magnitude));
 }
 
 nb::tuple march(const Doubles& start, const Doubles& tangent, const Table& geometry, Index order,
@@ -65,6 +72,7 @@ NB_MODULE(_core, module) {
     module.def("residuals", &residuals, nb::arg("thetas"), nb::arg("geometry"));
     module.def("jacobians", &jacobians, nb::arg("thetas"), nb::arg("geometry"));
     module.def("hessians", &hessians, nb::arg("thetas"), nb::arg("geometry"));
+    module.def("equations", &equations, nb::arg("geometry"), nb::arg("magnitude"));
     module.def("march", &march, nb::arg("start"), nb::arg("tangent"), nb::arg("geometry"), nb::arg("order"),
                nb::arg("tolerance"), nb::arg("shortest"), nb::arg("longest"), nb::arg("count"),
                nb::arg("closing"), nb::arg("misclosure"), nb::arg("anchor"), nb::arg("within"), nb::arg("periods"),

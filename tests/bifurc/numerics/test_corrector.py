@@ -148,7 +148,7 @@ def test_points_onto_a_surface_settle_each_for_itself():
     def sphere(u):
         return [u @ u - 1.0]
 
-    problem = FunctionProblem(sphere, BOX)
+    problem = FunctionProblem(sphere, BOX, is_recorded=False)
     jacobians = problem.jacobians
     problem.jacobians = lambda points: calls.append(len(points)) or jacobians(points)
     starts = np.array(

@@ -31,7 +31,9 @@ def test_a_cut_through_the_middle_leaves_half_and_labels_its_edge() -> None:
 
 def test_a_line_that_misses_the_polygon_leaves_it_and_one_beyond_it_nothing() -> None:
     polygon = octagon(1.0)
-    assert polygon.clip(RIGHT, 2.0, label=7) is polygon
+    whole = polygon.clip(RIGHT, 2.0, label=7)
+    assert np.array_equal(whole.vertices, polygon.vertices)
+    assert np.array_equal(whole.labels, polygon.labels)
     nothing = polygon.clip(RIGHT, -2.0, label=7)
     assert nothing.is_empty
     assert nothing.clip(RIGHT, 0.0, label=8).is_empty

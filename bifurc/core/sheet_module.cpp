@@ -1,0 +1,306 @@
+// The part of bifurc._core that is about surfaces.
+#include "bifurc/core/sheet_module.hpp"
+
+#include <memory>
+#include <utility>
+
+#include "bifurc/core/deadline.hpp"
+#include "bifurc/core/equations_bindings.hpp"
+#include "bifurc/core/front.hpp"
+#include "bifurc/core/sheet.hpp"
+#include "bifurc/core/tape.hpp"
+
+namespace bifurc::python {
+
+namespace {
+
+// Equations that functions of Python make: from points (k, n) to F (k, m) and to F' (k, m, n), both over the
+// magnitude.
+class CalledEquations : public Equations {
+public:
+    CalledEquations(Index unknowns, nb::object residuals, nb::object jacobians)
+        : unknowns_(unknowns), residuals_(std::move(residuals)), jacobians_(std::move(jacobians)) {}
+
+    Index unknowns() const override { return unknowns_; }
+    Index at_once() const override { return many; }
+
+    void fill(View<const double> points, bool has_jacobians, Values& values) const override {
+        if (points.rows == 0) return;
+        numpy::Array<double> copy({points.rows, points.columns});
+        copy.fill({points.data, static_cast<std::size_t>(points.rows * points.columns)});
+        const nb::object at = copy.release();
+        const auto residuals = nb::cast<Table>(residuals_(at));
+        values.reserve(points.rows, static_cast<Index>(residuals.shape(1)), has_jacobians);
+        check_unknowns("residuals", residuals.shape(0), points.rows);
+        std::copy_n(residuals.data(), residuals.size(), values.residual(0).data());
+        if (!has_jacobians) return;
+        const auto jacobians = nb::cast<numpy::CubeIn<double>>(jacobians_(at));
+        check_unknowns("jacobians", jacobians.size(), residuals.size() * unknowns_);
+        std::copy_n(jacobians.data(), jacobians.size(), values.jacobian(0).data);
+    }
+
+private:
+    static constexpr Index many = 2048;  // whose derivatives fit into memory with those of their functions
+
+    Index unknowns_;
+    nb::object residuals_, jacobians_;
+};
+
+nb::capsule called_equations(Index unknowns, nb::object residuals, nb::object jacobians) {
+    return hand_over(std::make_unique<CalledEquations>(unknowns, std::move(residuals), std::move(jacobians)));
+}
+
+// A tape, with what its system refers to.
+struct OwnedTape {
+    nb::object tape;
+    std::vector<double> units, weights;
+};
+
+nb::capsule tape_equations(const nb::object& tape, double magnitude) {
+    const Tape& own = nb::cast<const Tape&>(tape);
+    OwnedTape owner{tape, std::vector<double>(own.unknowns(), 1.0), std::vector<double>(own.equations(), 1.0)};
+    const auto make = [&](const OwnedTape& of) { return TapeSystem(own, of.units, of.weights); };
+    return hand_over(std::make_unique<EquationsOf<TapeSystem, OwnedTape>>(std::move(owner), make, magnitude));
+}
+
+// --- methods over them ---------------------------------------------------------------------------------------
+
+// Arrays of as many points, planes or positions as there are rows.
+void check_rows(const char* name, std::size_t given, std::size_t needed) {
+    if (given != needed) throw nb::value_error((std::string(name) + ": there must be one for each point").c_str());
+}
+
+void check_spaces(const numpy::CubeIn<double>& planes, std::size_t count, Index unknowns) {
+    check_rows("planes", planes.shape(0), count);
+    check_unknowns("planes", planes.shape(1), unknowns);
+}
+
+void check_planes(const numpy::CubeIn<double>& planes, std::size_t count, Index unknowns) {
+    check_spaces(planes, count, unknowns);
+    if (planes.shape(2) != 2) throw nb::value_error("planes must have two columns each");
+}
+
+// (points (k, n), gaps (k), is settled (k)): `Correction`.
+nb::tuple normal_corrections(const nb::capsule& equations, double scale, const Table& points,
+                                    const numpy::CubeIn<double>& planes) {
+    const Equations& own = equations_in(equations);
+    const Index n = own.unknowns(), count = static_cast<Index>(points.shape(0));
+    check_unknowns("points", points.shape(1), n);
+    check_spaces(planes, points.shape(0), n);
+    numpy::Array<double> at({count, n}), gaps({count});
+    numpy::Array<bool> is_settled({count});
+    at.fill({points.data(), points.size()});
+    std::vector<Correction> corrections;
+    const View<const double> bases = numpy::rows(planes);
+    NormalCorrector(own, scale).correct(at.matrix(), [&](Index i) { return plane_of(bases, i, n); }, corrections);
+    for (Index i = 0; i < count; ++i) {
+        gaps.data()[i] = corrections[i].gap;
+        is_settled.data()[i] = corrections[i].is_settled(scale);
+    }
+    return nb::make_tuple(at.release(), gaps.release(), is_settled.release());
+}
+
+// (k, n, 2): `Slopes`.
+nb::object slopes_above(const nb::capsule& equations, const Table& points, const numpy::CubeIn<double>& planes) {
+    const Equations& own = equations_in(equations);
+    const Index n = own.unknowns();
+    check_unknowns("points", points.shape(1), n);
+    check_planes(planes, points.shape(0), n);
+    numpy::Array<double> out({static_cast<Index>(points.shape(0)), n, 2});
+    const View<const double> bases = numpy::rows(planes);
+    Slopes(own).at(numpy::view(points), [&](Index i) { return plane_of(bases, i, n); }, sheet::any_rank,
+                   [&](Index i, View<const double> slopes) {
+                       std::copy_n(slopes.data, 2 * n, out.entry(i).data);
+                   });
+    return out.release();
+}
+
+// (ends (k, n), reached (k), passed (k, s, n), are there (k, s)): `RayEnds`.
+nb::tuple follow_rays(const nb::capsule& equations, double scale, const Table& centers,
+                             const numpy::CubeIn<double>& planes, const Table& positions, const Doubles& shares) {
+    const Equations& own = equations_in(equations);
+    const Index n = own.unknowns();
+    const auto count = static_cast<Index>(centers.shape(0)), s = static_cast<Index>(shares.shape(0));
+    check_unknowns("centers", centers.shape(1), n);
+    check_planes(planes, centers.shape(0), n);
+    check_rows("positions", positions.shape(0), centers.shape(0));
+    check_unknowns("positions", positions.shape(1), 2);
+    numpy::Array<double> ends({count, n}), reached({count}), passed({count, s, n});
+    numpy::Array<bool> are_there({count, s});
+    Deadline deadline(std::numeric_limits<double>::infinity(), raise_signals);
+    const RayBundle bundle{numpy::view(centers), numpy::rows(planes), numpy::view(positions), numpy::view(shares)};
+    RayFollower(own, scale).follow(bundle, {ends.matrix(), reached.vector(), passed.matrix(), are_there.vector()},
+                                   [&] { deadline.has_passed(); });
+    return nb::make_tuple(ends.release(), reached.release(), passed.release(), are_there.release());
+}
+
+// (basis (n, 2), normal (n), cosine): `TangentPlane`.
+nb::tuple tangent_plane(const nb::capsule& equations, const Doubles& center, const Table& near, double negligible) {
+    const Equations& own = equations_in(equations);
+    check_unknowns("center", center.shape(0), own.unknowns());
+    check_unknowns("near", near.shape(0), own.unknowns());
+    check_unknowns("near", near.shape(1), 2);
+    const TangentPlane plane = TangentPlanes(own).at(numpy::view(center), numpy::view(near), negligible);
+    numpy::Array<double> basis({own.unknowns(), 2}), normal({own.unknowns()});
+    basis.fill({plane.basis.view().data, static_cast<std::size_t>(2 * own.unknowns())});
+    normal.fill(plane.normal);
+    return nb::make_tuple(basis.release(), normal.release(), plane.cosine);
+}
+
+// (radius, is clear), or None.
+nb::object fitting_disk(const nb::capsule& equations, double scale, const Doubles& center, const Table& basis,
+                               const Doubles& normal, double largest, double smallest, double bend, double agree,
+                               double negligible) {
+    const Equations& own = equations_in(equations);
+    check_unknowns("center", center.shape(0), own.unknowns());
+    check_unknowns("basis", basis.shape(0), own.unknowns());
+    check_unknowns("normal", normal.shape(0), own.unknowns());
+    const DiskLimits limits{largest, smallest, bend, agree, negligible};
+    const auto disk = DiskFitter(own, scale).fit(numpy::view(center), numpy::view(basis), numpy::view(normal), limits);
+    if (!disk) return nb::none();
+    return nb::make_tuple(disk->radius, disk->is_clear);
+}
+
+// --- the front of a covering ---------------------------------------------------------------------------------
+
+using Labels = numpy::VectorIn<std::int64_t>;
+
+ConvexPolygon polygon_of(const Table& vertices, const Labels& labels) {
+    check_unknowns("vertices", vertices.shape(1), 2);
+    check_rows("labels", labels.shape(0), vertices.shape(0));
+    ConvexPolygon polygon;
+    for (std::size_t i = 0; i < labels.shape(0); ++i) {
+        polygon.vertices.push_back({vertices.data()[2 * i], vertices.data()[2 * i + 1]});
+        polygon.labels.push_back(labels.data()[i]);
+    }
+    return polygon;
+}
+
+// (vertices (v, 2), labels (v))
+nb::tuple arrays_of(const ConvexPolygon& polygon) {
+    const auto count = static_cast<Index>(polygon.labels.size());
+    numpy::Array<double> vertices({count, 2});
+    numpy::Array<std::int64_t> labels({count});
+    for (Index i = 0; i < count; ++i) {
+        vertices.matrix()(i, 0) = polygon.vertices[i][0];
+        vertices.matrix()(i, 1) = polygon.vertices[i][1];
+        labels.data()[i] = polygon.labels[i];
+    }
+    return nb::make_tuple(vertices.release(), labels.release());
+}
+
+nb::tuple clip(const Table& vertices, const Labels& labels, const Doubles& normal, double offset, Index label) {
+    check_unknowns("normal", normal.shape(0), 2);
+    ConvexPolygon polygon = polygon_of(vertices, labels);
+    polygon.clip({normal.data()[0], normal.data()[1]}, offset, label);
+    return arrays_of(polygon);
+}
+
+void check_plane(const Front& front, const Doubles& center, const Table& basis) {
+    check_unknowns("center", center.shape(0), front.unknowns());
+    check_unknowns("basis", basis.shape(0), front.unknowns());
+    check_unknowns("basis", basis.shape(1), 2);
+}
+
+// (numbers (k), positions (k, 2), heights (k), radii (k), are clear (k)): `Overlap`, and what charts these are.
+nb::tuple overlaps(Front& front, const Doubles& center, const Table& basis, double radius) {
+    check_plane(front, center, basis);
+    const std::vector<Overlap> found = front.overlaps(numpy::view(center), numpy::view(basis), radius);
+    const auto count = static_cast<Index>(found.size());
+    numpy::Array<std::int64_t> numbers({count});
+    numpy::Array<double> positions({count, 2}), heights({count}), radii({count});
+    numpy::Array<bool> are_clear({count});
+    for (Index i = 0; i < count; ++i) {
+        numbers.data()[i] = found[i].number;
+        std::copy(found[i].position.begin(), found[i].position.end(), positions.matrix().row(i).begin());
+        heights.data()[i] = found[i].height;
+        radii.data()[i] = front.radius(found[i].number);
+        are_clear.data()[i] = front.is_clear(found[i].number);
+    }
+    return nb::make_tuple(numbers.release(), positions.release(), heights.release(), radii.release(),
+                          are_clear.release());
+}
+
+void add_chart(Front& front, const Doubles& center, const Table& basis, double radius, bool is_clear,
+               const Table& vertices, const Labels& labels, const Labels& numbers, const Table& positions,
+               const Doubles& heights) {
+    check_plane(front, center, basis);
+    check_rows("positions", positions.shape(0), numbers.shape(0));
+    check_rows("heights", heights.shape(0), numbers.shape(0));
+    std::vector<Overlap> others;
+    for (std::size_t i = 0; i < numbers.shape(0); ++i) {
+        const Index number = numbers.data()[i];
+        if (number < 0 || number >= front.count()) throw nb::index_error("no such chart");
+        others.push_back({number, {positions.data()[2 * i], positions.data()[2 * i + 1]}, heights.data()[i]});
+    }
+    front.add(numpy::view(center), numpy::view(basis), radius, is_clear, polygon_of(vertices, labels), others);
+}
+
+// (chart, direction (2)), or None.
+nb::object next_open(Front& front) {
+    const auto found = front.next_open();
+    if (!found) return nb::none();
+    numpy::Array<double> direction({2});
+    direction.fill(found->second);
+    return nb::make_tuple(found->first, direction.release());
+}
+
+void add_dead_end(Front& front, Index chart, const Doubles& direction) {
+    if (chart < 0 || chart >= front.count()) throw nb::index_error("no such chart");
+    check_unknowns("direction", direction.shape(0), 2);
+    front.add_dead_end(chart, {direction.data()[0], direction.data()[1]});
+}
+
+// (centers (c, n), bases (c, n, 2), radii (c), are clear (c)) of ``count`` charts from number ``first`` on.
+nb::tuple charts(const Front& front, Index first, Index count) {
+    if (first < 0 || count < 0 || first + count > front.count()) throw nb::index_error("no such chart");
+    const Index n = front.unknowns();
+    numpy::Array<double> centers({count, n}), bases({count, n, 2}), radii({count});
+    numpy::Array<bool> are_clear({count});
+    for (Index i = 0; i < count; ++i) {
+        const Vector<const double> center = front.center(first + i);
+        std::copy(center.begin(), center.end(), centers.matrix().row(i).begin());
+        std::copy_n(front.basis(first + i).data, 2 * n, bases.entry(i).data);
+        radii.data()[i] = front.radius(first + i);
+        are_clear.data()[i] = front.is_clear(first + i);
+    }
+    return nb::make_tuple(centers.release(), bases.release(), radii.release(), are_clear.release());
+}
+
+nb::tuple polygon_at(const Front& front, Index chart) {
+    if (chart < 0 || chart >= front.count()) throw nb::index_error("no such chart");
+    return arrays_of(front.polygon(chart));
+}
+
+}  // namespace
+
+void bind_sheets(nb::module_& module) {
+    using nb::arg;
+    module.def("called_equations", &called_equations, arg("unknowns"), arg("residuals"), arg("jacobians"));
+    module.def("tape_equations", &tape_equations, arg("tape"), arg("magnitude"));
+    module.def("normal_corrections", &normal_corrections, arg("equations"), arg("scale"), arg("points"), arg("planes"));
+    module.def("slopes_above", &slopes_above, arg("equations"), arg("points"), arg("planes"));
+    module.def("follow_rays", &follow_rays, arg("equations"), arg("scale"), arg("centers"), arg("planes"),
+               arg("positions"), arg("shares"));
+    module.def("tangent_plane", &tangent_plane, arg("equations"), arg("center"), arg("near"), arg("negligible"));
+    module.def("clip", &clip, arg("vertices"), arg("labels"), arg("normal"), arg("offset"), arg("label"));
+    nb::class_<Front>(module, "Front", "The charts of a surface that is being covered.")
+        .def(
+            "__init__",
+            [](Front* place, const Doubles& periods, double height, double agree, double on_disk, double towards) {
+                new (place) Front(numpy::view(periods), {height, agree, on_disk, towards});
+            },
+            arg("periods"), arg("height"), arg("agree"), arg("on_disk"), arg("towards"))
+        .def("__len__", &Front::count)
+        .def("overlaps", &overlaps, arg("center"), arg("basis"), arg("radius"))
+        .def("add", &add_chart, arg("center"), arg("basis"), arg("radius"), arg("is_clear"), arg("vertices"),
+             arg("labels"), arg("numbers"), arg("positions"), arg("heights"))
+        .def("next_open", &next_open)
+        .def("add_dead_end", &add_dead_end, arg("chart"), arg("direction"))
+        .def("charts", &charts, arg("first"), arg("count"))
+        .def("polygon", &polygon_at, arg("chart"));
+    module.def("fitting_disk", &fitting_disk, arg("equations"), arg("scale"), arg("center"), arg("basis"),
+               arg("normal"), arg("largest"), arg("smallest"), arg("bend"), arg("agree"), arg("negligible"));
+}
+
+}  // namespace bifurc::python
