@@ -232,6 +232,8 @@ class Tape:
         order: int,
         tolerance: float,
         most_steps: int,
+        places: int,
+        farthest: float,
         seconds: float,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
     def project(

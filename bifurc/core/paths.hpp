@@ -44,6 +44,8 @@ constexpr double growth = 1.1;         // by which the way round an end at infin
 // What is left of a path that has an end at infinity. Where parameters are of different sizes, a path
 // may run away until what is left is as small as the least of them, and come back.
 constexpr double rest_at_infinity = 1e-11;
+// What is left of a path that is given up where it is too far away to be of interest.
+constexpr double rest_outside = 1e-6;
 
 }  // namespace paths
 
@@ -54,6 +56,10 @@ struct PathSettings {
     Index order;       // of the predictor
     double tolerance;  // of a prediction, over 1 + the size of the point
     int most_steps;
+    // Of homogeneous coordinates, the first unknowns, over the first of them: what is larger is of no
+    // interest.
+    Index places;
+    double farthest;
 };
 
 // F(x; p) = 0 with x the first unknowns of a tape and p the others, on the line of parameters
@@ -194,6 +200,10 @@ public:
                 out.end = PathEnd::at_infinity;
                 return out;
             }
+            if (t.real() < paths::rest_outside && is_outside(out.point)) {
+                out.end = PathEnd::at_infinity;
+                return out;
+            }
             if (advance == Advance::failed || steps_ >= settings_.most_steps || t.real() < paths::last_rest) {
                 out.end = advance == Advance::failed ? PathEnd::stuck : PathEnd::too_long;
                 return out;
@@ -245,6 +255,14 @@ private:
         double size = 0.0;
         for (const Complex& entry : point) size = std::max(size, rough_size(entry));
         return size;
+    }
+
+    // Whether a point in homogeneous coordinates is too far away to be of interest.
+    bool is_outside(const Point& point) const {
+        if (!std::isfinite(settings_.farthest)) return false;
+        double size = 0.0;
+        for (Index i = 1; i < settings_.places; ++i) size = std::max(size, rough_size(point[i]));
+        return rough_size(point[0]) * settings_.farthest < size;
     }
 
     static double distance(const Point& point, const Point& other) {

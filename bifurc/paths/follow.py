@@ -13,17 +13,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 
 from bifurc.decisions import (
     is_at_infinity,
     is_same_path_end,
+    is_singular_meeting,
     is_singular_path_end,
     solves_all_equations,
 )
 from bifurc.limits import Deadline
-from bifurc.paths.family import Family
+from bifurc.paths.family import Family, complex_normal
 
 ORDER = 8  # of the series by which the next point is predicted
 TOLERANCE = 1e-5  # of a prediction, over 1 + the size of the point
@@ -35,6 +37,8 @@ LEAST_RATIO = (
     1e-7  # of singular values, where multiple ends are known to half the digits
 )
 NEARBY = 1e-6  # along any direction: points that are compared
+HALF_THE_DIGITS = 30.0  # times less well a multiple end is known than what is the same
+BESIDE = 0.1  # over 1 + the size of a point: where rows have the sizes of most places
 
 
 class PathEnd(IntEnum):
@@ -109,36 +113,65 @@ def follow_paths(
     last: np.ndarray,
     deadline: Deadline | None = None,
     tolerance: float = TOLERANCE,
+    farthest: float = np.inf,
 ) -> Paths:
     """The paths of solutions ``starts`` (k, n), all different, of the member with the
     parameters ``first`` (q,) to that with ``last`` (q,).
 
     Paths that come to one regular end, and those that are lost, are followed again in
-    smaller steps. None is begun after the ``deadline``.
+    smaller steps. None is begun after the ``deadline``. In homogeneous coordinates paths
+    that end ``farthest`` times as far away as 1, or more, may count as at infinity.
     """
     deadline = deadline or Deadline()
-    paths = _followed(family, starts, first, last, deadline, tolerance)
+    way = _Way(family, first, last, deadline, farthest)
+    paths = _followed(way, starts, tolerance)
     for _ in range(AGAIN):
         again = np.flatnonzero(_are_doubtful(paths))
         if not len(again) or deadline.passed:
             break
         tolerance *= SMALLER
-        others = _followed(family, starts[again], first, last, deadline, tolerance)
+        others = _followed(way, starts[again], tolerance)
         for name in vars(paths):
             getattr(paths, name)[again] = getattr(others, name)
-    # what still meets is not known to be right
-    paths.ends[_meets_another(paths)] = PathEnd.STUCK
+    _tell_meetings(family, paths, last)
     return paths
 
 
-def _followed(
-    family: Family,
-    starts: np.ndarray,
-    first: np.ndarray,
-    last: np.ndarray,
-    deadline: Deadline,
-    tolerance: float,
-) -> Paths:
+def _tell_meetings(family: Family, paths: Paths, last: np.ndarray) -> None:
+    """Correct the ends of paths that still meet at regular ones: where the equations are
+    dependent but for half of the digits, as of two paths that come to a double solution
+    and do not turn round it, they are singular; else it is not known what is right."""
+    has_jumped = _meets_another(paths)
+    at_ends = np.flatnonzero(paths.is_regular | (paths.ends == PathEnd.SINGULAR))
+    copies = copy_of(paths.points[at_ends], HALF_THE_DIGITS)
+    is_met = np.bincount(copies, minlength=len(copies))[copies] > 1
+    meeting = at_ends[is_met & paths.is_regular[at_ends]]
+    if not len(meeting):
+        return
+    matrices = family.jacobians(paths.points[meeting], last)
+    beside = paths.points[meeting]
+    shifts = complex_normal(np.random.default_rng(0), beside.shape)
+    sizes = 1.0 + np.abs(beside).max(axis=1, initial=0.0, keepdims=True)
+    others = family.jacobians(beside + BESIDE * sizes * shifts, last)
+    is_singular = is_singular_meeting(_rank_ratios(matrices, others))
+    paths.ends[has_jumped] = PathEnd.STUCK
+    paths.ends[meeting[is_singular]] = PathEnd.SINGULAR
+
+
+class _Way(NamedTuple):
+    """From where to where the parameters of a ``family`` move, until which ``deadline``
+    paths are begun, and from where on they are of no interest."""
+
+    family: Family
+    first: np.ndarray
+    last: np.ndarray
+    deadline: Deadline
+    farthest: float
+
+
+def _followed(way: _Way, starts: np.ndarray, tolerance: float) -> Paths:
+    """The paths of solutions ``starts`` (k, n), to a ``tolerance``."""
+    family, first, last, deadline, farthest = way
     points, rests, ends, windings, steps = family.tape.compiled.follow_paths(
         np.ascontiguousarray(starts, dtype=complex),
         np.ascontiguousarray(first, dtype=complex),
@@ -147,6 +180,8 @@ def _followed(
         ORDER,
         tolerance,
         MOST_STEPS,
+        family.coordinates,
+        farthest,
         deadline.left,
     )
     jacobians = family.jacobians(points, last)
@@ -170,18 +205,22 @@ def _tell_singular_and_infinite(
     ends[is_singular] = PathEnd.SINGULAR
     if not family.is_projective:
         return
-    nearness = np.abs(points[:, 0]) / np.abs(points).max(axis=1)
+    places = np.abs(points[:, : family.coordinates])
+    nearness = places[:, 0] / places.max(axis=1)
     nearness *= np.maximum(ratios, LEAST_RATIO)
     has_come = (ends == PathEnd.REGULAR) | (ends == PathEnd.SINGULAR)
     ends[has_come & is_at_infinity(nearness)] = PathEnd.AT_INFINITY
 
 
-def _rank_ratios(matrices: np.ndarray) -> np.ndarray:
+def _rank_ratios(matrices: np.ndarray, others: np.ndarray | None = None) -> np.ndarray:
     """The smallest singular value of matrices (k, m, n) over the largest (k,), rows
-    counted by their sizes; 0 where they are not finite."""
+    counted by their sizes, or those in ``others`` (k, m, n) where these are larger; 0
+    where they are not finite."""
     is_finite = np.all(np.isfinite(matrices), axis=(1, 2))
     matrices = np.where(is_finite[:, None, None], matrices, 0.0)
     rows = np.abs(matrices).max(axis=2, initial=0.0, keepdims=True)
+    if others is not None:
+        rows = np.maximum(rows, np.abs(others).max(axis=2, initial=0.0, keepdims=True))
     values = np.linalg.svd(matrices / np.maximum(rows, TINY), compute_uv=False)
     ratios: np.ndarray = values[:, -1] / np.maximum(values[:, 0], TINY)
     return ratios
@@ -205,9 +244,9 @@ def _meets_another(paths: Paths) -> np.ndarray:
     return meets
 
 
-def copy_of(points: np.ndarray) -> np.ndarray:
+def copy_of(points: np.ndarray, unit: float = 1.0) -> np.ndarray:
     """For each of the points (k, n) the number (k,) of the first one that is the
-    same."""
+    same, as far as they are known: in a larger ``unit`` less well."""
     copies = np.arange(len(points))
     sizes = 1.0 + np.abs(points).max(axis=1, initial=0.0)
     # what is the same is near each other in every order along a direction
@@ -219,7 +258,7 @@ def copy_of(points: np.ndarray) -> np.ndarray:
             if heights[other] - heights[number] > NEARBY:
                 break
             gap = float(np.abs(points[other] - points[number]).max(initial=0.0))
-            if is_same_path_end(gap / sizes[number]):
+            if is_same_path_end(gap / sizes[number], unit):
                 copies[other] = copies[number] = min(copies[other], copies[number])
     return copies
 
