@@ -26,7 +26,7 @@ LONGER = {
         "bifurc.numerics.collocation.march_by_collocation",
         "bifurc.singular.classify.classify_singular_point",
         "bifurc.singular.dimension._dimensions_of_nullity",
-        "bifurc.surfaces.crossing_sheets._sign_changes",
+        "bifurc.surfaces.crossing_sheets.sign_changes",
         "bifurc.surfaces.walk._step",
         "linkages.networks.lock_routes.run",
         "linkages.structure.rods._leg",

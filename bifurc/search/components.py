@@ -1,14 +1,17 @@
 """Components of dimension 2 and more in a search: which seeds lie on them, their charts,
 their singular points.
 
-All along a curve of singular points on a surface F' has one rank, lower than on the
-surface about it. That F = 0 and that F' has no higher rank are equations of which the
-curve is a regular solution (`bifurc.curves.deflation`): it is traced like a form.
+All along a curve of singular points on a surface, as one in which it crosses itself or
+another, F' has one rank, lower than on the surface about it. That F = 0 and that F' has
+no higher rank are equations of which the curve is a regular solution
+(`bifurc.curves.deflation`) where sheets cross at an angle: it is traced like a form.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,7 +35,7 @@ from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
 from bifurc.singular.point import SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
-from bifurc.surfaces.crossing_sheets import is_on_singular_curve
+from bifurc.surfaces.crossing_sheets import is_on_singular_curve, sign_changes
 from bifurc.surfaces.geodesic import entrances
 from bifurc.surfaces.walk import reached_charts
 from bifurc.system import relative_jacobians, relative_residuals
@@ -40,6 +43,9 @@ from bifurc.system import relative_jacobians, relative_residuals
 # Places at which it is seen whether charts lie between sheets, with how many digits, and
 # what is missed there by rounding, over the magnitude.
 LOOKS, DIGITS, ROUNDING = 8, 50, 1e-13
+# What is missed, over the magnitude, along a curve in which sheets meet: the square of
+# the distance of its samples from it.
+OFF_CURVE = 1e-20
 WHOLE = (Outcome.CLOSED, Outcome.LEFT_REGION)
 
 
@@ -55,6 +61,8 @@ NULLITY = 3  # of F' at a singular point of a surface
 # chart's radius, which counts as no smaller than a share of the problem's scale.
 REACH = 4.0
 SMALLEST_RADIUS = 0.05
+# Distance of a known curve, over the radius of a chart, at which a crossing is on it.
+BESIDE = 1.5
 # Of the reach: a point that is located no better lies on a curve of such points.
 BLURRED = 0.1
 # Along such a curve there is nothing to locate, and that is all that the error says:
@@ -68,7 +76,7 @@ APART, ERRORS = 1e-5, 10
 PROBE, PROBES = 1e-2, 3
 
 
-def is_on_curve(problem: Problem, curve: SingularCurve, point: SingularPoint) -> bool:
+def _is_on_curve(problem: Problem, curve: SingularCurve, point: SingularPoint) -> bool:
     """Whether a singular point is one of a curve of such points."""
     if point.rank != curve.rank:
         return False
@@ -78,10 +86,18 @@ def is_on_curve(problem: Problem, curve: SingularCurve, point: SingularPoint) ->
 
 
 def singular_curve_through(
-    problem: Problem, point: SingularPoint, tracing: TraceSettings, deadline: Deadline
+    problem: Problem,
+    components: Components,
+    point: SingularPoint,
+    tracing: TraceSettings,
+    deadline: Deadline,
 ) -> SingularCurve | None:
-    """The curve of singular points of one rank on which a singular point lies; None
-    where it lies on none that is regular and can be followed to its end."""
+    """The curve of singular points of one rank on which a singular point lies, one that
+    is known or is traced now; None where it lies on none that is regular and can be
+    followed to its end."""
+    for known in components.notes.all_curves():
+        if _is_on_curve(problem, known, point):
+            return known
     if problem.domain.is_large or deadline.passed:
         return None
     deflated = RankDeflated(problem, point.rank)
@@ -94,6 +110,9 @@ def singular_curve_through(
     branch = trace_branch(deflated, places[0], settings=tracing, deadline=deadline)
     if branch.outcome not in WHOLE:
         return None
+    places = branch.sample(LOOKS)
+    if _miss_in_more_digits(problem, places, point.rank, OFF_CURVE):
+        return None  # sheets come near to each other, and do not meet
     return SingularCurve(branch, point.rank)
 
 
@@ -191,20 +210,28 @@ def _are_several(problem: Problem, charts: ChartAtlas) -> bool:
     """Whether charts along which F' has a lower rank but for rounding may lie between
     sheets that are very near to each other: what of F the rank leaves out vanishes with
     the square of the distance on a double surface, and not between two."""
+    step = max(1, len(charts) // LOOKS)
+    places = charts.centers[::step]
+    return _miss_in_more_digits(problem, places, problem.n - NULLITY, ROUNDING**2)
+
+
+def _miss_in_more_digits(
+    problem: Problem, places: np.ndarray, rank: int, most: float
+) -> bool:
+    """Whether what of F a ``rank`` leaves out is at some of the places (k, n) more than
+    ``most``, over the magnitude; than rounding, where there are no more digits."""
     import mpmath  # it takes longer to import than a small problem to solve
 
     precise = problem.precise_residual()
-    step = max(1, len(charts) // LOOKS)
-    for place in charts.centers[::step]:
+    for place in places:
         left, *_ = factors_of(relative_jacobians(problem, place[None]))
         missed = relative_residuals(problem, place[None])[0]
-        most = ROUNDING
         if precise is not None:
             with mpmath.workdps(DIGITS):
                 values = precise([mpmath.mpf(float(x)) for x in place])
             missed = np.array(values, dtype=float) / problem.magnitude
-            most = ROUNDING**2
-        if np.linalg.norm(left[0, :, problem.n - NULLITY :].T @ missed) > most:
+        allowed = ROUNDING if precise is None else most
+        if np.linalg.norm(left[0, :, rank:].T @ missed) > allowed:
             return True
     return False
 
@@ -258,45 +285,92 @@ def _are_next_to_surfaces(
     return is_next
 
 
+class SurfacePoint(NamedTuple):
+    """A ``located`` singular point of a surface, and whether it ``is_sample`` of a
+    curve of such points."""
+
+    located: LocatedPoint
+    is_sample: bool
+
+
 def singular_points_of(
     problem: Problem, components: Components, deadline: Deadline
-) -> list[LocatedPoint]:
+) -> list[SurfacePoint]:
     """Points of surfaces where the rank of F' is lower than n - 2, nothing twice.
 
     They are looked for at the charts where the smallest regular singular value is
-    smaller than at all neighbours, the clearest first; at most `MOST_POINTS`, and
-    `MOST_SAMPLES` of those that form curves. What that leaves out, and how many are
-    samples of curves, becomes a note on the surface.
+    smaller than at all neighbours, the clearest first, and then between charts among
+    which it passes through zero; at most `MOST_POINTS`, and `MOST_SAMPLES` of those
+    that form curves. At how many places none was looked for becomes a note on the
+    surface.
     """
     charts = components.charts
     if charts is None or problem.n < NULLITY or components.deflated is not None:
         return []
     candidates = _lowest_charts(problem, charts)
-    points: list[LocatedPoint] = []
-    curve_charts: list[int] = []
-    looked_at = 0
+    points: list[SurfacePoint] = []
+    looked_at = samples = 0
     for chart in candidates:
         if deadline.passed or len(points) >= MOST_POINTS:
             break
         looked_at += 1
-        reach = REACH * max(charts.radii[chart], SMALLEST_RADIUS * problem.domain.scale)
-        point = locate_singular_point(problem, charts.centers[chart], NULLITY, reach)
-        if point is None:
+        point = _point_next_to(
+            problem, charts.centers[chart], float(charts.radii[chart])
+        )
+        if point is None or (point.is_sample and samples >= MOST_SAMPLES):
             continue
-        is_blurred = point.error > BLURRED * reach
-        is_on_curve = is_blurred or is_on_singular_curve(problem, point)
-        if is_on_curve:
-            point = point._replace(
-                error=min(point.error, ACROSS * problem.domain.scale)
-            )
-        is_one_more = is_on_curve and len(curve_charts) >= MOST_SAMPLES
-        if is_one_more or _is_listed(problem, points, point):
-            continue
-        points.append(point)
-        if is_on_curve:
-            curve_charts.append(chart)
-    components.take_note(candidates[looked_at:], np.array(curve_charts, dtype=int))
+        if not _is_listed(problem, points, point):
+            points.append(point)
+            samples += point.is_sample
+    components.notes.places.update(charts.part[candidates[looked_at:]].tolist())
     return points
+
+
+def crossings_beside_curves(
+    problem: Problem, components: Components, deadline: Deadline
+) -> Iterator[SurfacePoint]:
+    """Samples of curves in which a charted surface crosses itself or another, off the
+    curves of singular points that are known when they are asked for; at most
+    `MOST_SAMPLES`.
+
+    On a sheet F' changes its orientation only in singular points, and in curves of them
+    where no equation is redundant. Where there are none, charts went over to another
+    sheet, and the surface is `Covering.UNDECIDED`.
+    """
+    charts = components.charts
+    if charts is None or problem.n < NULLITY or components.deflated is not None:
+        return
+    is_redundant = problem.jacobians(charts.centers[:1]).shape[1] > problem.n - 2
+    samples = 0
+    for crossing in sign_changes(problem, charts):
+        if deadline.passed:
+            return
+        radius = float(charts.radii[crossing.pair].max())
+        if components.notes.is_beside_curve(crossing.place, BESIDE * radius):
+            continue
+        point = _point_next_to(problem, crossing.place, radius)
+        if point is None or not (point.is_sample or is_redundant):
+            components.charts = replace(charts, outcome=Covering.UNDECIDED)
+            return
+        samples += point.is_sample
+        if point.is_sample and samples <= MOST_SAMPLES:
+            yield point
+
+
+def _point_next_to(
+    problem: Problem, place: np.ndarray, radius: float
+) -> SurfacePoint | None:
+    """The singular point of a surface next to a ``place`` (n,) on a chart of a
+    ``radius``."""
+    reach = REACH * max(radius, SMALLEST_RADIUS * problem.domain.scale)
+    point = locate_singular_point(problem, place, NULLITY, reach)
+    if point is None:
+        return None
+    is_blurred = point.error > BLURRED * reach
+    if not (is_blurred or is_on_singular_curve(problem, point)):
+        return SurfacePoint(point, is_sample=False)
+    error = min(point.error, ACROSS * problem.domain.scale)
+    return SurfacePoint(point._replace(error=error), is_sample=True)
 
 
 def _lowest_charts(problem: Problem, charts: ChartAtlas) -> np.ndarray:
@@ -317,13 +391,12 @@ def _lowest_charts(problem: Problem, charts: ChartAtlas) -> np.ndarray:
 
 
 def _is_listed(
-    problem: Problem, points: list[LocatedPoint], point: LocatedPoint
+    problem: Problem, points: list[SurfacePoint], point: SurfacePoint
 ) -> bool:
     """Whether a point is one of those in a list."""
-    unit = (
-        APART * problem.domain.scale + ERRORS * point.error
-    ) / is_same_point.threshold
-    gaps = [problem.domain.difference(other.u, point.u) for other in points]
+    u, error = point.located.u, point.located.error
+    unit = (APART * problem.domain.scale + ERRORS * error) / is_same_point.threshold
+    gaps = [problem.domain.difference(other.located.u, u) for other in points]
     return any(is_same_point(float(np.linalg.norm(gap)), unit) for gap in gaps)
 
 

@@ -21,7 +21,9 @@ from bifurc.tables import count_of
 
 NO_DOUBT = (False, False, 0.0)
 SHAKY = "F' has a lower rank all over it"
-ON_CURVES = "singular points are samples of curves of such points"
+ON_CURVES = (
+    "singular points are samples of curves of such points, which are not followed"
+)
 UNEXAMINED = "its singular points, and where forms meet it, are not looked for"
 # the same where curves of singular points were reached by chance
 UNEXAMINED_ELSE = "others, and where forms meet it, are not looked for"
@@ -120,6 +122,48 @@ def describe_curves(curves: Sequence[SingularCurve]) -> str:
 
 
 @dataclass
+class PartNotes:
+    """What is known of the singular points of surfaces, by the numbers of parts of the
+    charts, -1 where there are none: the ``curves`` that they form, the parts on which
+    each listed one lies that is a sample of a curve that could not be followed, and at
+    how many ``places`` none were looked for."""
+
+    curves: dict[int, list[SingularCurve]] = field(default_factory=dict)
+    unfollowed: list[list[int]] = field(default_factory=list)
+    places: Counter[int] = field(default_factory=Counter)
+
+    def all_curves(self) -> list[SingularCurve]:
+        """Each curve once."""
+        return list({id(c): c for own in self.curves.values() for c in own}.values())
+
+    def is_beside_curve(self, place: np.ndarray, within: float) -> bool:
+        """Whether a known curve passes a place (n,) so near."""
+        curves = self.all_curves()
+        return any(c.branch.nearest(place, within)[0][0] < within for c in curves)
+
+    def add_curve(self, curve: SingularCurve, parts: Sequence[int]) -> bool:
+        """Whether a curve, on these ``parts``, is recorded just now on all of them."""
+        is_new = False
+        for part in parts:
+            known = self.curves.setdefault(part, [])
+            if curve not in known:
+                known.append(curve)
+                is_new = True
+        return is_new
+
+    def of(self, part: int) -> list[str]:
+        """What is known of a part."""
+        words = [describe_curves(self.curves.get(part, []))]
+        samples = sum(part in parts for parts in self.unfollowed)
+        if samples:
+            words.append(f"{samples} of its {ON_CURVES}")
+        if self.places[part]:
+            count = self.places[part]
+            words.append(f"at {count} places singular points were not looked for")
+        return list(filter(None, words))
+
+
+@dataclass
 class Components:
     """Numbers of the seeds on components of dimension 2 and more, by dimension, and
     charts over the surfaces. The seeds ``on_shaky`` surfaces, on which F' has a lower
@@ -129,19 +173,22 @@ class Components:
     Parts of the charts that do not hang together are surfaces of their own: each but
     the last was finished, as far as its singular points, before the next was begun.
     ``part_of`` (k,) is the part that each seed of dimension 2 belongs to, -1 where none
-    is known. ``notes`` say what is known of a part, by its number. ``deflated`` is the
-    problem with which surfaces are corrected to along which F' has a lower rank; seeds
-    of dimension 2 lie on such surfaces then, and ``curves`` are those of singular points
-    on them, by the part of the charts, -1 where there are no charts.
+    is known. The ``notes`` say what is known of the parts. ``deflated`` is the problem
+    with which surfaces are corrected to along which F' has a lower rank; seeds of
+    dimension 2 lie on such surfaces then.
     """
 
     seeds: dict[int, list[int]] = field(default_factory=dict)
     on_shaky: list[int] = field(default_factory=list)
     charts: ChartAtlas | None = None
     part_of: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
-    notes: dict[int, str] = field(default_factory=dict)
+    notes: PartNotes = field(default_factory=PartNotes)
     deflated: Problem | None = None
-    curves: dict[int, list[SingularCurve]] = field(default_factory=dict)
+
+    @property
+    def has_surfaces(self) -> bool:
+        """Whether surfaces are known of which singular points may be known."""
+        return self.charts is not None or self.deflated is not None
 
     def samples(self, points: np.ndarray, dimension: int) -> np.ndarray:
         """The seeds (k, n) of a dimension, as exact as can be known."""
@@ -150,31 +197,13 @@ class Components:
             return samples
         return self.deflated.project(samples)[0]
 
-    def take_note(self, left_out: np.ndarray, on_curves: np.ndarray) -> None:
-        """Remember charts at which singular points were not looked for, and charts next
-        to curves of them."""
-        assert self.charts is not None
-        part = self.charts.part
-        for k in range(int(part.max()) + 1):
-            samples = int(np.count_nonzero(part[on_curves] == k))
-            places = int(np.count_nonzero(part[left_out] == k))
-            words = []
-            if samples:
-                words.append(f"{samples} of its {ON_CURVES}")
-            if places:
-                words.append(f"at {places} places singular points were not looked for")
-            self.notes[k] = "; ".join(words)
-
-    def _note_of_lower_rank(self, part: int) -> str:
-        """What is known of a part along which F' has a lower rank; -1: of seeds without
-        charts."""
-        parts = [SHAKY]
-        words = describe_curves(self.curves.get(part, []))
-        if words:
-            parts.append(words)
-        if part >= 0:
-            parts.append(UNEXAMINED_ELSE if words else UNEXAMINED)
-        return "; ".join(parts)
+    def _note_of(self, part: int) -> str:
+        """What is known of a part of the charts; -1: of seeds without charts."""
+        words = self.notes.of(part)
+        if self.deflated is None:
+            return "; ".join(words)
+        unexamined = [UNEXAMINED_ELSE if words else UNEXAMINED] * (part >= 0)
+        return "; ".join([SHAKY, *words, *unexamined])
 
     @property
     def off_charts(self) -> int:
@@ -196,8 +225,7 @@ class Components:
                 surfaces += self._charted_surfaces(self.charts, samples)
                 samples = samples[(self.part_of < 0) & (not self.charts.is_finished)]
             if len(samples):
-                is_shaky = dimension == 2 and self.deflated is not None
-                note = self._note_of_lower_rank(-1) if is_shaky else ""
+                note = self._note_of(-1) if dimension == 2 else ""
                 surfaces.append(Surface(dimension, samples, note=note))
         return tuple(surfaces)
 
@@ -210,8 +238,6 @@ class Components:
             on_part = samples[self.part_of == k]
             if not len(on_part):
                 on_part = part.centers[:1]
-            note = self.notes.get(k, "")
-            if self.deflated is not None:
-                note = self._note_of_lower_rank(k)
-            surfaces.append(Surface(2, on_part, charts=part, note=note))
+            surface = Surface(2, on_part, charts=part, note=self._note_of(k))
+            surfaces.append(surface)
         return surfaces

@@ -25,9 +25,10 @@ from bifurc.search.answer.meeting_points import ends_at
 from bifurc.search.branches.branch_examination import BranchExaminer
 from bifurc.search.branches.branch_parts import joined_through
 from bifurc.search.components import (
+    SurfacePoint,
     components_of_seeds,
     cover_components,
-    is_on_curve,
+    crossings_beside_curves,
     parts_through,
     singular_curve_through,
     singular_points_of,
@@ -36,7 +37,7 @@ from bifurc.search.findings import Findings, Run
 from bifurc.search.near_motion_search import NearMotionSearch
 from bifurc.search.path_audit import PathAudit
 from bifurc.search.point_search import BRANCH_REACH, SEED_REACH, PointSearch
-from bifurc.search.records import Start, half_branch_starts
+from bifurc.search.records import PointSighting, Start, half_branch_starts
 from bifurc.search.seed_book import Fate, SeedFate
 from bifurc.search.seed_fates import SeedJudge
 from bifurc.search.solutions import (
@@ -224,33 +225,56 @@ class Search:
         )
         findings.book.reopen(refused)
         yield []
-        for located in singular_points_of(self.problem, components, deadline):
+        for point in singular_points_of(self.problem, components, deadline):
             if self.run.is_over:
                 break
-            yield half_branch_starts(self.points.sight(located).point)
+            yield half_branch_starts(self._sight_on_surface(point).point)
+
+    def _sight_on_surface(self, point: SurfacePoint) -> PointSighting:
+        """A singular point of a surface, classified and recorded."""
+        sighting = self.points.sight(point.located)
+        if point.is_sample and sighting.is_new:
+            sample = replace(sighting.point, is_sample=True)
+            self.findings.points[sighting.number] = sample
+        return sighting
 
     def trace_singular_curves(self) -> Starts:
-        """Trace the curves of singular points on surfaces along which F' has a lower
-        rank; points of them, of which there is no end, are listed no longer."""
-        components = self.findings.components
-        if components.deflated is None:
+        """Trace the curves of singular points on surfaces. Of the points of each, of
+        which there is no end, one is listed for all surfaces that meet in it, and none
+        where it is on a single one."""
+        findings, components = self.findings, self.findings.components
+        if not components.has_surfaces:
             return
-        for number, point in reversed(list(self.findings.points.items())):
-            if self.run.is_over or point.kind is not Kind.SURFACE:
-                continue
-            parts = parts_through(components, self.problem, point.u)
-            if len(parts) != 1:
-                continue  # surfaces meet there
-            curves = components.curves.setdefault(parts[0], [])
-            if not any(is_on_curve(self.problem, curve, point) for curve in curves):
-                curve = singular_curve_through(
-                    self.problem, point, self.settings.tracing, self.run.deadline
-                )
-                if curve is None:
-                    continue
-                curves.append(curve)
-            self.findings.forget_point(number, SeedFate(Fate.ON_COMPONENT, 2))
+        for number, point in reversed(list(findings.points.items())):
+            if not self.run.is_over and point.kind in (Kind.SURFACE, Kind.CURVE_SAMPLE):
+                self._trace_singular_curve(number)
+        deadline = self.run.deadline
+        for found in crossings_beside_curves(self.problem, components, deadline):
+            sighting = self._sight_on_surface(found)
+            if sighting.is_new and sighting.point.kind is Kind.CURVE_SAMPLE:
+                self._trace_singular_curve(sighting.number)
         yield []
+
+    def _trace_singular_curve(self, number: int) -> None:
+        """Trace the curve of singular points on which a singular point, given by its
+        number, lies."""
+        findings, components = self.findings, self.findings.components
+        point, deadline = findings.points[number], self.run.deadline
+        parts = parts_through(components, self.problem, point.u)
+        curve = singular_curve_through(
+            self.problem, components, point, self.settings.tracing, deadline
+        )
+        if curve is None or not parts:
+            if point.is_sample:
+                components.notes.unfollowed.append(parts)
+            return
+        is_new = components.notes.add_curve(curve, parts)
+        if is_new and len(parts) > 1:
+            # digits that show isolated points do not show a curve, which is known now
+            sample = replace(point, is_sample=True, is_confirmed=True)
+            findings.points[number] = sample
+        else:
+            findings.forget_point(number, SeedFate(Fate.ON_COMPONENT, 2))
 
     # --- where starts stop ------------------------------------------------------------
 

@@ -65,6 +65,8 @@ class Kind(Enum):
     ISOLATED = "isolated"
     # The point lies on a component of dimension 2 or more, and no branch passes.
     SURFACE = "singular point of a surface"
+    # The same, of a curve of such points: it stands for all of them.
+    CURVE_SAMPLE = "sample of a curve of singular points"
     # Two ways of looking disagree.
     UNDECIDED = "undecided"
     # Of a large problem: other curves pass in directions of their own.
@@ -140,7 +142,8 @@ class SingularPoint:
     ``is_through`` says whether two half-branches leave to opposite sides, where exact
     equations tell: seen from a sphere they may still turn. Else they do so, or not,
     where the sections leave no doubt. The ``invariants`` are those of the plane curve to
-    which the equations reduce, None where that is not known.
+    which the equations reduce, None where that is not known. ``is_sample`` says that it
+    is one of a curve of singular points of a surface.
     """
 
     u: np.ndarray
@@ -156,13 +159,16 @@ class SingularPoint:
     is_confirmed: bool = True
     is_through: bool | None = None
     invariants: Invariants | None = None
+    is_sample: bool = False
 
     @property
     def kind(self) -> Kind:
         """What the half-branches alone say."""
         count = len(self.half_branches)
+        if self.dimension > 1 and count:
+            return Kind.DIMENSION_CHANGE
         if self.dimension > 1:
-            return Kind.DIMENSION_CHANGE if count else Kind.SURFACE
+            return Kind.CURVE_SAMPLE if self.is_sample else Kind.SURFACE
         if self.dimension < 0:
             return Kind.UNDECIDED
         if count == 0:

@@ -193,6 +193,19 @@ class ChartAtlas:
         number: np.ndarray = np.argsort(largest_first)[label]
         return number
 
+    def joined_to(self, chart: int, among: np.ndarray) -> set[int]:
+        """Numbers of the charts to which neighbours lead from one, over those ``among``
+        (c,) which it is looked for."""
+        pairs = self.neighbours[among[self.neighbours].all(axis=1)]
+        joined, waiting = {chart}, [chart]
+        while waiting:
+            here = waiting.pop()
+            beside = pairs[(pairs == here).any(axis=1)]
+            more = set(beside.ravel().tolist()) - joined
+            joined |= more
+            waiting += more
+        return joined
+
     def parts(self) -> tuple[ChartAtlas, ...]:
         """The connected surfaces, the one with most charts first."""
         count = int(self.part.max(initial=-1)) + 1
@@ -249,6 +262,15 @@ class ChartAtlas:
         charts = np.arange(len(self))
         holds = self._hold(point[None], charts[None])
         return np.flatnonzero(holds[0])
+
+    def passes_beside(self, point: np.ndarray) -> bool:
+        """Whether a chart lies below or above a point (n,): the surface has no hole
+        there."""
+        offsets = self.difference(point, self.centers)
+        along = np.einsum("cij,ci->cj", self.bases, offsets)
+        is_within = np.linalg.norm(along, axis=1) < self.radii
+        is_near = np.linalg.norm(offsets, axis=1) < 2.0 * self.radii
+        return bool(np.any(is_within & is_near))
 
     def charts_next_to(self, point: np.ndarray) -> np.ndarray:
         """Numbers (k,) of the charts that may be next to a singular point (n,) about

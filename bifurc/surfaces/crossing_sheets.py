@@ -21,8 +21,11 @@ from bifurc.surfaces.chart_atlas import ChartAtlas
 
 # Determinant of the turn between two spaces above which its sign counts.
 CLEAR = 0.3
-# Distance from a chart, over its radius, in which it covers a crossing.
-NEAR_CHART = 1.5
+# Distance from a chart, over its radius, in which it covers a crossing, and in which
+# charts of one sheet are neighbours of one another.
+NEAR_CHART, ONE_SHEET = 1.5, 4.0
+# Height of a crossing above the plane of a chart that covers it, over the radius.
+LOW = 0.3
 # Pairs of charts between which a crossing is looked for, and how far from the place,
 # over the larger radius.
 LOOKS, REACH = 6, 2.0
@@ -40,7 +43,7 @@ def has_uncovered_crossing(problem: Problem, charts: ChartAtlas, agree: float) -
     sheets.
     """
     uncovered = []
-    for crossing in _sign_changes(problem, charts):
+    for crossing in sign_changes(problem, charts):
         if not _is_covered(charts, crossing, agree):
             uncovered.append(crossing)
     spread = np.unique(np.linspace(0, len(uncovered) - 1, LOOKS).astype(int))
@@ -72,7 +75,7 @@ def is_on_singular_curve(problem: Problem, located: LocatedPoint) -> bool:
     return False
 
 
-class _SignChange(NamedTuple):
+class SignChange(NamedTuple):
     """Numbers of a ``pair`` (2,) of neighbours between which F' changes its
     orientation, and a ``place`` (n,) there."""
 
@@ -80,7 +83,7 @@ class _SignChange(NamedTuple):
     place: np.ndarray
 
 
-def _sign_changes(problem: Problem, charts: ChartAtlas) -> list[_SignChange]:
+def sign_changes(problem: Problem, charts: ChartAtlas) -> list[SignChange]:
     """All neighbours between which F' changes its orientation.
 
     With F' = L S R^T of rank n - 2 at two charts, the determinant of F' at the second
@@ -106,14 +109,23 @@ def _sign_changes(problem: Problem, charts: ChartAtlas) -> list[_SignChange]:
         first, last = pair
         share = smallest[first] / (smallest[first] + smallest[last])
         step = problem.domain.difference(charts.centers[last], charts.centers[first])
-        crossings.append(_SignChange(pair, charts.centers[first] + share * step))
+        crossings.append(SignChange(pair, charts.centers[first] + share * step))
     return crossings
 
 
-def _is_covered(charts: ChartAtlas, crossing: _SignChange, agree: float) -> bool:
-    """Whether a chart on another sheet lies about a crossing."""
-    gaps = charts.difference(charts.centers, crossing.place)
-    near = np.linalg.norm(gaps, axis=1) < NEAR_CHART * charts.radii
-    plane = charts.bases[crossing.pair[0]]
-    cosines = cosines_between_planes(charts.bases[near], plane)
-    return bool(np.any(cosines[:, -1] < agree))
+def _is_covered(charts: ChartAtlas, crossing: SignChange, agree: float) -> bool:
+    """Whether a chart on another sheet lies about a crossing: it is turned, or no
+    neighbours lead to it from those between which the crossing is."""
+    gaps = charts.difference(crossing.place, charts.centers)
+    distances = np.linalg.norm(gaps, axis=1)
+    near = np.flatnonzero(distances < NEAR_CHART * charts.radii)
+    cosines = cosines_between_planes(charts.bases[near], charts.bases[crossing.pair[0]])
+    if np.any(cosines[:, -1] < agree):
+        return True
+    along = np.einsum("kij,ki->kj", charts.bases[near], gaps[near])
+    squares = distances[near] ** 2 - np.einsum("kj,kj->k", along, along)
+    are_low = squares < (LOW * charts.radii[near]) ** 2
+    others = set(near[are_low].tolist()) - charts.joined_to(
+        int(crossing.pair[0]), distances < ONE_SHEET * charts.radii
+    )
+    return bool(others)

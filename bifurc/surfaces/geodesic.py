@@ -45,6 +45,9 @@ COARSE = 0.3
 # and how far these may lie from the straight line, over the distance.
 SHARES = np.geomspace(1e-3, 1.0, 12)
 OFF_LINE = 0.3
+# Distance of a solution from the surface above a chart, over its height above the chart's
+# plane, and over the scale: where sheets cross Newton's method comes down to it slowly.
+OFF_POINT, AT_POINT = 0.2, 1e-7
 
 START, GOAL = "start", "goal"  # nodes of the graph of charts: the charts are numbers
 
@@ -130,8 +133,8 @@ def entrances(problem: Problem, charts: ChartAtlas, point: np.ndarray) -> np.nda
     to it.
     """
     entries = charts.charts_about(point)
-    if len(entries):
-        return entries
+    if len(entries) or charts.passes_beside(point):
+        return _leading_to(problem, charts, entries, point)
     joined = charts.charts_next_to(point)
     for share in SHARES:  # most charts that are not joined drop out next to the point
         if not len(joined):
@@ -143,6 +146,23 @@ def entrances(problem: Problem, charts: ChartAtlas, point: np.ndarray) -> np.nda
         length = np.linalg.norm(steps, axis=1)
         joined = joined[(gaps < SOLVED) & (off_line / length < OFF_LINE)]
     return joined
+
+
+def _leading_to(
+    problem: Problem, charts: ChartAtlas, entries: np.ndarray, point: np.ndarray
+) -> np.ndarray:
+    """Those of the charts (k,) above whose planes the surface comes up to a solution
+    (n,): another one may pass below or above it."""
+    bases = charts.bases[entries]
+    offsets = charts.difference(point, charts.centers[entries])
+    in_plane = np.einsum("kij,klj,kl->ki", bases, bases, offsets)
+    flat = charts.centers[entries] + in_plane
+    ends, _ = correct_normal(problem, flat, bases)
+    misses = np.linalg.norm(charts.difference(ends, point), axis=1)
+    heights = np.linalg.norm(offsets - in_plane, axis=1)
+    most = OFF_POINT * heights + AT_POINT * problem.domain.scale
+    leading: np.ndarray = entries[misses <= most]
+    return leading
 
 
 def _chart_chains(

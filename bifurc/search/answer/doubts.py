@@ -185,6 +185,9 @@ def doubts_of_findings(
     on_rim = int(np.count_nonzero(are_on_rim(problem, findings.rigid.values())))
     if on_rim:
         yield SearchDoubt.ON_RIM.doubt(count=on_rim)
+    unfollowed = len(findings.components.notes.unfollowed)
+    if unfollowed:
+        yield SearchDoubt.SINGULAR_CURVES.doubt(count=unfollowed)
     off_charts = findings.components.off_charts
     if off_charts:
         yield SearchDoubt.UNCHARTED.doubt(starts=off_charts)
