@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <vector>
 
-#include "bifurc/core/system.hpp"
+#include "bifurc/core/valley.hpp"
 
 namespace bifurc {
 
-// F (m) and F' (m, n) at some points.
+// F (m), F' (m, n) and F'' (m * n, n) at some points.
 class Values {
 public:
     explicit Values(Index unknowns) : unknowns_(unknowns) {}
@@ -21,17 +21,24 @@ public:
         if (has_jacobians) jacobians_.resize(points * equations * unknowns_);
     }
 
+    // Makes room for second derivatives.
+    void reserve_second(Index points) { hessians_.resize(points * equations_ * unknowns_ * unknowns_); }
+
     Index equations() const { return equations_; }
     Vector<double> residual(Index point) { return {residuals_.data() + point * equations_, size(equations_)}; }
     View<double> jacobian(Index point) {
         return {jacobians_.data() + point * equations_ * unknowns_, equations_, unknowns_};
+    }
+    View<double> hessian(Index point) {
+        const Index rows = equations_ * unknowns_;
+        return {hessians_.data() + point * rows * unknowns_, rows, unknowns_};
     }
 
 private:
     static std::size_t size(Index count) { return static_cast<std::size_t>(count); }
 
     Index unknowns_, equations_ = 0;
-    std::vector<double> residuals_, jacobians_;
+    std::vector<double> residuals_, jacobians_, hessians_;
 };
 
 // F: R^n -> R^m, over its magnitude.
@@ -44,10 +51,12 @@ public:
     virtual Index at_once() const = 0;
     // F at points (k, n), with F' or without.
     virtual void fill(View<const double> points, bool has_jacobians, Values& values) const = 0;
+    // F'' beside F and F'.
+    virtual void fill_second(View<const double> points, Values& values) const = 0;
 };
 
 // Those of a compiled system over a ``magnitude``; ``Owner`` holds what the system refers to.
-template <DenseSystem S, class Owner>
+template <CurvedSystem S, class Owner>
 class EquationsOf : public Equations {
 public:
     // ``make`` gives the system of an owner.
@@ -65,6 +74,16 @@ public:
             else system_.residual(points.row(k), values.residual(k));
             divide(values.residual(k));
             if (has_jacobians) divide({values.jacobian(k).data, static_cast<std::size_t>(system_.equations() * system_.unknowns())});
+        }
+    }
+
+    void fill_second(View<const double> points, Values& values) const override {
+        fill(points, true, values);
+        values.reserve_second(points.rows);
+        for (Index k = 0; k < points.rows; ++k) {
+            const View<double> hessian = values.hessian(k);
+            system_.hessian(points.row(k), hessian);
+            divide({hessian.data, static_cast<std::size_t>(hessian.rows * hessian.columns)});
         }
     }
 

@@ -7,6 +7,7 @@
 #include "bifurc/core/deadline.hpp"
 #include "bifurc/core/equations_bindings.hpp"
 #include "bifurc/core/front.hpp"
+#include "bifurc/core/rank_deflation.hpp"
 #include "bifurc/core/sheet.hpp"
 #include "bifurc/core/tape.hpp"
 
@@ -14,21 +15,22 @@ namespace bifurc::python {
 
 namespace {
 
-// Equations that functions of Python make: from points (k, n) to F (k, m) and to F' (k, m, n), both over the
-// magnitude.
+// Equations that functions of Python make: from points (k, n) to F (k, m), to F' (k, m, n) and to F'' (k, m, n,
+// n), all over the magnitude.
 class CalledEquations : public Equations {
 public:
-    CalledEquations(Index unknowns, nb::object residuals, nb::object jacobians)
-        : unknowns_(unknowns), residuals_(std::move(residuals)), jacobians_(std::move(jacobians)) {}
+    CalledEquations(Index unknowns, nb::object residuals, nb::object jacobians, nb::object hessians)
+        : unknowns_(unknowns),
+          residuals_(std::move(residuals)),
+          jacobians_(std::move(jacobians)),
+          hessians_(std::move(hessians)) {}
 
     Index unknowns() const override { return unknowns_; }
     Index at_once() const override { return many; }
 
     void fill(View<const double> points, bool has_jacobians, Values& values) const override {
         if (points.rows == 0) return;
-        numpy::Array<double> copy({points.rows, points.columns});
-        copy.fill({points.data, static_cast<std::size_t>(points.rows * points.columns)});
-        const nb::object at = copy.release();
+        const nb::object at = array_of(points);
         const auto residuals = nb::cast<Table>(residuals_(at));
         values.reserve(points.rows, static_cast<Index>(residuals.shape(1)), has_jacobians);
         check_unknowns("residuals", residuals.shape(0), points.rows);
@@ -39,15 +41,79 @@ public:
         std::copy_n(jacobians.data(), jacobians.size(), values.jacobian(0).data);
     }
 
+    void fill_second(View<const double> points, Values& values) const override {
+        if (points.rows == 0) return;
+        fill(points, true, values);
+        values.reserve_second(points.rows);
+        const auto hessians = nb::cast<nb::ndarray<const double, nb::ndim<4>, nb::c_contig, nb::device::cpu>>(
+            hessians_(array_of(points)));
+        const View<double> first = values.hessian(0);
+        check_unknowns("hessians", hessians.size(), points.rows * first.rows * first.columns);
+        std::copy_n(hessians.data(), hessians.size(), first.data);
+    }
+
 private:
+    static nb::object array_of(View<const double> points) {
+        numpy::Array<double> copy({points.rows, points.columns});
+        copy.fill({points.data, static_cast<std::size_t>(points.rows * points.columns)});
+        return copy.release();
+    }
+
     static constexpr Index many = 2048;  // whose derivatives fit into memory with those of their functions
 
     Index unknowns_;
-    nb::object residuals_, jacobians_;
+    nb::object residuals_, jacobians_, hessians_;
 };
 
-nb::capsule called_equations(Index unknowns, nb::object residuals, nb::object jacobians) {
-    return hand_over(std::make_unique<CalledEquations>(unknowns, std::move(residuals), std::move(jacobians)));
+nb::capsule called_equations(Index unknowns, nb::object residuals, nb::object jacobians, nb::object hessians) {
+    return hand_over(std::make_unique<CalledEquations>(unknowns, std::move(residuals), std::move(jacobians),
+                                                       std::move(hessians)));
+}
+
+// `RankDeflatedEquations` with the equations that they refer to.
+class OwnedRankDeflation : public RankDeflatedEquations {
+public:
+    OwnedRankDeflation(const nb::capsule& equations, Index rank)
+        : RankDeflatedEquations(equations_in(equations), rank), equations_(equations) {}
+
+private:
+    nb::capsule equations_;
+};
+
+nb::capsule rank_deflated(const nb::capsule& equations, Index rank) {
+    if (rank < 0 || rank > equations_in(equations).unknowns()) throw nb::value_error("no such rank");
+    return hand_over(std::make_unique<OwnedRankDeflation>(equations, rank));
+}
+
+// F (k, m) at points (k, n).
+nb::object residuals_at(const nb::capsule& equations, const Table& points) {
+    const Equations& own = equations_in(equations);
+    check_unknowns("points", points.shape(1), own.unknowns());
+    Values values(own.unknowns());
+    own.fill(numpy::view(points), false, values);
+    const auto count = static_cast<Index>(points.shape(0));
+    numpy::Array<double> out({count, values.equations()});
+    if (count) out.fill({values.residual(0).data(), static_cast<std::size_t>(count * values.equations())});
+    return out.release();
+}
+
+// F' (k, m, n) at points (k, n).
+nb::object jacobians_at(const nb::capsule& equations, const Table& points) {
+    const Equations& own = equations_in(equations);
+    check_unknowns("points", points.shape(1), own.unknowns());
+    const auto count = static_cast<Index>(points.shape(0)), n = own.unknowns(), at_once = own.at_once();
+    Values values(n);
+    own.fill(numpy::view(points).first_rows(0), true, values);
+    std::vector<double> all;
+    for (Index begin = 0; begin < count; begin += at_once) {
+        const Index some = std::min(at_once, count - begin);
+        own.fill({numpy::view(points).row(begin).data(), some, n}, true, values);
+        const double* const first = values.jacobian(0).data;
+        all.insert(all.end(), first, first + some * values.equations() * n);
+    }
+    numpy::Array<double> out({count, values.equations(), n});
+    out.fill(all);
+    return out.release();
 }
 
 // A tape, with what its system refers to.
@@ -276,7 +342,11 @@ nb::tuple polygon_at(const Front& front, Index chart) {
 
 void bind_sheets(nb::module_& module) {
     using nb::arg;
-    module.def("called_equations", &called_equations, arg("unknowns"), arg("residuals"), arg("jacobians"));
+    module.def("called_equations", &called_equations, arg("unknowns"), arg("residuals"), arg("jacobians"),
+               arg("hessians"));
+    module.def("rank_deflated", &rank_deflated, arg("equations"), arg("rank"));
+    module.def("residuals_at", &residuals_at, arg("equations"), arg("points"));
+    module.def("jacobians_at", &jacobians_at, arg("equations"), arg("points"));
     module.def("tape_equations", &tape_equations, arg("tape"), arg("magnitude"));
     module.def("normal_corrections", &normal_corrections, arg("equations"), arg("scale"), arg("points"), arg("planes"));
     module.def("slopes_above", &slopes_above, arg("equations"), arg("points"), arg("planes"));

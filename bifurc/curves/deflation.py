@@ -21,10 +21,12 @@ values of F' after number r are zero, too.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
+from bifurc import _core
 from bifurc.branch import Branch
 from bifurc.curves.monitor import Profile
 from bifurc.decisions import (
@@ -37,11 +39,12 @@ from bifurc.decisions import (
 from bifurc.domain import Domain
 from bifurc.function_problem import NumericalProblem
 from bifurc.numerics.collocation import march_by_collocation, reparametrised
+from bifurc.numerics.corrector import compiled_equations
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.numerics.singular_values import factors_of, singular_values, values_of
 from bifurc.problem import Problem
 from bifurc.singular.sphere import section
-from bifurc.system import March, MarchSettings, MarchStatus, Piece
+from bifurc.system import March, MarchSettings, MarchStatus, Piece, Shortcuts
 
 RUN = 4  # pieces made with one choice of a and t, before both are renewed
 SECTION_RADIUS = 1e-2  # of the sphere on which half-branches are looked for, in scales
@@ -287,23 +290,25 @@ class RankDeflated(NumericalProblem):
         self._rank = rank
         self.domain, self.magnitude = problem.domain, problem.magnitude
 
+    @cached_property
+    def _equations(self) -> object:
+        """F and F' for compiled methods."""
+        return _core.rank_deflated(compiled_equations(self._problem), self._rank)
+
+    @property
+    def shortcuts(self) -> Shortcuts:
+        """What compiled code does in one call."""
+        return Shortcuts(equations=lambda magnitude: self._equations)
+
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F and the singular values after number ``rank``, as a matrix (k, m + e)."""
-        residuals = self._problem.residuals(points)
-        left, right, jacobians = self._last_vectors(points)
-        blocks = np.swapaxes(left, 1, 2) @ jacobians @ right
-        count = len(points)
-        further = blocks.reshape(count, blocks.shape[1] * blocks.shape[2])
-        return np.concatenate([residuals, further], axis=1)
+        at = np.ascontiguousarray(points)
+        return self.magnitude * _core.residuals_at(self._equations, at)
 
     def jacobians(self, points: np.ndarray) -> np.ndarray:
         """F' and below it U^T F'' V (k, m + e, n)."""
-        left, right, jacobians = self._last_vectors(points)
-        hessians = self._problem.hessians(points).reshape(*jacobians.shape, self.n)
-        bends = np.einsum("kma,kmij,kib->kabj", left, hessians, right)
-        count = len(points)
-        further = bends.reshape(count, bends.shape[1] * bends.shape[2], self.n)
-        return np.concatenate([jacobians, further], axis=1)
+        at = np.ascontiguousarray(points)
+        return self.magnitude * _core.jacobians_at(self._equations, at)
 
     def next_to(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solutions (k, n) of lower rank next to solutions ``points`` (k, n) known to
@@ -313,12 +318,3 @@ class RankDeflated(NumericalProblem):
         return solutions, closes_to_rounding(gaps) & (
             offsets < NEXT * self.domain.scale
         )
-
-    def _last_vectors(
-        self, points: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """U (k, m, m - r), V (k, n, n - r) and F' (k, m, n)."""
-        jacobians = self._problem.jacobians(points)
-        left, _, right = np.linalg.svd(jacobians)
-        r = self._rank
-        return left[:, :, r:], np.swapaxes(right[:, r:], 1, 2), jacobians

@@ -159,9 +159,12 @@ def compiled_equations(problem: System) -> object:
     equations = problem.shortcuts.equations
     if equations is not None:
         return equations(problem.magnitude)
-    residuals = partial(relative_residuals, problem)
-    jacobians = partial(relative_jacobians, problem)
-    return _core.called_equations(problem.n, residuals, jacobians)
+    return _core.called_equations(
+        problem.n,
+        partial(relative_residuals, problem),
+        partial(relative_jacobians, problem),
+        lambda points: problem.hessians(points) / problem.magnitude,
+    )
 
 
 def limited(steps: np.ndarray, longest: float) -> np.ndarray:

@@ -5,7 +5,8 @@ plane of one of the two charts, the same for both; along a bound it runs in that
 cells divide the surface without gaps. In the plane of its chart a cell consists of
 sectors, from the centre to its edges: over each the ratio of areas, from the
 derivatives of the graph, is integrated by Gauss's rule along the edge and along the
-rays. The error of every cell is the change from a rule of lower order.
+rays. The error of every cell is the change to a rule of lower order on the same places
+and, as neighbours share them, the centre and the ends of the edges.
 """
 
 from __future__ import annotations
@@ -20,8 +21,7 @@ from bifurc.surfaces.complex import Cells
 from bifurc.surfaces.graphs import Graphs, bounds_of
 from bifurc.surfaces.polygon import BORDER, FlatCharts
 
-# Nodes along an edge and along a ray, of the rule and of the lower one.
-ORDERS = ((6, 5), (5, 4))
+ALONG, RAYS = 6, 5  # nodes along an edge and along a ray
 # Error of an area by rounding, over it.
 ROUNDING = 1e-13
 # Points of an edge that others are interpolated between, at least, and powers of the
@@ -53,11 +53,21 @@ def cell_sizes(
     bounds a few times the area outside, as far as nodes show it, is added.
     """
     measure = _Measure(problem, charts, cells, metric)
-    areas, errors, outside = measure.sizes(*ORDERS[0])
-    coarse, *_ = measure.sizes(*ORDERS[1])
-    errors += np.abs(areas - coarse) + ROUNDING * np.abs(areas)
+    areas, errors, outside = measure.sizes()
+    errors += ROUNDING * np.abs(areas)
     errors[cells.chart[cells.misfits()]] = np.inf
     return Sizes(areas, np.minimum(errors, np.abs(areas)), outside)
+
+
+class _Rays(NamedTuple):
+    """The ratio of areas along rays, of which each edge has r: its ``integrals`` (e, r),
+    and the ``lower_integrals`` (e, r) by the lower rule; how far off the area is by
+    ``gaps`` (e, r - 1) in the ratio, and what lies ``outside`` the bounds (c,)."""
+
+    integrals: np.ndarray
+    lower_integrals: np.ndarray
+    gaps: np.ndarray
+    outside: np.ndarray
 
 
 class _Measure:
@@ -76,33 +86,54 @@ class _Measure:
         )
         self._pairs, self._first, self._edge = pairs, first, edge
 
-    def sizes(self, along: int, rays: int) -> Sizes:
-        """Areas with so many nodes along edges and along rays, and errors by nodes to
-        which the surface was not followed and by what lies outside the bounds."""
-        nodes, weights = _gauss(along)
+    def sizes(self) -> Sizes:
+        """Areas, and errors by the lower rule, by nodes to which the surface was not
+        followed and by what lies outside the bounds."""
+        nodes, weights = _gauss(ALONG)
         curves, are_known = self._curves(nodes)
         corners, rates = self._outlines(curves, nodes)
-        turned = _cross(corners, rates) * weights  # (e, along)
-        t, t_weights = _gauss(rays)
-        plane = (t * t_weights) * turned.reshape(-1, 1)
-        chart = np.repeat(self._cells.chart, along)
-        ends = corners.reshape(-1, 2)
-        points, is_there = self._graphs.part(chart).along(ends, t)
-        ratio = self._ratios(chart, points)
-        positions = corners.reshape(-1, 1, 2) * t[:, None]
-        gaps = _fill_cells(ratio, positions, is_there, chart)
-        parts = ratio * plane
-        is_outside = self._are_outside(points) & ~self._are_bent(turned)[chart, None]
-        outside = self._sums(chart, parts * is_outside)
-        errors = self._sums(chart, gaps * np.abs(plane)) + BLURRED * outside
+        turned = _cross(corners, rates)  # (e, ALONG + 2)
+        lower_turned = turned * _lower_weights(np.concatenate([[0.0], nodes, [1.0]]))
+        turned = turned[:, 1:-1] * weights
+        rays = self._rays(corners[:, :-1], turned)
+        areas = self._sums(turned * rays.integrals[:, 1:])
+        after = rays.lower_integrals[self._cells.following, :1]
+        lower = np.concatenate([rays.lower_integrals, after], axis=1)
+        errors = np.abs(areas - self._sums(lower_turned * lower))
+        errors += self._sums(rays.gaps) + BLURRED * rays.outside
         errors[self._cells.chart[~are_known[self._edge]]] = np.inf
-        return Sizes(self._sums(chart, parts), errors, outside)
+        return Sizes(areas, errors, rays.outside)
+
+    def _rays(self, ends: np.ndarray, turned: np.ndarray) -> _Rays:
+        """The rays from the centres to the beginning and the nodes of each edge, ``ends``
+        (e, r, 2), all but the first of each of a weight ``turned`` (e, r - 1)."""
+        count = ends.shape[1]
+        chart = np.repeat(self._cells.chart, count)
+        t, t_weights = _gauss(RAYS)
+        points, is_there = self._graphs.part(chart).along(ends.reshape(-1, 2), t)
+        ratio = self._ratios(chart, points)
+        positions = ends.reshape(-1, 1, 2) * t[:, None]
+        gaps = _fill_cells(ratio, positions, is_there, chart).reshape(-1, count)[:, 1:]
+        ratio = ratio.reshape(-1, count, RAYS)
+        weighted = t * t_weights * turned[:, :, None]
+        is_outside = self._are_outside(points).reshape(ratio.shape)[:, 1:]
+        is_outside &= ~self._are_bent(turned)[self._cells.chart, None, None]
+        outside = ratio[:, 1:] * weighted * is_outside
+        at_center, lower = _lower_weights_from_center(t)
+        flat = self._ratios(np.arange(self._count), self._graphs.centers[:, None])
+        from_center = at_center * flat[self._cells.chart]
+        return _Rays(
+            integrals=ratio @ (t * t_weights),
+            lower_integrals=from_center + ratio @ lower,
+            gaps=gaps * np.abs(weighted).sum(axis=2),
+            outside=self._sums(outside.sum(axis=2)),
+        )
 
     def _are_bent(self, turned: np.ndarray) -> np.ndarray:
         """Which cells (c,) are differences of sectors, some of which are turned (e, k)
         backwards, as one beside a bound that bends."""
         are_back = turned.min(axis=1) < 0.0
-        are_bent: np.ndarray = self._sums(self._cells.chart, are_back[:, None]) > 0
+        are_bent: np.ndarray = self._sums(are_back[:, None]) > 0
         return are_bent
 
     def _are_outside(self, points: np.ndarray) -> np.ndarray:
@@ -121,9 +152,10 @@ class _Measure:
         ratios: np.ndarray = np.sqrt(squares).reshape(points.shape[:2])
         return ratios
 
-    def _sums(self, chart: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Sums (c,) of values (k, s), each row of a ``chart`` (k,)."""
-        return np.bincount(chart, values.sum(axis=1), minlength=self._count)
+    def _sums(self, values: np.ndarray) -> np.ndarray:
+        """Sums (c,) over each cell of values (e, k) at its edges."""
+        sums = values.sum(axis=1)
+        return np.bincount(self._cells.chart, sums, minlength=self._count)
 
     def _curves(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Points (u, k, n) of all edges, from the vertex of the lower number on, and
@@ -179,8 +211,8 @@ class _Measure:
     def _outlines(
         self, curves: np.ndarray, nodes: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Positions (e, k, 2) of the nodes of each edge in the plane of its chart, and
-        their derivatives along it (e, k, 2)."""
+        """Positions (e, k + 2, 2) of the beginning, the nodes and the end of each edge in
+        the plane of its chart, and their derivatives along it (e, k + 2, 2)."""
         cells, n = self._cells, self._problem.n
         is_back = cells.begin > cells.end
         inner = curves[self._edge]
@@ -192,7 +224,7 @@ class _Measure:
         outline = graphs.positions(points.reshape(-1, n)).reshape(-1, count, 2)
         places = np.concatenate([[0.0], nodes, [1.0]])
         rates = np.einsum("ij,ejk->eik", _differentiation(places), outline)
-        return outline[:, 1:-1], rates[:, 1:-1]
+        return outline, rates
 
 
 def _fill_cells(
@@ -224,6 +256,24 @@ def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
     """Nodes and weights (count,) of Gauss's rule from 0 to 1."""
     nodes, weights = leggauss(count)
     return 0.5 * (nodes + 1.0), 0.5 * weights
+
+
+def _lower_weights(places: np.ndarray) -> np.ndarray:
+    """Weights (k,) by which polynomials through values at ``places`` (k,) are integrated
+    from 0 to 1."""
+    powers = np.arange(len(places))
+    weights: np.ndarray = np.linalg.solve(
+        places ** powers[:, None], 1.0 / (powers + 1.0)
+    )
+    return weights
+
+
+def _lower_weights_from_center(t: np.ndarray) -> tuple[float, np.ndarray]:
+    """The weight at 0 and the weights (k,) at places ``t`` (k,) by which polynomials
+    through values there, times the place, are integrated from 0 to 1."""
+    powers = np.arange(1, len(t) + 1)
+    weights = np.linalg.solve(t ** powers[:, None], 1.0 / (powers + 2.0))
+    return 0.5 - float(weights.sum()), weights
 
 
 def _differentiation(places: np.ndarray) -> np.ndarray:

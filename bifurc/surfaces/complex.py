@@ -47,6 +47,14 @@ class Cells(NamedTuple):
         """The two vertices (e, 2) of each edge, the lower number first."""
         return np.sort(np.stack([self.begin, self.end], axis=1), axis=1)
 
+    @property
+    def following(self) -> np.ndarray:
+        """Number (e,) of the edge after each one around its polygon."""
+        after = np.arange(1, len(self.chart) + 1)
+        is_last = np.append(self.chart[1:] != self.chart[:-1], True)
+        after[is_last] = np.searchsorted(self.chart, self.chart)[is_last]
+        return after
+
     def misfits(self) -> np.ndarray:
         """Which edges (e,) do not fit: one inside the bounds that not just two polygons
         have, in opposite directions, and one about a vertex where polygons meet that
@@ -71,9 +79,7 @@ class Cells(NamedTuple):
         from scipy.sparse.csgraph import connected_components
 
         count = len(self.chart)
-        after = np.arange(1, count + 1)
-        is_last = np.append(self.chart[1:] != self.chart[:-1], True)
-        after[is_last] = np.searchsorted(self.chart, self.chart)[is_last]
+        after = self.following
         # an edge and the one after its twin leave the same vertex
         i, j = np.concatenate([one, other]), np.concatenate([after[other], after[one]])
         graph = csr_array((np.ones(len(i)), (i, j)), shape=(count, count))
