@@ -90,6 +90,8 @@ def trace_near_motion(
     places = np.array([start, *_beside(problem, start)])
     # where the system happens to be solved the residual does not show what is missed
     missed = float(misclosures(problem, places).max())
+    if not np.isfinite(missed):
+        return None  # next to a rim of where the equations are defined
     tolerance = min(max(PRECISION * missed, FINEST), COARSEST)
     max_length = min(settings.max_length, LONGEST)
     settings = replace(settings.to_tolerance(tolerance), max_length=max_length)

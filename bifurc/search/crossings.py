@@ -17,6 +17,7 @@ from bifurc.equations.tape import Tape
 from bifurc.numerics.roots import bracketed_roots
 
 NARROWEST = 1e-8  # reach of a stretch, over the sizes, that is not cut any more
+BLUR = 1e-11  # over the sizes: how well a curve is known
 OVERLAP = 1e-6  # share of a stretch by which it is looked at beyond its ends
 SAME = 1e-9  # of the length of a curve: zeros no farther apart are one
 MOST_STRETCHES = 20_000  # at a time; where there are more, curves run along the zeros
@@ -140,10 +141,11 @@ def _bounds_of(tape: Tape, stretches: _Stretches, sizes: np.ndarray) -> _Bounds:
     half = 0.5 * (stretches.high - stretches.low)
     middle = 0.5 * (stretches.high + stretches.low)
     points = stretches.points(middle)
-    reach = half[:, None] * stretches.largest(1)
-    low, high = np.ascontiguousarray(points - reach), points + reach
+    reach = half[:, None] * stretches.largest(1) + BLUR * sizes
+    low, high = points - reach, points + reach
     lowest, highest = tape.compiled.value_bounds(low, high)
-    at_middle = tape.compiled.value_bounds(points, points)
+    blur = BLUR * sizes
+    at_middle = tape.compiled.value_bounds(points - blur, points + blur)
     slopes = tape.compiled.jacobian_bounds(low, high)
     velocity = stretches.points(middle, 1)
     change = half[:, None] * stretches.largest(2)

@@ -17,6 +17,7 @@ from bifurc.checks import (
     check_type,
     index_of_unknown,
 )
+from bifurc.completeness import Completeness, Level
 from bifurc.diagrams.diagram import Diagram
 from bifurc.diagrams.events import EventRequests, events_of
 from bifurc.diagrams.make_diagram import diagram_of, named_points
@@ -33,7 +34,7 @@ from bifurc.limits import (
 )
 from bifurc.problem import Problem
 from bifurc.search.answer.assemble import assemble_atlas
-from bifurc.search.answer.settled_in_boxes import settled_in_boxes
+from bifurc.search.answer.settled_in_boxes import listed_solutions, settled_in_boxes
 from bifurc.search.factor_by_factor import explored_by_factors
 from bifurc.search.isolated_boxes import IsolatedInBoxes, isolated_in_boxes
 from bifurc.search.many_unknowns import explore_many_unknowns, has_many_unknowns
@@ -211,10 +212,44 @@ def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
         if atlas is not None:
             return atlas
     solutions = _solutions_of(problem, request)
-    atlas = _explored_in_own_units(problem, request)
     if solutions is None:
-        return atlas
+        return _explored_in_own_units(problem, request)
+    if solutions.is_complete and len(solutions.points):
+        return _atlas_of_solutions(problem, request, solutions)
+    atlas = _explored_in_own_units(problem, request)
     return settled_in_boxes(atlas, solutions, problem.domain)
+
+
+def _atlas_of_solutions(
+    problem: FunctionProblem, request: _Request, solutions: IsolatedInBoxes
+) -> Atlas:
+    """The atlas of equations of which all solutions are known, and isolated."""
+    from bifurc.search.isolated import isolated_solutions  # few searches need it
+
+    deadline = current_deadline()
+    claims = [solutions.claim]
+    if request.settings.paths:
+        followed = isolated_solutions(problem, request.settings.paths, deadline)
+        inside = len(solutions.points)
+        counted = None if followed is None else followed.claim(inside)
+        if counted is not None and counted.level is Level.CERTIFIED:
+            claims.append(replace(counted, level=None))  # boxes show more
+    provenance = _provenance(problem, request, False, deadline)
+    provenance = replace(provenance, out_of_time=False)
+    domain = problem.domain
+    return Atlas(
+        names=domain.names,
+        units=domain.units,
+        periods=domain.periods,
+        forms=(),
+        points=(),
+        near_misses=(),
+        dead_points=(),
+        rigid=listed_solutions(solutions, domain),
+        surfaces=(),
+        completeness=Completeness(tuple(claims), (), 0.0),
+        provenance=provenance,
+    )
 
 
 def _solutions_of(

@@ -14,14 +14,17 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bifurc.completeness import Claim, Level, Scope
 from bifurc.domain import Domain
 from bifurc.equations.tape import Operation, Tape
 from bifurc.limits import is_time_over
+from bifurc.search.answer.completeness import SearchClaim
 
 MOST_UNKNOWNS = 4
 WIDER = 0.05  # of a box to either side: a solution on its rim is inside then
 FEWEST_ULPS = 64.0  # widths of a box, in units in the last place, that is not cut
 LEAST = 1e-20  # of the bounds: a box about zero that is not cut
+TURN = 0.5 + 1e-9  # of a period to either side of 0
 AT_ONCE = 2048
 MOST_OPEN = 6000  # boxes that wait: where there are more, solutions are no points
 NEWTON_STEPS = 6
@@ -41,6 +44,12 @@ class IsolatedInBoxes:
     def is_complete(self) -> bool:
         """Whether the points are all solutions there are."""
         return not len(self.left)
+
+    @property
+    def claim(self) -> Claim:
+        """What is said of the solutions where they are all."""
+        kind = SearchClaim.BOXES_OF_SOLUTIONS
+        return kind.claim(Scope.ASSEMBLIES, Level.PROVED, boxes=self.count)
 
 
 class _Boxes(NamedTuple):
@@ -106,9 +115,9 @@ def isolated_in_boxes(tape: Tape, domain: Domain, most: int) -> IsolatedInBoxes 
 
 
 def _region(domain: Domain) -> np.ndarray:
-    """The bounds (n, 2), of a circle one period."""
+    """The bounds (n, 2), of a circle one period and a little more."""
     is_circle = np.isfinite(domain.periods) & np.isinf(domain.bounds).all(axis=1)
-    half = np.where(is_circle, 0.5 * domain.periods, 0.0)
+    half = np.where(is_circle, TURN * domain.periods, 0.0)
     turn = np.column_stack([-half, half])
     return np.where(is_circle[:, None], turn, domain.bounds)
 
@@ -139,7 +148,8 @@ def _judged(tape: Tape, boxes: _Boxes, widths: np.ndarray) -> _Verdicts:
     is_single = ((mapped.low > wide.low) & (mapped.high < wide.high)).all(axis=1)
     rest = _Boxes(np.maximum(low, mapped.low), np.minimum(high, mapped.high))
     is_empty |= (rest.low > rest.high).any(axis=1)
-    shares = (changes / reach[:, :, None]).max(axis=1)
+    with np.errstate(all="ignore"):  # an equation may not change at all
+        shares = (changes / reach[:, :, None]).max(axis=1)
     is_known = np.isfinite(shares).all(axis=1)
     shares = np.where(is_known[:, None], shares, half / widths)
     return _Verdicts(is_empty, is_single & ~is_empty, rest, shares)

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from bifurc.atlas import Atlas
-from bifurc.completeness import Claim, Completeness, Level, Scope
+from bifurc.completeness import Scope
 from bifurc.decisions import is_same_point
 from bifurc.domain import Domain
-from bifurc.search.answer.completeness import SearchClaim, SearchDoubt
+from bifurc.search.answer.completeness import SearchDoubt
 from bifurc.search.canonical_order import order_points
 from bifurc.search.isolated_boxes import IsolatedInBoxes
 from bifurc.torus import wrap, wrapped_periods
@@ -26,10 +26,10 @@ OF_SOLUTIONS = (
 
 def settled_in_boxes(atlas: Atlas, found: IsolatedInBoxes, domain: Domain) -> Atlas:
     """The atlas of as many equations as unknowns with the solutions ``found`` in boxes,
-    where these settle all of the bounds; else with a doubt where they leave open places
-    that it does not know."""
+    of which there are none where these settle all of the bounds; else with a doubt where
+    they leave open places that it does not know."""
     if found.is_complete:
-        return _with_all(atlas, found, domain)
+        return _without_any(atlas, found)
     places = found.left.mean(axis=2)
     is_claimed = any(
         claim.scope is Scope.ASSEMBLIES for claim in atlas.completeness.claims
@@ -44,43 +44,33 @@ def settled_in_boxes(atlas: Atlas, found: IsolatedInBoxes, domain: Domain) -> At
     return replace(atlas, completeness=replace(atlas.completeness, doubts=doubts))
 
 
-def _with_all(atlas: Atlas, found: IsolatedInBoxes, domain: Domain) -> Atlas:
-    """The atlas with all solutions; where it has others, what it doubts is of these."""
+def listed_solutions(found: IsolatedInBoxes, domain: Domain) -> np.ndarray:
+    """The solutions (k, n) found in boxes, as an atlas lists them."""
     periods = wrapped_periods(domain.periods, domain.bounds)
     rigid = wrap(found.points, periods)
-    rigid = rigid[order_points(rigid, periods, domain.scale)]
-    listed = len(atlas.forms) + len(atlas.surfaces) + len(atlas.points)
-    is_same = not listed and len(rigid) == len(atlas.rigid)
-    claim = SearchClaim.BOXES_OF_SOLUTIONS.claim(
-        Scope.ASSEMBLIES, Level.PROVED, boxes=found.count
+    listed: np.ndarray = rigid[order_points(rigid, periods, domain.scale)]
+    return listed
+
+
+def _without_any(atlas: Atlas, found: IsolatedInBoxes) -> Atlas:
+    """The atlas of equations that have no solution; where it has some, what it doubts is
+    of these."""
+    is_same = not any(
+        map(len, (atlas.forms, atlas.surfaces, atlas.points, atlas.rigid))
     )
     known = atlas.completeness
-    if is_same and not known.doubts:
-        return replace(atlas, rigid=rigid, completeness=_and_claim(known, claim))
     names = [kind.name for kind in OF_SOLUTIONS]
     doubts = tuple(doubt for doubt in known.doubts if doubt.kind not in names)
+    estimates = tuple(claim for claim in known.claims if claim.level is None)
     if not is_same:
         atlas = replace(atlas, forms=(), surfaces=(), points=(), near_motions=())
-        atlas = replace(atlas, near_misses=(), dead_points=())
+        atlas = replace(atlas, near_misses=(), dead_points=(), rigid=found.points)
         doubts = ()
-    completeness = replace(_and_claim(known, claim), doubts=doubts)
-    provenance = replace(atlas.provenance, out_of_time=False)
     return replace(
         atlas,
-        rigid=rigid,
-        closure_gap=0.0 if len(rigid) else atlas.closure_gap,
-        completeness=completeness,
-        provenance=provenance,
+        completeness=replace(known, claims=(found.claim, *estimates), doubts=doubts),
+        provenance=replace(atlas.provenance, out_of_time=False),
     )
-
-
-def _and_claim(known: Completeness, claim: Claim) -> Completeness:
-    """What was known, with a further claim before what only random starts show."""
-    settled = [
-        one for one in known.claims if one.level in (Level.PROVED, Level.CERTIFIED)
-    ]
-    estimates = [one for one in known.claims if one.level is None]
-    return replace(known, claims=(claim, *settled, *estimates))
 
 
 def _are_known(atlas: Atlas, places: np.ndarray, domain: Domain) -> np.ndarray:

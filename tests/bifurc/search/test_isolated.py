@@ -9,6 +9,7 @@ from bifurc.search.answer.completeness import SearchClaim
 from bifurc.settings import SearchSettings
 
 FEW = SearchSettings(starts=5, near_motions=False)
+NO_BOXES = SearchSettings(starts=5, near_motions=False, boxes=0)
 
 
 def explored(function, bounds, settings=FEW, **more):
@@ -72,7 +73,7 @@ NOT_COUNTED = {
 
 @pytest.mark.parametrize("name", NOT_COUNTED)
 def test_what_is_not_known_to_be_all_is_not_certified(name):
-    atlas = explored(NOT_COUNTED[name], [(-4, 4)] * 2)
+    atlas = explored(NOT_COUNTED[name], [(-4, 4)] * 2, NO_BOXES)
     assert not claims_of(atlas, SearchClaim.ALL_ISOLATED)
     assert atlas.completeness.level is Level.ESTIMATED
 
@@ -95,7 +96,7 @@ FAR_AWAY = {
 
 @pytest.mark.parametrize("name", FAR_AWAY)
 def test_solutions_too_far_away_to_be_told_from_infinity_are_not_denied(name):
-    atlas = explored(FAR_AWAY[name], [(-40, 40)] * 3)
+    atlas = explored(FAR_AWAY[name], [(-40, 40)] * 3, NO_BOXES)
     assert not claims_of(atlas, SearchClaim.ALL_ISOLATED)
     (claim,) = claims_of(atlas, SearchClaim.PATHS_FAR_AWAY)
     assert claim.data["far"] > 0
@@ -128,7 +129,7 @@ NEARLY_DOUBLE = {
 
 @pytest.mark.parametrize("name", NEARLY_DOUBLE)
 def test_places_where_equations_are_nearly_zero_are_in_doubt(name):
-    atlas = explored(NEARLY_DOUBLE[name], [(-5, 5.1)] * 2)
+    atlas = explored(NEARLY_DOUBLE[name], [(-5, 5.1)] * 2, NO_BOXES)
     assert atlas.completeness.is_in_doubt
     assert atlas.completeness.level is Level.ESTIMATED
 
