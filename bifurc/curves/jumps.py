@@ -18,6 +18,7 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.curves.monitor import Profile, usual_rank
 from bifurc.decisions import (
+    goes_straight_on,
     is_same_line,
     is_same_point,
     is_slow,
@@ -58,7 +59,7 @@ def kinks(branch: Branch, from_ends: float = 0.0) -> np.ndarray:
         arclengths, ends, after = arclengths[:-1], ends[:-1], after[:-1]
     is_inside = np.minimum(arclengths, branch.length - arclengths) >= from_ends
     cosines = np.sum(ends[is_inside] * after[is_inside], axis=1)
-    goes_on = is_same_line(1.0 - cosines)
+    goes_on = goes_straight_on(1.0 - cosines)
     places: np.ndarray = arclengths[is_inside][~goes_on]
     return places
 
