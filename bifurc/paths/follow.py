@@ -28,7 +28,7 @@ from bifurc.paths.family import Family
 ORDER = 8  # of the series by which the next point is predicted
 TOLERANCE = 1e-5  # of a prediction, over 1 + the size of the point
 SMALLER = 1e-2  # of the tolerance with which paths are followed again
-AGAIN = 3  # times at most
+AGAIN = 3  # times at most, if nothing else is said
 MOST_STEPS = 10_000
 TINY = 1e-300  # keeps rows of zeros from being divided by
 LEAST_RATIO = (
@@ -109,23 +109,24 @@ def follow_paths(
     last: np.ndarray,
     deadline: Deadline | None = None,
     tolerance: float = TOLERANCE,
+    again: int = AGAIN,
 ) -> Paths:
     """The paths of solutions ``starts`` (k, n), all different, of the member with the
     parameters ``first`` (q,) to that with ``last`` (q,).
 
     Paths that come to one regular end, and those that are lost, are followed again in
-    smaller steps. None is begun after the ``deadline``.
+    smaller steps, so often (``again``). None is begun after the ``deadline``.
     """
     deadline = deadline or Deadline()
     paths = _followed(family, starts, first, last, deadline, tolerance)
-    for _ in range(AGAIN):
-        again = np.flatnonzero(_are_doubtful(paths))
-        if not len(again) or deadline.passed:
+    for _ in range(again):
+        doubtful = np.flatnonzero(_are_doubtful(paths))
+        if not len(doubtful) or deadline.passed:
             break
         tolerance *= SMALLER
-        others = _followed(family, starts[again], first, last, deadline, tolerance)
+        others = _followed(family, starts[doubtful], first, last, deadline, tolerance)
         for name in vars(paths):
-            getattr(paths, name)[again] = getattr(others, name)
+            getattr(paths, name)[doubtful] = getattr(others, name)
     # what still meets is not known to be right
     paths.ends[_meets_another(paths)] = PathEnd.STUCK
     return paths
