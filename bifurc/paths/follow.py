@@ -30,7 +30,7 @@ from bifurc.paths.family import Family, complex_normal
 ORDER = 8  # of the series by which the next point is predicted
 TOLERANCE = 1e-5  # of a prediction, over 1 + the size of the point
 SMALLER = 1e-2  # of the tolerance with which paths are followed again
-AGAIN = 3  # times at most
+AGAIN = 3  # times at most, if nothing else is said
 MOST_STEPS = 10_000
 TINY = 1e-300  # keeps rows of zeros from being divided by
 LEAST_RATIO = (
@@ -114,25 +114,27 @@ def follow_paths(
     deadline: Deadline | None = None,
     tolerance: float = TOLERANCE,
     farthest: float = np.inf,
+    again: int = AGAIN,
 ) -> Paths:
     """The paths of solutions ``starts`` (k, n), all different, of the member with the
     parameters ``first`` (q,) to that with ``last`` (q,).
 
     Paths that come to one regular end, and those that are lost, are followed again in
-    smaller steps. None is begun after the ``deadline``. In homogeneous coordinates paths
-    that end ``farthest`` times as far away as 1, or more, may count as at infinity.
+    smaller steps, so often (``again``). None is begun after the ``deadline``. In
+    homogeneous coordinates paths that end ``farthest`` times as far away as 1, or more,
+    may count as at infinity.
     """
     deadline = deadline or Deadline()
     way = _Way(family, first, last, deadline, farthest)
     paths = _followed(way, starts, tolerance)
-    for _ in range(AGAIN):
-        again = np.flatnonzero(_are_doubtful(paths))
-        if not len(again) or deadline.passed:
+    for _ in range(again):
+        doubtful = np.flatnonzero(_are_doubtful(paths))
+        if not len(doubtful) or deadline.passed:
             break
         tolerance *= SMALLER
-        others = _followed(way, starts[again], tolerance)
+        others = _followed(way, starts[doubtful], tolerance)
         for name in vars(paths):
-            getattr(paths, name)[again] = getattr(others, name)
+            getattr(paths, name)[doubtful] = getattr(others, name)
     _tell_meetings(family, paths, last)
     return paths
 

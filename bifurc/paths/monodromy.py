@@ -8,13 +8,16 @@ Jensen, Lee, Leykin and Sommars 2019).
 Whether any is missing is asked of a curve: the solutions while the parameters move on a
 line, with the place t on that line as a further unknown. A hyperplane a x + b t = s
 that moves with s cuts it in points of which the sum is linear in s if they are all of
-them, and of no part of them (the trace test: Sommese, Verschelde and Wampler 2002).
+them, and of no part of them (the trace test: Sommese, Verschelde and Wampler 2002). It
+is asked of a plane curve, too, of which fewer points are to be found: of t and one or
+a few coordinates of x, if no two of the solutions agree in these.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import islice, pairwise
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +25,7 @@ from bifurc.decisions import is_linear_trace
 from bifurc.equations.tape import TapeWriter
 from bifurc.limits import Deadline
 from bifurc.paths.family import Family, complex_normal
-from bifurc.paths.follow import Paths, distinct, follow_paths
+from bifurc.paths.follow import distinct, follow_paths
 
 # closed ways in a row that bring nothing new before something else is tried: before the
 # trace test of a curve one is enough
@@ -30,6 +33,7 @@ QUIET, QUIET_ON_CURVE = 2, 1
 MOST_LOOPS = 60
 MOST_SOLUTIONS = 10_000
 CORNERS = 3  # of a closed way
+AT_END = 2e-2  # rest of a path that is led round its end (`bifurc/core/paths.hpp`)
 TESTS = 10  # trace tests, with further closed ways between them
 
 
@@ -40,6 +44,32 @@ class Fibre:
 
     parameters: np.ndarray
     solutions: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Projection:
+    """What is enough to vary and to look at: the ``targets`` (q,), parameters such that
+    the solutions of all members that differ in these alone are one irreducible variety;
+    and ``blocks`` of coordinates, of which one that tells all solutions apart will
+    do."""
+
+    targets: np.ndarray
+    blocks: tuple[slice, ...]
+
+    def coordinates_of(self, solutions: np.ndarray) -> np.ndarray:
+        """Which coordinates (n,) of the solutions (k, n) are looked at."""
+        looked_at = np.zeros(solutions.shape[1], dtype=bool)
+        for block in self.blocks:
+            chosen = looked_at.copy()
+            chosen[block] = True
+            if self.tells_apart(solutions, chosen):
+                return chosen
+        return ~looked_at
+
+    @staticmethod
+    def tells_apart(solutions: np.ndarray, looked_at: np.ndarray) -> bool:
+        """Whether no two of the solutions (k, n) agree in these coordinates (n,)."""
+        return len(distinct(solutions[:, looked_at])) == len(solutions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,26 +103,30 @@ def solve_generic(
     deadline: Deadline | None = None,
     most: int = MOST_SOLUTIONS,
     linear_in: int | None = None,
+    projection: Projection | None = None,
 ) -> GenericSolutions:
     """The solutions of the member with generic complex ``parameters`` (q,), of which
     ``start`` (n,) is one; where there are more than ``most``, some of them.
 
     ``linear_in``: a parameter, by number, while which moves alone the sum of all
     solutions is linear in it, and that of no part of them; without, it is asked of a
-    curve that has further points. Raises `ValueError` where the start is no regular
-    solution.
+    curve that has further points, or of a ``projection`` of it. Raises `ValueError`
+    where the start is no regular solution.
     """
     deadline = deadline or Deadline()
     fibre = Fibre(np.asarray(parameters, complex), np.asarray(start, complex)[None])
     _require_start(family, fibre)
     size = float(np.abs(fibre.parameters).mean()) if len(fibre.parameters) else 1.0
-    ways = _Ways(np.full(family.parameters, size), QUIET, most)
+    projection = projection or Projection(np.ones(family.parameters, dtype=bool), ())
+    sizes = np.where(projection.targets, size, 0.0)
+    ways = _Ways(sizes, QUIET, most)
     fibre = _enlarged(family, fibre, ways, rng, deadline)
     if deadline.passed or len(fibre.solutions) > most:
         return GenericSolutions(fibre, None)
     if linear_in is not None:
         return _tested(family, fibre, ways, linear_in, rng, deadline)
-    curve = _CurveOverLine(family, fibre, size, rng, deadline)
+    looked_at = projection.coordinates_of(fibre.solutions)
+    curve = _CurveOverLine(family, fibre, sizes, looked_at, rng, deadline)
     trace = None
     for _ in range(TESTS):
         curve.find_points(rng, deadline)
@@ -100,8 +134,11 @@ def solve_generic(
             break
         trace = curve.trace(deadline)
         if trace is not None and is_linear_trace(trace):
-            fibre = curve.solutions_in(fibre, deadline)
+            fibre, is_whole = curve.solutions_in(fibre, rng, deadline)
+            trace = trace if is_whole else None
             break
+    if not projection.tells_apart(fibre.solutions, looked_at):
+        trace = None
     return GenericSolutions(fibre, trace)
 
 
@@ -133,8 +170,8 @@ def _require_start(family: Family, fibre: Fibre) -> None:
 
 @dataclass(frozen=True, eq=False)
 class _Ways:
-    """Closed ways on which parameters move by about their ``sizes`` (q,); ``quiet`` of
-    them in a row that bring nothing new are the last, and none is tried once there are
+    """Closed ways on which parameters move by about their ``sizes`` (q,), those of size
+    0 not at all; ``quiet`` of them in a row that bring nothing new are the last, and none is tried once there are
     more than ``most`` solutions."""
 
     sizes: np.ndarray
@@ -143,10 +180,8 @@ class _Ways:
 
     def stops(self, home: np.ndarray, rng: np.random.Generator) -> list[np.ndarray]:
         """The parameters (q,) at the corners of a way from ``home`` (q,)."""
-        stops = [
-            self.sizes * complex_normal(rng, len(home)) for _ in range(CORNERS - 1)
-        ]
-        return [home, *stops, home]
+        drawn = self.sizes * complex_normal(rng, (CORNERS - 1, len(home)))
+        return [home, *np.where(self.sizes > 0.0, drawn, home), home]
 
 
 def _enlarged(
@@ -172,18 +207,26 @@ def _enlarged(
 
 
 def _trace(
-    family: Family, fibre: Fibre, parameter: int, step: float, deadline: Deadline
+    family: Family,
+    fibre: Fibre,
+    parameter: int,
+    step: float,
+    deadline: Deadline,
+    coordinates: Any = slice(None),
 ) -> float | None:
-    """How far the sum of the solutions is from linear in a ``parameter``, by number,
-    that moves by a ``step``, over its change; None where paths were lost."""
-    sums = [fibre.solutions.sum(axis=0)]
+    """How far the sum of the solutions, of some ``coordinates``, is from linear in a
+    ``parameter``, by number, that moves by a ``step``, over its change; None where paths
+    were lost, and where there are none."""
+    if not len(fibre.solutions):
+        return None
+    sums = [fibre.solutions[:, coordinates].sum(axis=0)]
     for shift in (step, -step):
         moved = fibre.parameters.copy()
         moved[parameter] += shift
         paths = follow_paths(family, fibre.solutions, fibre.parameters, moved, deadline)
         if not np.all(paths.is_regular):
             return None
-        sums.append(paths.points.sum(axis=0))
+        sums.append(paths.points[:, coordinates].sum(axis=0))
     here, ahead, behind = sums
     change = max(np.abs(ahead - here).max(), np.abs(behind - here).max(), 1.0)
     return float(np.abs(ahead - 2.0 * here + behind).max() / change)
@@ -200,19 +243,21 @@ class _CurveOverLine:
         self,
         family: Family,
         fibre: Fibre,
-        size: float,
+        sizes: np.ndarray,
+        looked_at: np.ndarray,
         rng: np.random.Generator,
         deadline: Deadline,
     ):
         self.family = _sliced(family)
         self.n = family.n
-        direction = size * complex_normal(rng, family.parameters)
+        self.coordinates = np.append(np.flatnonzero(looked_at), family.n)
+        direction = sizes * complex_normal(rng, family.parameters)
         line = np.concatenate([fibre.parameters, direction])
-        hyperplane = complex_normal(rng, family.n + 2)
+        is_free = np.append(looked_at, [True, True])
+        hyperplane = np.where(is_free, complex_normal(rng, family.n + 2), 0.0)
         self.at_fibre = np.concatenate([line, np.zeros(family.n), [1.0, 0.0]])
         generic = np.concatenate([line, hyperplane])
-        sizes = np.concatenate([np.full(len(line), size), np.ones(len(hyperplane))])
-        self.ways = _Ways(sizes, QUIET_ON_CURVE)
+        self.ways = _Ways(np.concatenate([sizes, sizes, is_free]), QUIET_ON_CURVE)
         starts = np.column_stack([fibre.solutions, np.zeros(len(fibre.solutions))])
         came = follow_paths(self.family, starts, self.at_fibre, generic, deadline)
         self.slice = Fibre(generic, came.regular)
@@ -225,17 +270,34 @@ class _CurveOverLine:
     def trace(self, deadline: Deadline) -> float | None:
         """How far the sum of the points is from linear in s, over its change; None
         where paths were lost."""
-        return _trace(self.family, self.slice, -1, 1.0, deadline)
+        return _trace(self.family, self.slice, -1, 1.0, deadline, self.coordinates)
 
-    def solutions_in(self, fibre: Fibre, deadline: Deadline) -> Fibre:
-        """The fibre at t = 0 with the points of the curve there."""
-        back = self._followed(self.at_fibre, deadline).regular[:, : self.n]
-        both = distinct(np.concatenate([fibre.solutions, back]))
-        return Fibre(fibre.parameters, both)
+    def solutions_in(
+        self, fibre: Fibre, rng: np.random.Generator, deadline: Deadline
+    ) -> tuple[Fibre, bool]:
+        """The fibre at t = 0 with the points of the curve there, and whether they are
+        all that are known.
 
-    def _followed(self, last: np.ndarray, deadline: Deadline) -> Paths:
-        first = self.slice.parameters
-        return follow_paths(self.family, self.slice.solutions, first, last, deadline)
+        Most of the paths run to infinity there. Where one was lost on the way, they are
+        followed from another hyperplane.
+        """
+        known = fibre.solutions
+        for _ in range(TESTS):
+            first, last = self.slice.parameters, self.at_fibre
+            points = self.slice.solutions
+            paths = follow_paths(self.family, points, first, last, deadline, again=0)
+            known = distinct(np.concatenate([known, paths.regular[:, : self.n]]))
+            if not np.any(paths.is_lost & (paths.rests > AT_END)):
+                return Fibre(fibre.parameters, known), True
+            moved = np.where(
+                self.ways.sizes > 0.0, self.ways.stops(first, rng)[1], first
+            )
+            there = follow_paths(self.family, points, first, moved, deadline)
+            if np.all(there.is_regular):
+                self.slice = Fibre(moved, there.points)
+            if deadline.passed:
+                break
+        return Fibre(fibre.parameters, known), False
 
 
 def _sliced(family: Family) -> Family:

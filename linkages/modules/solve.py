@@ -1,0 +1,283 @@
+"""All configurations of a mechanism while some unknowns have given values.
+
+The complex solutions of a generic member are found once for all mechanisms of the same
+equations, and kept in a folder of the user's. From there paths lead to a member with
+the geometry of the mechanism, generic in what is held, and from that to every other
+value of it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from bifurc.limits import current_deadline
+from bifurc.paths.family import Family
+from bifurc.paths.follow import PathEnd, Paths, copy_of, follow_paths
+from bifurc.paths.monodromy import (
+    Fibre,
+    GenericSolutions,
+    Projection,
+    solve_generic,
+)
+from linkages.decisions import is_short_bar
+from linkages.dyads.group import UnfollowedError
+from linkages.modules.equations import ClosureFamily, nearly_real
+from linkages.modules.skeleton import Skeleton
+from linkages.structure.structure import Structure
+
+SEED = 28  # of the generic member from which paths begin
+MOST_SOLUTIONS = 200  # complex ones of a generic member
+ATTEMPTS = 4  # generic members from which paths begin
+ROUNDING = 1e-12  # of a length: it is none
+CACHE = "BIFURC_CACHE"  # the variable that names the folder of generic solutions
+
+
+class Module:
+    """The mechanism of a ``full`` structure while the unknowns ``held``, by number, have
+    given values.
+
+    Raises `UnfollowedError` where it is not known that all configurations are found.
+    """
+
+    def __init__(self, full: Structure, held: tuple[int, ...] = ()):
+        self.skeleton = Skeleton.of(full, held)
+        own = tuple(self.skeleton.held(column) for column in held)
+        if None in own:
+            raise UnfollowedError("what is held is in no chain")
+        self.held = dict(zip(held, own, strict=True))
+        try:
+            self.family = ClosureFamily(self.skeleton.structure, own)
+        except ValueError as error:
+            raise UnfollowedError(str(error)) from error
+
+    @cached_property
+    def generic(self) -> GenericSolutions:
+        """The solutions of a generic member of the family."""
+        generic = generic_solutions(self.family)
+        if not generic.are_all:
+            raise UnfollowedError("complex configurations may be missing")
+        return generic
+
+    @property
+    def count(self) -> int:
+        """How many complex configurations there are for generic lengths: what a plane
+        through two points of it mirrors is counted once."""
+        return self.generic.count // 2**self._mirrored
+
+    @property
+    def _mirrored(self) -> int:
+        """How many points stay in a plane, on one side of a line in it."""
+        points = self.skeleton.structure.free_points
+        return sum(
+            len(one.directions) == 2 and -one.limits[1, 0] != one.limits[1, 1]
+            for one in points
+        )
+
+    @cached_property
+    def _start(self) -> Fibre:
+        """The solutions with the geometry of the mechanism, at generic values of what
+        is held."""
+        fibre = self.generic.fibre
+        rng = np.random.default_rng(SEED)
+        last = self.family.member(dict.fromkeys(self.held.values(), 0.0))
+        for column in self.held.values():
+            block = self.family.parameters.blocks["held", column]
+            last[block] = nearly_real(rng, block.stop - block.start)
+        if not self.held:
+            return fibre
+        paths = self._followed(fibre, last)
+        return Fibre(last, paths.regular)
+
+    def configurations(self, values: Mapping[int, float]) -> np.ndarray:
+        """All real configurations (k, n), in the unknowns of the full structure, where
+        the held ones have these ``values``, angles between -pi and pi."""
+        own = {self.held[column]: value for column, value in values.items()}
+        paths = self._followed(self._start, self.family.member(own))
+        points = self.family.points(self._real_ends(paths))
+        for column, value in own.items():
+            points[:, column] = value
+        full = [self.skeleton.unknowns(point) for point in points]
+        rows = np.array(full).reshape(-1, len(self.skeleton.full.unknowns))
+        for column, value in values.items():
+            rows[:, column] = value
+        return rows
+
+    def _real_ends(self, paths: Paths) -> np.ndarray:
+        """The ends (k, n) that are real: each is its own conjugate.
+
+        Raises `UnfollowedError` unless the conjugate of each end is one of them.
+        """
+        ends = paths.regular
+        count = len(ends)
+        conjugates = self.family.conjugates(ends)
+        partners = copy_of(np.concatenate([ends, conjugates]))[count:]
+        if np.any(partners >= count):
+            raise UnfollowedError("a configuration has no conjugate one")
+        real: np.ndarray = ends[partners == np.arange(count)]
+        return real
+
+    def _followed(self, start: Fibre, last: np.ndarray) -> Paths:
+        """The paths to a member; where one is lost, from another generic one."""
+        family, deadline = self.family.family, current_deadline()
+        rng = np.random.default_rng(SEED)
+        for _ in range(ATTEMPTS):
+            paths = follow_paths(
+                family, start.solutions, start.parameters, last, deadline
+            )
+            if not np.any(paths.is_lost) or deadline.passed:
+                break
+            start = self._elsewhere(start, rng)
+        if np.any(paths.is_lost):
+            raise UnfollowedError(f"paths were lost: {', '.join(paths.reasons())}")
+        if np.any(paths.ends == PathEnd.SINGULAR):
+            raise UnfollowedError("some configurations are singular or move")
+        if np.any(paths.ends == PathEnd.AT_INFINITY):
+            _require_no_short_length(self.skeleton.structure)
+        return paths
+
+    def _elsewhere(self, start: Fibre, rng: np.random.Generator) -> Fibre:
+        """The solutions of another member that differs where the given one is generic:
+        in all parameters, or else in what is held."""
+        drawn = self.family.generic_parameters(rng)
+        is_first = start.parameters is self.generic.fibre.parameters
+        if not self.held or is_first:
+            moved = drawn
+        else:
+            moved = start.parameters.copy()
+            for column in self.held.values():
+                block = self.family.parameters.blocks["held", column]
+                moved[block] = drawn[block]
+        family, deadline = self.family.family, current_deadline()
+        paths = follow_paths(family, start.solutions, start.parameters, moved, deadline)
+        if not np.all(paths.is_regular):
+            return start
+        return Fibre(moved, paths.points)
+
+
+def _require_no_short_length(structure: Structure) -> None:
+    """Raise `UnfollowedError` where paths may come back that seem to end at infinity."""
+    points = [
+        variable.motion.point / structure.unit
+        for variable in structure.mechanism.variables
+        if variable.motion.is_turn
+    ]
+    places = [
+        place / structure.unit
+        for closure in structure.closures
+        for place in (closure.first, closure.second)
+    ]
+    rows = np.array(points + places)
+    gaps = np.linalg.norm(rows[:, None] - rows[None], axis=2)
+    gaps = gaps[gaps > ROUNDING]
+    if len(gaps) and is_short_bar(float((gaps.min() / gaps.max()) ** 2)):
+        raise UnfollowedError("a length is so short that paths seem to end at infinity")
+
+
+# --- generic solutions ----------------------------------------------------------------
+
+_known: dict[str, GenericSolutions] = {}
+
+
+def generic_solutions(family: ClosureFamily) -> GenericSolutions:
+    """Those of one generic member: known, read from the folder of the user, or found.
+
+    Raises `UnfollowedError` where it moves, and where the time is over.
+    """
+    name = _name(family.family)
+    if name not in _known:
+        kept = _read(name, family.family)
+        if kept is None:
+            kept = _found(family)
+            _write(name, kept)
+        _known[name] = kept
+    return _known[name]
+
+
+def _found(family: ClosureFamily) -> GenericSolutions:
+    """By monodromy, from a few generic members until none is missing."""
+    deadline = current_deadline()
+    projection = Projection(family.are_targets, tuple(family.columns.values()))
+    for attempt in range(ATTEMPTS):
+        rng = np.random.default_rng(SEED + attempt)
+        start, parameters = family.generic_member(rng)
+        if not family.family.is_regular(start, parameters):
+            raise UnfollowedError("it moves, or more holds it than has to")
+        generic = solve_generic(
+            family.family,
+            start,
+            parameters,
+            rng,
+            deadline,
+            MOST_SOLUTIONS,
+            projection=projection,
+        )
+        if generic.are_all or generic.count > MOST_SOLUTIONS or deadline.passed:
+            break
+    if deadline.passed:
+        raise UnfollowedError("out of time")
+    return generic
+
+
+def _name(family: Family) -> str:
+    """What equations are called: the same have the same name."""
+    nodes, outputs = family.tape.nodes()
+    return hashlib.sha256(repr((nodes, outputs, family.n)).encode()).hexdigest()[:32]
+
+
+@dataclass(frozen=True)
+class _Folder:
+    """Where generic solutions are kept."""
+
+    path: Path
+
+    @staticmethod
+    def of_user() -> _Folder:
+        home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+        return _Folder(Path(os.environ.get(CACHE) or Path(home) / "bifurc"))
+
+    def file(self, name: str) -> Path:
+        return self.path / f"{name}.npz"
+
+
+def _read(name: str, family: Family) -> GenericSolutions | None:
+    """The solutions that are kept; None where there are none, or where they are not
+    solutions of these equations."""
+    try:
+        with np.load(_Folder.of_user().file(name)) as kept:
+            fibre = Fibre(kept["parameters"], kept["solutions"])
+            trace = float(kept["trace"])
+    except (OSError, ValueError, KeyError):
+        return None
+    fits = fibre.parameters.shape == (family.parameters,)
+    fits = fits and fibre.solutions.ndim == 2 and fibre.solutions.shape[1] == family.n
+    if not fits or not len(fibre.solutions):
+        return None
+    here = follow_paths(family, fibre.solutions, fibre.parameters, fibre.parameters)
+    are_all = np.all(here.is_regular) and np.all(here.solves_all)
+    return GenericSolutions(fibre, trace) if are_all else None
+
+
+def _write(name: str, generic: GenericSolutions) -> None:
+    """Keep solutions, if the folder can be written."""
+    if not generic.are_all:
+        return
+    file = _Folder.of_user().file(name)
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        part = file.with_suffix(f".{os.getpid()}.npz")
+        np.savez(
+            part,
+            parameters=generic.fibre.parameters,
+            solutions=generic.fibre.solutions,
+            trace=generic.trace,
+        )
+        part.replace(file)
+    except OSError:
+        return
