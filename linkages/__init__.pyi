@@ -16,6 +16,8 @@ from .mechanisms.joint import Joint as Joint
 from .mechanisms.joint import JointKind as JointKind
 from .mechanisms.mechanism import Mechanism as Mechanism
 from .mechanisms.subject import mechanism_of as mechanism_of
+from .parameters.chart import chart as chart
+from .parameters.file_family import family_of_file as family_of_file
 from .parameters.followed import follow_points as follow_points
 from .parameters.members import Members as Members
 from .parameters.special import special_values as special_values

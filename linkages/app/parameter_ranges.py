@@ -31,9 +31,11 @@ class ChosenMembers(NamedTuple):
     refusals: dict[str, str]
 
 
-def choose_members(source: str, texts: Sequence[str], most: int) -> ChosenMembers:
+def choose_members(
+    source: str, texts: Sequence[str], most: int, least: int = 1
+) -> ChosenMembers:
     """The members of the family called ``source``: "key=value" is a parameter, "key=low:high"
-    or "key" a free one, of which there may be ``most``, from its value on the page of the
+    or "key" a free one, of which there are from ``least`` to ``most``, from its value on the page of the
     family or from the middle. Angles are in degrees.
 
     The parameters of a file are its numbers. Raises `CommandError`, and as
@@ -42,7 +44,7 @@ def choose_members(source: str, texts: Sequence[str], most: int) -> ChosenMember
     family = _family(source)
     fixed = [text for text in texts if "=" in text and ":" not in text]
     free = [text for text in texts if text not in fixed]
-    _require_count(free, most, [one.name for one in family.parameters])
+    _require_count(free, least, most, [one.name for one in family.parameters])
     values = family.complete(read_parameters(family.parameters, fixed))
     ranges = _ranges(family, free)
     for name, (low, high) in ranges.items():
@@ -69,7 +71,7 @@ def choose_equations(path: str, texts: Sequence[str]) -> EquationMembers:
     free = [text for text in texts if ":" in text or "=" not in text]
     values = read_constants([text for text in texts if text not in free])
     system = read_equations(path, values)
-    _require_count(free, 2, list(system.values))
+    _require_count(free, 1, 2, list(system.values))
     bounds: dict[str, tuple[float, float]] = {}
     for text in free:
         name, _, span = text.partition("=")
@@ -85,12 +87,16 @@ def choose_equations(path: str, texts: Sequence[str]) -> EquationMembers:
     return EquationMembers(path, values, bounds)
 
 
-def _require_count(free: Sequence[str], most: int, names: Sequence[str]) -> None:
+def _require_count(
+    free: Sequence[str], least: int, most: int, names: Sequence[str]
+) -> None:
     """Raise `CommandError` unless as many parameters are free as may be, out of those of
     the ``names``."""
-    if 1 <= len(free) <= most:
+    if least <= len(free) <= most:
         return
-    how_many = "one parameter is" if most == 1 else f"1 to {most} parameters are"
+    how_many = f"{least} to {most} parameters are"
+    if least == most:
+        how_many = "one parameter is" if most == 1 else f"{most} parameters are"
     example = f", as --param {names[0]}=low:high," if names else ""
     raise CommandError(
         f"--param: {len(free)} parameters are free, and {how_many} to be{example} out of "

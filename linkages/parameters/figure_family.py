@@ -222,6 +222,18 @@ class BarFamily(FigureFamily):
             constants[_over(name)] = 1 / mpmath.hypot(*sides)
         return constants
 
+    def _places_of_ends(
+        self, body: str, values: Mapping[str, Number]
+    ) -> dict[str, _Place]:
+        """Where the ends of a bar are on it: its start where it is drawn."""
+        bar = self.pieces[body]
+        start, end = [_Place(z.real, z.imag) for z in self._ends(bar)]
+        over = values.get(_over(body))
+        if over is None:
+            over = 1.0 / abs(complex(end.x - start.x, end.y - start.y))
+        moved = start.beside(end, _Place(values[body] * over, 0.0))
+        return {bar.start: start, bar.end: moved}
+
     def _places_on(self, body: str, values: Mapping[str, Number]) -> dict[str, _Place]:
         """Where the points of a body are on it."""
         places = {}
@@ -234,13 +246,7 @@ class BarFamily(FigureFamily):
                 )
                 places[name] = _Place(x, y)
         else:
-            bar = self.pieces[body]
-            start, end = [_Place(z.real, z.imag) for z in self._ends(bar)]
-            over = values.get(_over(body))
-            if over is None:
-                over = 1.0 / abs(complex(end.x - start.x, end.y - start.y))
-            moved = start.beside(end, _Place(values[body] * over, 0.0))
-            places = {bar.start: start, bar.end: moved}
+            places = self._places_of_ends(body, values)
         for name, one in self.figure.on_pieces.items():
             is_new = name in self.bodies[body] and name not in places
             if is_new and one.start in places and one.end in places:

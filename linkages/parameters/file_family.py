@@ -16,6 +16,17 @@ def family_of_file(path: Path | str) -> Entry | MechanismFamily:
     """The family of the linkage or the mechanism in a file: by the entries of its table, by
     the lengths of its bars or the angles of its arcs, by the coordinates of its joints
     elsewhere. Raises `LinkageFileError`.
+
+    >>> import linkages
+    >>> from pathlib import Path
+    >>> lines = ['fixed = ["A", "D"]', 'bars = [["A", "B", 1], ["B", "C"], ["C", "D"]]']
+    >>> lines += ["[points]", "A = [0, 0]", "B = [0, 1]", "C = [2, 2]", "D = [3, 0]"]
+    >>> _ = Path("mine.toml").write_text("\\n".join(lines))
+    >>> family = linkages.family_of_file("mine.toml")
+    >>> [parameter.name for parameter in family.parameters][:3]
+    ['A-B', 'B-C', 'C-D']
+    >>> linkages.map_linkage(family.build(**{"A-B": 0.5})).components
+    2
     """
     linkage = load(path)
     if isinstance(linkage, Linkage):

@@ -11,12 +11,10 @@ Between members with different maps and no such value, further ones are mapped.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import partial
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
@@ -24,21 +22,16 @@ from bifurc import torus
 from bifurc.atlas import Atlas
 from bifurc.decisions import is_null, is_same_point, is_start_solved
 from bifurc.equations.expression_problem import TapeProblem
-from bifurc.following.follow import FollowedPoint, FollowError, follow_singular_point
 from bifurc.following.rest_problem import RestProblem, rest_problems
 from bifurc.following.singular_problem import SingularPointProblem
 from bifurc.limits import CutOff, Deadline, current_deadline, cut_off_after, until
 from bifurc.numerics.null_spaces import null_spaces
-from bifurc.numerics.singular_values import singular_values
 from bifurc.parametrised import ParametrisedProblem
 from bifurc.seeding import start_region
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
-from linkages.labels import FormLabels
-from linkages.mapping import map_linkage
+from linkages.parameters.member_search import MapShape, MemberSearch, TimeIsOver
 from linkages.parameters.members import Members
-from linkages.subject import subject_at
-from linkages.values import GeometryError
 
 MEMBERS = 24  # that are mapped over the range at first
 LOOKED_AT = 3  # every one of so many of them is looked at more closely
@@ -47,10 +40,7 @@ OFF_CENTRE, OFF_END = 0.618, 0.02
 HALVINGS = 12  # of an interval whose ends have different maps
 BESIDE = 1e-3  # of the range, or less: how far from a value maps are compared
 REST_REACH = 1.5  # of their spacing: so far from a member a rest is looked for
-NULLITY = 2  # at a crossing of two curves
 NEARBY = 1e-4  # rad: beside a special value points move with the root of a rounding
-PLACES = 60  # of a form, of which one is nearest to losing rank
-SAMPLES = 400  # of a followed curve, by which another start on it is known
 STARTS, SEED = 96, 0  # from which motions at one value alone are looked for
 ROUNDING = 4e-16  # of a place, that doubles leave
 
@@ -77,19 +67,6 @@ WORDS = {
     ChangeKind.MOTION: "at this value alone there is a motion",
     ChangeKind.BETWEEN_MAPS: "maps beside it differ, for a reason that was not found",
 }
-
-
-class MapShape(NamedTuple):
-    """What two maps have in common that are alike: the numbers of forms, of components, of
-    bifurcations, of other singular points and of surfaces, and the joints that stand still
-    in each form."""
-
-    forms: int
-    components: int
-    bifurcations: int
-    other_points: int
-    surfaces: int
-    at_rest: tuple[tuple[str, ...], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,24 +110,15 @@ class MapChange:
         )
 
 
-class _TimeIsOver(Exception):
-    """The deadline of a search has passed."""
-
-
 @dataclass
-class _SpecialSearch:
+class _SpecialSearch(MemberSearch):
     """The changes found so far, the ``shapes`` of the maps that were made, by their
-    values, the maps ``at`` changes and how far from these others were made, and the curves
-    of singular points that are there over a range."""
+    values, the maps ``at`` changes and how far from these others were made."""
 
-    members: Members
-    settings: SearchSettings
-    deadline: Deadline | None
     shapes: dict[float, MapShape | None] = field(default_factory=dict)
     changes: list[MapChange] = field(default_factory=list)
     at: dict[float, Atlas | None] = field(default_factory=dict)
     beside: dict[float, float] = field(default_factory=dict)
-    curves: list[FollowedPoint] = field(default_factory=list)
 
     @property
     def range(self) -> tuple[float, float]:
@@ -178,22 +146,14 @@ class _SpecialSearch:
         ``closely`` only from near misses."""
         if value in self.shapes:
             return
-        atlas = self._map(value)
-        self.shapes[value] = self._shape(atlas)
+        atlas = self.map_at(np.array([value]))
+        self.shapes[value] = self.shape(atlas)
         if atlas is None:
             return
-        for event in atlas.near_misses:
-            self._from(event.u, value)
+        p = np.array([value])
+        for u, nullity in self.starts(atlas, closely):
+            self._from(u, p, nullity)
         self._from_forms(atlas, value)
-        if not closely:
-            return
-        for u in _weakest_places(atlas):
-            self._from(u, value)
-        for point in atlas.points:
-            self._from(point.point.u, value, self.members.problem.n - point.point.rank)
-
-    def _shape(self, atlas: Atlas | None) -> MapShape | None:
-        return None if atlas is None else shape_of(atlas, self.members.joint)
 
     def look_beside(self, change: MapChange) -> None:
         """Map the member at a change, and those on both sides of it."""
@@ -204,7 +164,7 @@ class _SpecialSearch:
         others = [one.value for one in self.changes if one.value != value]
         room = min(abs(value - other) for other in (*others, low, high))
         step = max(min(BESIDE * (high - low), room / 3.0), 2.0 * change.error)
-        self.at[value] = self._map(value)
+        self.at[value] = self.map_at(np.array([value]))
         for other in (value - step, value + step):
             self.look_at(other)
         self.beside[value] = step
@@ -218,7 +178,7 @@ class _SpecialSearch:
         return replace(
             change,
             before=None if step is None else self.shapes[value - step],
-            at=self._shape(atlas),
+            at=self.shape(atlas),
             after=None if step is None else self.shapes[value + step],
             point=None if atlas is None else self._kind_at(atlas, change),
         )
@@ -237,55 +197,23 @@ class _SpecialSearch:
                 return point.kind
         return None
 
-    def _map(self, value: float) -> Atlas | None:
-        """The map at a value; None where there is no member."""
-        if self.deadline is not None and self.deadline.passed:
-            raise _TimeIsOver
-        try:
-            linkage = self.members.load(np.array([value]))
-        except GeometryError:
-            return None
-        atlas = map_linkage(linkage, settings=self.settings)
-        if atlas.provenance.interrupted:
-            raise KeyboardInterrupt
-        if self.deadline is not None and self.deadline.passed:
-            raise _TimeIsOver  # what was found so far is not the member's map
-        return atlas
-
-    def _from(self, u: np.ndarray, value: float, nullity: int = NULLITY) -> None:
-        """Solve the equations of a bifurcation from a configuration (n,) of a member."""
-        p = np.array([value])
-        (start,) = self.members.in_equations(u[None], p)
-        problem = SingularPointProblem(self.members.problem, start, p, nullity)
-        points, gaps = problem.project(problem.start[None])
-        (place,), (parameters,) = problem.place(points)
-        found = float(parameters[0])
-        low, high = self.range
-        if not (is_start_solved(float(gaps[0])) and low < found < high):
+    def _from(self, u: np.ndarray, p: np.ndarray, nullity: int) -> None:
+        """Solve the equations of a singular point from a configuration (n,) of a member;
+        one that is there over a range is followed, and where the parameter turns back the
+        map changes."""
+        solved = self.solve(u, p, nullity)
+        if solved is None:
             return
-        sigma, _ = null_spaces(problem, points)
+        problem, value = solved.problem, float(solved.p[0])
+        sigma, _ = null_spaces(problem, solved.point[None])
         if not np.any(is_null(sigma[0])):
             size = float(problem.sizes[-1])
-            error = ROUNDING * (size + abs(found)) / float(sigma[0, -1])
-            kind = ChangeKind.SINGULAR
-            change = MapChange(found, error, kind, place)
-            self._add(replace(change, problem=problem, solution=points[0]))
+            error = ROUNDING * (size + abs(value)) / float(sigma[0, -1])
+            change = MapChange(value, error, ChangeKind.SINGULAR, solved.u)
+            self._add(replace(change, problem=problem, solution=solved.point))
             return
-        self._follow(place, parameters, nullity)
-
-    def _follow(self, u: np.ndarray, p: np.ndarray, nullity: int) -> None:
-        """Follow a bifurcation that is there over a range; where the parameter turns back,
-        the map changes."""
-        if any(_runs_through(curve, u, p) for curve in self.curves):
-            return
-        try:
-            curve = follow_singular_point(
-                self.members.problem, u, p, nullity, deadline=self.deadline
-            )
-        except FollowError:
-            return
-        self.curves.append(curve)
-        for place in curve.places:
+        curve = self.follow(solved)
+        for place in () if curve is None else curve.places:
             value, kind = float(place.p[0]), ChangeKind.BIRTH
             self._add(MapChange(value, place.error, kind, place.u))
 
@@ -346,9 +274,9 @@ class _SpecialSearch:
         known = [*self.at, *(one.value for one in self.changes)]
         if any(is_same_point(abs(value - other), high - low) for other in known):
             return
-        atlas = self.at[value] = self._map(value)
+        atlas = self.at[value] = self.map_at(np.array([value]))
         beside = sorted(self.shapes, key=lambda one: abs(one - value))[:2]
-        if self._shape(atlas) not in [self.shapes[one] for one in beside]:
+        if self.shape(atlas) not in [self.shapes[one] for one in beside]:
             self._add(MapChange(value, error, ChangeKind.MOTION, None))
 
     def _add(self, change: MapChange) -> None:
@@ -400,7 +328,7 @@ def special_values(
         with until(end), cut_off_after(end):
             search.look_over_range()
             _settle(search)
-    except (KeyboardInterrupt, _TimeIsOver, CutOff):
+    except (KeyboardInterrupt, TimeIsOver, CutOff):
         is_whole = False
     changes = sorted(search.changes, key=lambda change: change.value)
     return SpecialValues(tuple(map(search.compared, changes)), is_whole, search.apart)
@@ -447,43 +375,3 @@ def _is_held(jacobian: np.ndarray) -> bool:
         is_zero = [is_null(float(one), float(sigma[0])) for one in sigma]
         ranks.append(is_zero.count(False))
     return bool(ranks[1] == ranks[0] + 1 < jacobian.shape[1])
-
-
-def shape_of(atlas: Atlas, joint: Callable[[int], str]) -> MapShape:
-    """What maps are compared by; ``joint`` names that of an unknown, by index."""
-    at_rest = sorted(
-        tuple(joint(number - 1) for number in FormLabels.of(form).inactive_joints)
-        for form in atlas.forms
-    )
-    return MapShape(
-        len(atlas.forms),
-        atlas.components,
-        len(atlas.bifurcations),
-        len(atlas.points) - len(atlas.bifurcations),
-        len(atlas.surfaces),
-        tuple(at_rest),
-    )
-
-
-def _weakest_places(atlas: Atlas) -> list[np.ndarray]:
-    """Configurations (n,) from which a bifurcation is looked for beside near misses: the
-    place of each form that is nearest to losing rank, as on an oval that shrinks to a
-    point, and one on each near motion, from which forms come."""
-    places = []
-    if atlas.forms:
-        closure = subject_at(atlas).closure
-        for form in atlas.forms:
-            samples = form.branch.sample(PLACES)
-            sigma = singular_values(closure, samples)[:, closure.n - NULLITY]
-            places.append(samples[int(np.argmin(sigma))])
-    return places + [motion.sample for motion in atlas.near_motions]
-
-
-def _runs_through(curve: FollowedPoint, u: np.ndarray, p: np.ndarray) -> bool:
-    """Whether a followed curve passes ``u`` (n,) at ``p`` (q,), whatever the null
-    space."""
-    point = np.concatenate([u, p]) / curve.problem.sizes
-    samples = curve.branch.sample(SAMPLES)[:, : len(point)]
-    periods = curve.problem.domain.periods[: len(point)]
-    gaps = np.linalg.norm(torus.difference(samples, point, periods), axis=1)
-    return bool(gaps.min() <= curve.branch.length / SAMPLES)

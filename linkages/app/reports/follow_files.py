@@ -36,17 +36,23 @@ def write_followed(
     out: Path,
 ) -> None:
     """Write what became of points to a folder: the text, JSON, and a figure."""
-    figure = draw_followed(members, points)
+    write_report("follow", text, document, draw_followed(members, points), out)
+
+
+def write_report(
+    name: str, text: str, document: Mapping[str, object], figure: Figure, out: Path
+) -> None:
+    """Write the text, JSON and figure called ``name`` to a folder."""
+    names = [f"{name}.txt", f"{name}.json", f"{name}.png"]
 
     def write(stage: Path) -> None:
-        (stage / "follow.txt").write_text(text + "\n", encoding="utf-8")
-        (stage / "follow.json").write_text(json.dumps(document) + "\n")
-        figure.savefig(stage / "follow.png", dpi=150)
+        (stage / names[0]).write_text(text + "\n", encoding="utf-8")
+        (stage / names[1]).write_text(json.dumps(document) + "\n")
+        figure.savefig(stage / names[2], dpi=150)
 
     with writing_to(out):
         replace_files(out, write)
-    names = ("follow.txt", "follow.json", "follow.png")
-    say_written([out / name for name in names], out)
+    say_written([out / one for one in names], out)
 
 
 def draw_followed(members: FreeParameters, points: Sequence[Followed]) -> Figure:
@@ -89,13 +95,13 @@ def _draw_unknown(
         colour = COLOURS[k % len(COLOURS)]
         style = STYLES[k % len(STYLES)]  # curves may lie on each other
         for along, look in ((s, style), (births, "o")):
-            values = _in_unit(parameter, curve.parameters(along)[:, 0])
+            values = in_unit(parameter, curve.parameters(along)[:, 0])
             shown = _as_shown(curve.unknowns(along)[:, number] - turns, period)
             axes.plot(values, shown, look, color=colour, lw=1.6, ms=5)
         axes.plot([], [], style, color=colour, label=name)
     _label_unknown(axes, members, number)
     if number >= members.problem.n - COLUMNS:
-        axes.set_xlabel(_label(parameter))
+        axes.set_xlabel(label_of(parameter))
         axes.tick_params(labelbottom=True)
     axes.grid(alpha=0.3)
 
@@ -132,15 +138,15 @@ def _draw_plane(
     """The curves in the plane of two parameters."""
     for number, (name, curve) in enumerate(curves):
         s = np.linspace(0.0, curve.branch.length, SAMPLES)
-        x, y = (_in_unit(one, curve.parameters(s)[:, k]) for k, one in enumerate(free))
+        x, y = (in_unit(one, curve.parameters(s)[:, k]) for k, one in enumerate(free))
         axes.plot(x, y, color=COLOURS[number % len(COLOURS)], lw=1.6, label=name)
         for place in curve.places:
             first, second = (
-                float(_in_unit(one, place.p[k])) for k, one in enumerate(free)
+                float(in_unit(one, place.p[k])) for k, one in enumerate(free)
             )
             axes.plot(first, second, "o", color=COLOURS[number % len(COLOURS)], ms=5)
             _label_place(axes, place, (first, second))
-    axes.set(xlabel=_label(free[0]), ylabel=_label(free[1]))
+    axes.set(xlabel=label_of(free[0]), ylabel=label_of(free[1]))
     axes.grid(alpha=0.3)
     if curves:
         axes.legend(frameon=False)
@@ -158,11 +164,13 @@ def _label_place(axes: Axes, place: FollowedPlace, at: tuple[float, float]) -> N
         )
 
 
-def _in_unit(parameter: Parameter, values: np.ndarray) -> np.ndarray:
+def in_unit(parameter: Parameter, values: np.ndarray) -> np.ndarray:
+    """Values of a parameter as they are drawn, angles in degrees."""
     is_angle = parameter.kind is ParameterKind.ANGLE
     return np.degrees(values) if is_angle else np.asarray(values)
 
 
-def _label(parameter: Parameter) -> str:
+def label_of(parameter: Parameter) -> str:
+    """What stands at the axis of a parameter."""
     is_angle = parameter.kind is ParameterKind.ANGLE
     return f"{parameter.name} (deg)" if is_angle else parameter.name

@@ -248,19 +248,25 @@ class _FormReach:
         if turns and not cuts:
             return JointReach(one.label, one.is_angle, turns=abs(turns))
         ends = [self._at_cut(one, cut) for cut in cuts]
-        length = self.branch.length
-        for s in self.branch.turning_points(one.column).tolist():
-            for at in (s, s + length) if self.branch.closed else (s,):
-                if begin < at < end:
-                    ends.append(self._turning(one, at))
+        ends += self._turnings(one, begin, end)
         ends.sort(key=lambda each: each.value)
         low, high = ends[0], ends[-1]
-        middle = np.array([0.5 * (low.value + high.value)])
-        period = np.array([FULL_TURN if one.is_angle else np.inf])
-        away = float(turns_of_middles(middle, period)[0])
-        if one.is_angle and away:
+        if one.is_angle:
+            middle = np.array([0.5 * (low.value + high.value)])
+            away = float(turns_of_middles(middle, np.array([FULL_TURN]))[0])
             low, high = (_turned_back(each, away) for each in (low, high))
         return JointReach(one.label, one.is_angle, low, high)
+
+    def _turnings(self, one: _Variable, begin: float, end: float) -> list[RangeEnd]:
+        """Where a variable turns back between two arclengths, of which the last may be
+        beyond the end of a closed form."""
+        laps = (0.0, self.branch.length) if self.branch.closed else (0.0,)
+        return [
+            self._turning(one, s + lap)
+            for s in self.branch.turning_points(one.column).tolist()
+            for lap in laps
+            if begin < s + lap < end
+        ]
 
     def _value(self, one: _Variable, s: float) -> float:
         # beyond the end of a closed form it goes on by whole turns

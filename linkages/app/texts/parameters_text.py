@@ -17,9 +17,10 @@ from bifurc.torus import wrap
 from linkages.app.texts.numbers import in_degrees
 from linkages.entry import Parameter, ParameterKind
 from linkages.parameters.followed import Followed, MemberComparison
+from linkages.parameters.member_search import MapShape
 from linkages.parameters.members import FreeParameters, Members
 from linkages.parameters.relations import PreciseChange
-from linkages.parameters.special import MapChange, MapShape, SpecialValues
+from linkages.parameters.special import MapChange, SpecialValues
 
 SAMPLES = 200  # of a curve in JSON
 MOST_DIGITS = 15
@@ -34,7 +35,7 @@ def describe_followed(
 ) -> str:
     """What became of each point; ``refusals``: why there are no members beyond the range
     of a parameter."""
-    lines = [_headline(members)]
+    lines = [headline(members)]
     lines += [
         f"beyond the range of {name} there are no members: {reason}"
         for name, reason in refusals.items()
@@ -46,10 +47,11 @@ def describe_followed(
     return "\n".join(lines)
 
 
-def _headline(members: FreeParameters) -> str:
+def headline(members: FreeParameters) -> str:
+    """What has free parameters, and their ranges."""
     spans = [
-        f"{one.name} from {_shown(one, members.ranges[one.name][0])} to "
-        f"{_shown(one, members.ranges[one.name][1])}"
+        f"{one.name} from {shown(one, members.ranges[one.name][0])} to "
+        f"{shown(one, members.ranges[one.name][1])}"
         for one in members.free
     ]
     return f"{members.title}: {' and '.join(spans)}"
@@ -83,7 +85,7 @@ def _course(members: FreeParameters, curve: FollowedPoint) -> str:
         return "a closed curve"
     ends = [
         ", ".join(
-            f"{one.name} {_shown(one, value)}"
+            f"{one.name} {shown(one, value)}"
             for one, value in zip(members.free, curve.parameters(s), strict=True)
         )
         for s in (0.0, curve.branch.length)
@@ -128,10 +130,10 @@ def _angles(u: np.ndarray) -> str:
 
 def typed(parameter: Parameter, value: float) -> str:
     """A value of a parameter as it is given to a command, with all digits."""
-    return _shown(parameter, value, MOST_DIGITS).removesuffix(" deg")
+    return shown(parameter, value, MOST_DIGITS).removesuffix(" deg")
 
 
-def _shown(parameter: Parameter, value: float, digits: int = 6) -> str:
+def shown(parameter: Parameter, value: float, digits: int = 6) -> str:
     """A value of a parameter, angles in degrees."""
     if parameter.kind is ParameterKind.ANGLE:
         return f"{math.degrees(value):.{digits}g} deg"
@@ -141,10 +143,10 @@ def _shown(parameter: Parameter, value: float, digits: int = 6) -> str:
 def _known(parameter: Parameter, value: float, error: float) -> str:
     """A value with the digits that are known, 0 where that is all there is to it."""
     if abs(value) <= error:
-        return _shown(parameter, 0.0)
+        return shown(parameter, 0.0)
     size = abs(value)
     digits = int(-math.log10(max(error / size, 10.0**-MOST_DIGITS)))
-    return _shown(parameter, value, max(digits, 1))
+    return shown(parameter, value, max(digits, 1))
 
 
 def followed_document(
@@ -177,8 +179,8 @@ def followed_document(
             {
                 "point": point.point.name,
                 "kind": place.kind.value,
-                "parameters": _row(members.ranges, place.p),
-                "unknowns": _row(names, place.u),
+                "parameters": row_of(members.ranges, place.p),
+                "unknowns": row_of(names, place.u),
                 "error": place.error,
             }
             for place in curve.places
@@ -192,9 +194,10 @@ def _columns(
     return {name: values[:, k].tolist() for k, name in enumerate(names)}
 
 
-def _row(
+def row_of(
     names: Sequence[str] | Mapping[str, object], values: np.ndarray
 ) -> dict[str, float]:
+    """Values (k,) by their names."""
     return dict(zip(names, values.tolist(), strict=True))
 
 
@@ -210,7 +213,7 @@ def describe_changes(
     """The values at which the map changes, and where they were looked for what is known
     of these more exactly."""
     (parameter,) = members.free
-    lines = [_headline(members)]
+    lines = [headline(members)]
     if refusal:
         lines.append(f"beyond that there are no members: {refusal}")
     if not special.is_whole:
@@ -229,8 +232,8 @@ def describe_changes(
             ("there", change.at),
             ("above", change.after),
         ):
-            lines.append(f"  {where}: {_shape_text(shape)}")
-    apart = _shown(parameter, special.apart)
+            lines.append(f"  {where}: {shape_text(shape)}")
+    apart = shown(parameter, special.apart)
     lines += [
         "",
         f"Maps were made at most {apart} apart: a change that is undone within that may be "
@@ -255,7 +258,8 @@ def _relation_text(precise: Sequence[PreciseChange | None]) -> str:
     )
 
 
-def _shape_text(shape: MapShape | None) -> str:
+def shape_text(shape: MapShape | None) -> str:
+    """A map in words."""
     if shape is None:
         return "no member"
     text = (
@@ -291,7 +295,7 @@ def changes_document(
                 "text": change.what,
                 "digits": _digits(change),
                 "error": change.error,
-                "unknowns": None if change.u is None else _row(names, change.u),
+                "unknowns": None if change.u is None else row_of(names, change.u),
                 "before": _shape_row(change.before),
                 "at": _shape_row(change.at),
                 "after": _shape_row(change.after),

@@ -272,7 +272,7 @@ def test_ctrl_c_keeps_what_was_found(monkeypatch):
             return atlas
         return replace(atlas, provenance=replace(atlas.provenance, interrupted=True))
 
-    monkeypatch.setattr("linkages.parameters.special.map_linkage", interrupted)
+    monkeypatch.setattr("linkages.parameters.member_search.map_linkage", interrupted)
     special = special_values(members("bennett", alpha=(0.3, 1.2)))
     assert len(made) == 12
     assert not special.is_whole
