@@ -90,14 +90,17 @@ def _errors_about(path: Path) -> Iterator[None]:
         raise LinkageFileError(path, f"cannot be read: {error.strerror}") from None
 
 
-def read_file(path: Path | str) -> Loop | Mechanism:
+def read_file(path: Path | str, closures: Path | str | None = None) -> Loop | Mechanism:
     """The loop or the mechanism that a file describes; without a name it is called
-    after the file. Raises `LinkageFileError`."""
+    after the file. A file of ``closures`` closes the loops of a robot. Raises
+    `LinkageFileError`."""
     path = Path(path)
     if path.suffix == ATLAS_ENDING:
         reason = "is a map that is made already; bifurc view and bifurc route take it"
         raise LinkageFileError(path, reason)
     known = format_of(path)
+    if closures is not None:
+        return _read_closed(path, Path(closures))
     with _errors_about(path):
         if known is not None and known.read is not None:
             return known.read(path)
@@ -107,6 +110,18 @@ def read_file(path: Path | str) -> Loop | Mechanism:
         from linkages.files.mechanism_file import read_mechanism
 
         return read_mechanism(content, path.stem)
+
+
+def _read_closed(path: Path, closures: Path) -> Mechanism:
+    """The mechanism in a file whose loops are closed by another one."""
+    known = format_of(path)
+    if known is None or known.read_closed is None:
+        reason = f"takes no closures, and {closures} is given; a URDF takes them"
+        raise LinkageFileError(path, reason)
+    with _errors_about(closures):
+        require(closures.is_file(), "closures", quoted(str(closures)), "a file")
+    with _errors_about(path):
+        return known.read_closed(path, closures)
 
 
 def read_content(path: Path) -> Content:

@@ -12,22 +12,24 @@ from linkages.file import ATLAS_ENDING, LinkageFileError, read_file
 from linkages.formats.table import ENDINGS
 from linkages.loop import Loop
 from linkages.networks.entries import NETWORKS
-from linkages.values import GeometryError, check_number
+from linkages.values import GeometryError, check_number, quoted
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
 
-def load(source: str | Path, **parameters: float) -> Linkage | Mechanism:
+def load(
+    source: str | Path, *, closures: str | Path | None = None, **parameters: float
+) -> Linkage | Mechanism:
     """The linkage or the network called ``source`` in the catalogue, or the linkage or
     the mechanism read from a file: TOML, FOLD, CP, SVG, MJCF, SDF, URDF or a CUIK
     world.
 
     ``parameters`` are those of a family, angles in rad, the others at their defaults; a
-    file takes none. Raises `UnknownLinkageError` with the nearest names,
-    `LinkageFileError` for a file that cannot be used, `UnknownParameterError` for a
-    parameter that the family does not have, and `GeometryError` for values that make no
-    linkage.
+    file takes none. ``closures`` is a YAML file that closes the loops of a robot in
+    URDF. Raises `UnknownLinkageError` with the nearest names, `LinkageFileError` for a
+    file that cannot be used, `UnknownParameterError` for a parameter that the family
+    does not have, and `GeometryError` for values that make no linkage.
 
     >>> import linkages
     >>> linkages.load("bennett", a=1.0, alpha=1.5, beta=0.5).loop.n
@@ -41,8 +43,11 @@ def load(source: str | Path, **parameters: float) -> Linkage | Mechanism:
             names = ", ".join(parameters)
             allowed = "left out with a file, which holds the whole geometry"
             raise GeometryError(f"parameters of {source}", names, allowed)
-        content = read_file(source)
+        content = read_file(source, closures)
         return Linkage(content) if isinstance(content, Loop) else content
+    if closures is not None:
+        allowed = "left out with a name of the catalogue"
+        raise GeometryError("closures", quoted(str(closures)), allowed)
     if str(source) in NETWORKS:
         return _load_network(str(source), parameters)
     return _load_entry(str(source), parameters)
@@ -56,7 +61,7 @@ def load_linkage(source: str | Path, **parameters: float) -> Linkage:
     >>> linkages.load_linkage("four-bar", d=3.4).loop.arrays.lengths.tolist()
     [1.0, 2.4, 2.0, 3.4]
     """
-    linkage = load(source, **parameters)
+    linkage = load(source, closures=None, **parameters)
     if not isinstance(linkage, Linkage):
         allowed = "a single loop of revolute joints, given as a table or as axes"
         raise GeometryError(str(source), "a mechanism", allowed)

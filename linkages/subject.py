@@ -288,12 +288,13 @@ class MechanismSubject(Subject):
 
     @property
     def drivers(self) -> list[int]:
-        """The unknowns, by index, of the joint that drives, else of the first that is
-        free, and of those with limits, which every slide has."""
+        """The unknowns, by index, of the joint that drives, else of those with motors or
+        of the first that is free, and of those with limits, which every slide has."""
         free = [one for one in self.mechanism.variables if one.label in self.labels]
         limited = [one for one in free if one.limits or not one.motion.is_turn]
-        driver = self.mechanism.driver
-        drives = [one for one in free if one.label == driver] or free[:1]
+        driver, motors = self.mechanism.driver, self.mechanism.motors
+        drives = [one for one in free if one.label == driver]
+        drives = drives or [one for one in free if one.label in motors] or free[:1]
         labels = {one.label for one in [*drives, *limited]}
         return [k for k, label in enumerate(self.labels) if label in labels]
 

@@ -70,9 +70,7 @@ class CriticalPoints:
         places, along = take(size), take(n)
         patch, patch_of_directions = take(size), take(n)
         share, start = take(2)
-        of_places = [
-            write_linear(writer, take(size), places) for _ in range(factors)
-        ]
+        of_places = [write_linear(writer, take(size), places) for _ in range(factors)]
         of_directions = [write_linear(writer, take(n), along) for _ in range(n)]
         outputs = [
             write_homogeneous(writer, one, places, degree_of(one))

@@ -245,9 +245,7 @@ class CurveEquations:
             return None
         points = tuple(section.points[group == k] for k in np.unique(group))
         together = int(np.count_nonzero(is_open))
-        return IrreducibleCurves(
-            section.plane, points, max(traces.values()), together
-        )
+        return IrreducibleCurves(section.plane, points, max(traces.values()), together)
 
     def curve_through(
         self, point: np.ndarray, rng: np.random.Generator, deadline: Deadline, most: int
@@ -336,9 +334,7 @@ def _affine(paths: Paths) -> Paths:
         return replace(paths, points=paths.points[:, 1:] / paths.points[:, :1])
 
 
-def _written_planes(
-    writer: TapeWriter, places: Sequence[int], first: int
-) -> list[int]:
+def _written_planes(writer: TapeWriter, places: Sequence[int], first: int) -> list[int]:
     """The slots of a linear function of ``places`` less 1, and of another one, with the
     unknowns from ``first`` on as coefficients."""
     size = len(places)

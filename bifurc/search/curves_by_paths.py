@@ -90,9 +90,7 @@ class CountedCurves:
         kind, together = SearchClaim.MAY_SPLIT, self.curves.together
         return [kind.claim(Scope.MOTIONS, None, together=together)]
 
-    def claims(
-        self, parts: PointsOnParts, unlisted: int, outside: int
-    ) -> list[Claim]:
+    def claims(self, parts: PointsOnParts, unlisted: int, outside: int) -> list[Claim]:
         """What is said of the real ``parts``, where so many of the points on them that
         are inside the bounds are ``unlisted``, and so many ``outside`` of bounds that
         were assumed."""

@@ -24,9 +24,11 @@ from bifurc.diagrams.make_diagram import diagram_of, named_points
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
 from bifurc.limits import (
+    CutOff,
     Deadline,
     HeldInterrupt,
     current_deadline,
+    cut_off_after,
     deadline_within,
     made_in_time,
     one_thread,

@@ -177,9 +177,7 @@ class PathAudit:
 
     def _has_no_curves(self) -> bool:
         """Whether it is known, or likely, that there are none."""
-        if self.isolated is None or self.isolated.solutions.has_curves:
-            return False
-        return True
+        return self.isolated is not None and not self.isolated.solutions.has_curves
 
     # --- the problem ------------------------------------------------------------------
 

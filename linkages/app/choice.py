@@ -51,26 +51,33 @@ def require_table(text: str, table: Loop | None) -> Loop:
     return table
 
 
-def choose_linkage(text: str, parameters: Sequence[str] = ()) -> Linkage | Mechanism:
+def choose_linkage(
+    text: str, parameters: Sequence[str] = (), closures: Path | None = None
+) -> Linkage | Mechanism:
     """The linkage called ``text``, or the linkage or mechanism read from the file
     ``text`` if that is one (or ends with .toml).
 
-    ``parameters`` are "key=value", angles in degrees; those of a file are its numbers. Raises `CommandError`,
+    ``parameters`` are "key=value", angles in degrees; those of a file are its numbers.
+    ``closures`` is a file that closes the loops of a robot. Raises `CommandError`,
     `GeometryError`, `UnknownLinkageError` and `LinkageFileError`.
     """
     try:
-        linkage = _loaded(text, parameters)
+        linkage = _loaded(text, parameters, closures)
     except OverflowError:
         raise CommandError(f"{text}: it holds a number that is too large") from None
     _require_size(text, linkage)
     return linkage
 
 
-def _loaded(text: str, parameters: Sequence[str]) -> Linkage | Mechanism:
+def _loaded(
+    text: str, parameters: Sequence[str], closures: Path | None
+) -> Linkage | Mechanism:
     """What is called ``text``, with parameters "key=value", those of a file among its
-    numbers."""
+    numbers, or with a file that closes its loops."""
+    if closures is not None and parameters:
+        raise GeometryError("--param", parameters[0], "left out with --closures")
     if not parameters:
-        return load(text)
+        return load(text, closures=closures)
     if is_linkage_file(text):
         from linkages.parameters.file_family import family_of_file
 
@@ -177,7 +184,8 @@ def choose_held(
 ) -> Linkage | Mechanism:
     """What `choose_linkage` finds, with joints held; what nobody asked for is said on
     standard error. Raises as `choose_linkage` and `hold_joints`."""
-    inputs = hold_joints(text, choose_linkage(text, parameters), hold)
+    linkage = choose_linkage(text, parameters, hold.closures)
+    inputs = hold_joints(text, linkage, hold)
     for note in inputs.notes:
         click.echo(note, err=True)
     return inputs.mechanism

@@ -235,6 +235,7 @@ class HoldOptions:
     ``with_flaps``: what hangs on joints in no closed loop is free. ``part`` is the number
     of one of several mechanisms of a file. ``free_creases``: those of a pattern fold
     either way, however they are assigned.
+    ``closures`` is a file that closes the loops of a robot.
     ``is_modified``: in the rows of a table stand the links before the joints.
     """
 
@@ -244,6 +245,7 @@ class HoldOptions:
     with_flaps: bool = False
     part: int | None = None
     free_creases: bool = False
+    closures: Path | None = None
     is_modified: bool = False
 
     @property
@@ -258,6 +260,8 @@ class HoldOptions:
         given: list[tuple[str, ...]] = [("--lock", lock) for lock in self.locks]
         if self.driver is not None:
             given.append(("--drive", self.driver))
+        if self.closures is not None:
+            given.append(("--closures", str(self.closures)))
         if self.part is not None:
             given.append(("--part", str(self.part)))
         return given + [(flag,) for flag, is_given in flags.items() if is_given]
@@ -313,6 +317,16 @@ HOLD_OPTIONS: dict[str, Option] = {
         "free_creases",
         is_flag=True,
         help="Let mountains and valleys of a crease pattern fold either way.",
+    ),
+    "closures": click.option(
+        "--closures",
+        "closures",
+        type=FILE,
+        metavar="FILE.yaml",
+        help=(
+            "The file that closes the loops of a robot in URDF.  [default: of the same "
+            "name, or robot.yaml, beside it]"
+        ),
     ),
     "is_modified": click.option(
         "--modified-dh",

@@ -18,8 +18,8 @@ def joints_to_hold(mechanism: Mechanism, driver: str) -> dict[str, float]:
     """Variables, by label, with the values in the reference configuration at which they
     are held, so that the variable ``driver`` moves the rest with mobility 1.
 
-    They are the first ones, in the order of the joints, that can be held. Nothing is
-    held where the mobility is 1 already. What moves is seen at a regular configuration,
+    They are the first ones that can be held, those with motors before the others, in the
+    order of the joints. Nothing is held where the mobility is 1 already. What moves is seen at a regular configuration,
     next to the reference configuration where that is singular. Raises `GeometryError` for a driver that is no
     free variable or stands still.
     """
@@ -41,7 +41,9 @@ def joints_to_hold(mechanism: Mechanism, driver: str) -> dict[str, float]:
         allowed = "a joint that moves next to the reference configuration"
         raise GeometryError("drive", quoted(driver), allowed)
     held: dict[str, float] = {}
-    for column, label in enumerate(labels):
+    motors = mechanism.motors
+    columns_in_order = sorted(enumerate(labels), key=lambda one: one[1] not in motors)
+    for column, label in columns_in_order:
         if motions.shape[1] == 1:
             break
         if column == row or _stands_still(motions[column]):

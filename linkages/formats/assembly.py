@@ -58,7 +58,8 @@ class Assembly:
     ``poses`` (4, 4), by body, are a configuration in which the joints fit, or nearly
     so; empty where the file gives none. ``notes`` say what of a file was left out.
     Places are counted from the ``origin`` of the file, and may be off by ``rounding``,
-    where that is more than they are as doubles.
+    where that is more than they are as doubles. ``motors`` are the variables, by their
+    labels in the mechanism, that motors drive.
     Raises `GeometryError` where a joint names a body that is not there, a name is given
     twice, or a coordinate is beyond all measure.
     """
@@ -70,6 +71,7 @@ class Assembly:
     notes: tuple[str, ...] = ()
     origin: Vector = (0.0, 0.0, 0.0)
     rounding: float = 0.0
+    motors: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         _check_names("name of a body", self.bodies)

@@ -9,6 +9,7 @@ Levenberg and Marquardt (Marquardt 1963), the last ones of Gauss and Newton.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -16,6 +17,7 @@ from typing import NamedTuple
 import networkx as nx
 import numpy as np
 
+from linkages.decisions import is_file_nearly_closed
 from linkages.formats.assembly import Assembly, BodyJoint
 from linkages.mechanisms.joint import Fit, JointKind, Limits, Move
 
@@ -23,6 +25,7 @@ MOST_STEPS = 100
 POLISHING_STEPS = 4
 START_DAMPING = 1e-2
 LEAST_DAMPING, MOST_DAMPING = 1e-14, 1e8
+LEAST_GAIN = 1e-12  # of a step, over the sum of squares: where no step is better
 AT_REST = 1e-15  # of the residual: no longer smaller by a step
 RANK = 1e-9  # singular value, over the largest, of a motion: no step along it
 ORIGIN_COLUMN = 3  # of a frame
@@ -39,7 +42,7 @@ class ClosedPoses:
     size: float
 
 
-class _Rows(NamedTuple):
+class Rows(NamedTuple):
     """Some equations: ``residuals`` (k,), and their derivatives (k, 6) by the turn and
     the slide of the first and of the second body."""
 
@@ -72,13 +75,18 @@ class Closing:
     def close(self, poses: np.ndarray) -> ClosedPoses:
         """The poses next to ``poses`` (b, 4, 4) in which the joints fit best, by least
         squares."""
+        from scipy.linalg import lstsq
+
         poses = poses.copy()
         poses[:, :3, 3] /= self.size
         poses = self._damped_steps(poses)
         for _ in range(POLISHING_STEPS):
             residuals, matrix = self._system(poses)
-            step = np.linalg.lstsq(matrix, -residuals, rcond=RANK)[0]
-            poses = _moved(poses, step)
+            # by pivots: several times faster than by singular values
+            step = lstsq(matrix, -residuals, cond=RANK, lapack_driver="gelsy")[0]
+            poses = self._moved(poses, step)
+            if np.abs(step).max(initial=0.0) < AT_REST:
+                break
         poses[:, :3, 3] *= self.size
         return self.measure(poses)
 
@@ -89,6 +97,23 @@ class Closing:
         gap = float(np.abs(self._system(scaled)[0]).max(initial=0.0))
         return ClosedPoses(poses, gap, self.size)
 
+    def missing(self, poses: np.ndarray) -> list[str]:
+        """The joints that do not fit at ``poses`` (b, 4, 4), the worst first."""
+        scaled = poses.copy()
+        scaled[:, :3, 3] /= self.size
+        misfits = self._misfits(scaled)
+        apart = [name for name in misfits if not is_file_nearly_closed(misfits[name])]
+        return sorted(apart, key=misfits.__getitem__, reverse=True)
+
+    def _misfits(self, poses: np.ndarray) -> dict[str, float]:
+        """By how much each joint misses, lengths over the size."""
+        misfits = {}
+        for joint in self.assembly.joints:
+            first, second = (poses[self.assembly.numbers[b]] for b in joint.bodies)
+            residuals = self._rows(joint, first, second).residuals
+            misfits[joint.name] = float(np.abs(residuals).max(initial=0.0))
+        return misfits
+
     def _damped_steps(self, poses: np.ndarray) -> np.ndarray:
         damping = START_DAMPING
         residuals, matrix = self._system(poses)
@@ -98,12 +123,15 @@ class Closing:
                 break
             normal = matrix.T @ matrix
             normal[np.diag_indices_from(normal)] += damping
-            step = np.linalg.solve(normal, -matrix.T @ residuals)
-            trial = _moved(poses, step)
+            slope = matrix.T @ residuals
+            step = np.linalg.solve(normal, -slope)
+            if step @ (damping * step - slope) < LEAST_GAIN * cost:
+                break
+            trial = self._moved(poses, step)
             new_residuals, new_matrix = self._system(trial)
             new_cost = float(new_residuals @ new_residuals)
             if new_cost < cost:
-                is_at_rest = cost - new_cost < 1e-12 * cost
+                is_at_rest = cost - new_cost < LEAST_GAIN * cost
                 poses, residuals, matrix = trial, new_residuals, new_matrix
                 cost = new_cost
                 damping = max(damping / 10, LEAST_DAMPING)
@@ -112,6 +140,18 @@ class Closing:
             else:
                 damping *= 10
         return poses
+
+    def _moved(self, poses: np.ndarray, step: np.ndarray) -> np.ndarray:
+        """The ``poses`` (b, 4, 4) turned and moved by ``step`` (6 b,)."""
+        from scipy.spatial.transform import Rotation
+
+        steps = step.reshape(-1, 6)
+        rotations = Rotation.from_rotvec(steps[:, :3]).as_matrix()
+        moved = poses.copy()
+        moved[:, :3, :3] = rotations @ poses[:, :3, :3]
+        moved[:, :3, 3] = np.einsum("kij,kj->ki", rotations, poses[:, :3, 3])
+        moved[:, :3, 3] += steps[:, 3:]
+        return moved
 
     def _system(self, poses: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Residuals (m,) and their derivatives (m, 6 b) at ``poses``, lengths over the
@@ -131,23 +171,43 @@ class Closing:
         matrix[:, :6] = 0.0  # the first body does not move
         return np.concatenate([*residuals, np.empty(0)]), matrix
 
-    def _rows(self, joint: BodyJoint, first: np.ndarray, second: np.ndarray) -> _Rows:
+    def _scaled(self, joint: BodyJoint) -> tuple[np.ndarray, np.ndarray]:
+        """Both frames (4, 4) of a joint in its bodies, lengths over the size."""
+        return self._scaled_frames[joint.name]
+
+    @cached_property
+    def _scaled_frames(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+        units = np.ones((4, 4))
+        units[:3, 3] = self.size
+        return {
+            joint.name: (joint.frames[0] / units, joint.frames[1] / units)
+            for joint in self.assembly.joints
+        }
+
+    def _rows(self, joint: BodyJoint, first: np.ndarray, second: np.ndarray) -> Rows:
         """The equations of a joint."""
-        frames = []
-        for pose, frame in zip((first, second), joint.frames, strict=True):
-            scaled = frame.copy()
-            scaled[:3, 3] /= self.size
-            frames.append(pose @ scaled)
-        one, other = frames
+        own, far = self._scaled(joint)
+        one, other = first @ own, second @ far
+        parts = self._parts(joint.kind.facets.fit, one, other, joint.cosine)
+        return Rows(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+
+    def _parts(
+        self,
+        fits: Sequence[Fit],
+        one: np.ndarray,
+        other: np.ndarray,
+        cosine: float = 0.0,
+    ) -> list[Rows]:
+        """What two frames (4, 4) have to have in common."""
         parts = []
-        for fit in joint.kind.facets.fit:
+        for fit in fits:
             if fit in SHARED:
                 parts.append(_difference(one, other, SHARED[fit]))
             elif fit is Fit.ANGLE:
-                parts.append(_angle(one, other, joint.cosine))
+                parts.append(_angle(one, other, cosine))
             else:
                 parts += [_along(one, other, column) for column in ACROSS[fit]]
-        return _Rows(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+        return parts
 
 
 # --- pieces of equations --------------------------------------------------------------
@@ -168,39 +228,26 @@ def _rates(frame: np.ndarray, column: int) -> np.ndarray:
     return rates
 
 
-def _difference(one: np.ndarray, other: np.ndarray, column: int) -> _Rows:
+def _difference(one: np.ndarray, other: np.ndarray, column: int) -> Rows:
     """A column of the second frame less that of the first one."""
     difference = other[:3, column] - one[:3, column]
-    return _Rows(difference, -_rates(one, column), _rates(other, column))
+    return Rows(difference, -_rates(one, column), _rates(other, column))
 
 
-def _along(one: np.ndarray, other: np.ndarray, column: int) -> _Rows:
+def _along(one: np.ndarray, other: np.ndarray, column: int) -> Rows:
     """How far the second origin is from the first one along an axis of the first
     frame."""
     axis = one[:3, column]
     gap, by_first, by_second = _difference(one, other, ORIGIN_COLUMN)
     by_first = gap @ _rates(one, column) + axis @ by_first
-    return _Rows(np.array([axis @ gap]), by_first[None], (axis @ by_second)[None])
+    return Rows(np.array([axis @ gap]), by_first[None], (axis @ by_second)[None])
 
 
-def _angle(one: np.ndarray, other: np.ndarray, cosine: float) -> _Rows:
+def _angle(one: np.ndarray, other: np.ndarray, cosine: float) -> Rows:
     """The cosine between the third axes, less what it has to be."""
     first, second = one[:3, 2], other[:3, 2]
     by_first, by_second = second @ _rates(one, 2), first @ _rates(other, 2)
-    return _Rows(np.array([first @ second - cosine]), by_first[None], by_second[None])
-
-
-def _moved(poses: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """The ``poses`` (b, 4, 4) turned and moved by ``step`` (6 b,)."""
-    from scipy.spatial.transform import Rotation
-
-    steps = step.reshape(-1, 6)
-    rotations = Rotation.from_rotvec(steps[:, :3]).as_matrix()
-    moved = poses.copy()
-    moved[:, :3, :3] = rotations @ poses[:, :3, :3]
-    moved[:, :3, 3] = np.einsum("kij,kj->ki", rotations, poses[:, :3, 3])
-    moved[:, :3, 3] += steps[:, 3:]
-    return moved
+    return Rows(np.array([first @ second - cosine]), by_first[None], by_second[None])
 
 
 # --- random poses ---------------------------------------------------------------------
@@ -241,7 +288,7 @@ class Starts:
 
         motion = np.eye(4)
         if joint.kind is JointKind.UNIVERSAL:
-            first, second = (_turn(_random_angle(rng, None)) for _ in range(2))
+            first, second = (turn(_random_angle(rng, None)) for _ in range(2))
             motion[:3, :3] = first @ _tilt(joint.cosine) @ second
         elif joint.kind is JointKind.SPHERICAL:
             motion[:3, :3] = Rotation.random(rng=rng).as_matrix()
@@ -249,7 +296,7 @@ class Starts:
             limits = [*joint.limits, None, None, None]
             for move, pair in zip(joint.kind.facets.moves, limits, strict=False):
                 if move is Move.TURN:
-                    motion[:3, :3] = _turn(_random_angle(rng, pair))
+                    motion[:3, :3] = turn(_random_angle(rng, pair))
                 else:
                     low, high = pair or (-self.size, self.size)
                     motion[move.value, 3] = rng.uniform(low, high)
@@ -261,7 +308,7 @@ def _random_angle(rng: np.random.Generator, limits: Limits | None) -> float:
     return float(rng.uniform(low, high))
 
 
-def _turn(angle: float) -> np.ndarray:
+def turn(angle: float) -> np.ndarray:
     """The rotation (3, 3) about the third axis."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

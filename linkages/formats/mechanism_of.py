@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
@@ -18,8 +17,10 @@ from linkages.decisions import (
 )
 from linkages.formats.assembly import Assembly, BodyJoint, listed
 from linkages.formats.closing import ClosedPoses, Closing, Starts
+from linkages.formats.joint_values import joint_values, limits_left
+from linkages.formats.tree_closing import TreeClosing
 from linkages.mechanisms.couplings import Coupling, leaders
-from linkages.mechanisms.joint import Joint, JointKind, Limits, Move, Vector
+from linkages.mechanisms.joint import Joint, JointKind, Vector
 from linkages.mechanisms.mechanism import FRAMES, Mechanism
 from linkages.values import GeometryError, require
 
@@ -27,8 +28,6 @@ log = logging.getLogger(__name__)
 
 MOST_STARTS = 50  # random starts until one closes within the limits
 SEED = 0
-FULL_TURN = 2 * math.pi
-ROUNDING = 1e-9  # rad, of an angle at the end of its limits
 
 
 def mechanism_of_assembly(assembly: Assembly) -> Mechanism:
@@ -54,17 +53,19 @@ def mechanism_of_assembly(assembly: Assembly) -> Mechanism:
             continue
         frames = assembly.placed(joint, closed.poses)
         joints.append(_placed(joint, bodies, *frames))
-        values |= zip(joint.labels, _values(joint, *frames), strict=False)
+        values |= zip(joint.labels, joint_values(joint, *frames), strict=False)
     allowed = "one with a joint that can move"
     require(len(joints) > 0, "mechanism", "rigid: no joint is left", allowed)
     joints = _coupled(joints, assembly, values, notes)
     for note in notes:
         log.warning("%s: %s", assembly.name, note)
+    labels = {label for joint in joints for label in joint.labels}
     return Mechanism(
         tuple(joints),
         assembly.name,
         origin=assembly.origin,
         rounding=assembly.rounding,
+        motors=tuple(motor for motor in assembly.motors if motor in labels),
     )
 
 
@@ -146,11 +147,15 @@ def _closed_at_once(assembly: Assembly) -> ClosedPoses:
     if assembly.poses:
         given = np.array([assembly.poses[body] for body in assembly.bodies])
         closed = closing.measure(given)
-        if not is_closed_as_it_stands(closed.gap):
-            closed = closing.close(given)
+        if not is_file_nearly_closed(closed.gap):
+            closed = TreeClosing(assembly).closed()
+        is_worth_it = is_file_nearly_closed(closed.gap)
+        if is_worth_it and not is_closed_as_it_stands(closed.gap):
+            closed = closing.close(closed.poses)
     else:
         closed = _from_random_starts(assembly, closing)
-    value = f"open: the joints miss each other by {closed.gap * closed.size:.3g}"
+    gap = f"{closed.gap * closed.size:.3g}"
+    value = f"open by up to {gap}, at {listed(closing.missing(closed.poses))},"
     is_closed = is_file_nearly_closed(closed.gap)
     require(is_closed, "mechanism", value, "one that can be closed")
     return closed
@@ -164,15 +169,7 @@ def _from_random_starts(assembly: Assembly, closing: Closing) -> ClosedPoses:
     is_met = False
     for _ in range(MOST_STARTS):
         closed = closing.close(starts.draw(rng))
-        within = all(
-            pair is None or pair[0] <= value <= pair[1]
-            for joint in assembly.joints
-            for pair, value in zip(
-                joint.limits,
-                _values(joint, *assembly.placed(joint, closed.poses)),
-                strict=False,
-            )
-        )
+        within = not limits_left(assembly, closed.poses)
         if within and is_file_closed(closed.gap):
             return closed
         is_met = is_met or is_file_closed(closed.gap)
@@ -237,47 +234,12 @@ def _coupled(
 # --- joints ---------------------------------------------------------------------------
 
 
-def _values(joint: BodyJoint, first: np.ndarray, second: np.ndarray) -> list[float]:
-    """The variables that have limits, at the places of the frames (4, 4)."""
-    if joint.kind is JointKind.UNIVERSAL:
-        return [0.0, 0.0]
-    gap = second[:3, 3] - first[:3, 3]
-    values = []
-    for number, move in enumerate(joint.kind.facets.moves):
-        if move is Move.TURN:
-            values.append(_angle(joint, number, first, second))
-        else:
-            values.append(float(first[:3, move.value] @ gap))
-    return values
-
-
-def _angle(
-    joint: BodyJoint, number: int, first: np.ndarray, second: np.ndarray
-) -> float:
-    """The turn from the first frame to the second one, from -pi to pi, or, where only
-    that is within the limits of variable ``number``, full turns away."""
-    cosine = first[:3, 0] @ second[:3, 0]
-    sine = first[:3, 1] @ second[:3, 0]
-    angle = math.atan2(sine, cosine)
-    limits = joint.limits[number] if joint.limits else None
-    if limits is None or _is_within(limits, angle):
-        return angle
-    middle = (limits[0] + limits[1]) / 2
-    turned = angle + FULL_TURN * round((middle - angle) / FULL_TURN)
-    return turned if _is_within(limits, turned) else angle
-
-
-def _is_within(limits: Limits, angle: float) -> bool:
-    """Whether an angle is within limits, but for rounding."""
-    return limits[0] - ROUNDING <= angle <= limits[1] + ROUNDING
-
-
 def _placed(
     joint: BodyJoint, bodies: tuple[str, ...], first: np.ndarray, second: np.ndarray
 ) -> Joint:
     """The joint with its frames (4, 4) at these places, halfway between them."""
     middle = (first[:3] + second[:3]) / 2
-    values = _values(joint, first, second)
+    values = joint_values(joint, first, second)
     limits = [
         None if pair is None else (pair[0] - value, pair[1] - value)
         for pair, value in zip(joint.limits, values, strict=False)

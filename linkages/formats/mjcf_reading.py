@@ -4,8 +4,8 @@ Bodies stand in a tree, in the configuration qpos0. Loops are closed by <equalit
 <connect> between two bodies is a spherical joint, two are a revolute joint, more of
 them or a <weld> join the bodies rigidly. Several joints of a body follow each other;
 those that make a cylindrical, a universal, a planar or a helical joint are read as
-such. Equality of two joints couples them. Masses, shapes, actuators and tendons are
-left out.
+such. Equality of two joints couples them. Actuators say which joints motors drive, also
+through fixed tendons. Masses and shapes are left out.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from linkages.formats.assembly import (
     BodyJoint,
     frame_along,
     in_bodies,
+    listed,
     translation,
 )
 from linkages.formats.composites import (
@@ -111,6 +112,7 @@ def read_mjcf(root: Element, name: str) -> Assembly:
         model = _read_model(root, origin)
         rounding = model.rounding
     poses = {body.name: body.frame for body in model.bodies}
+    motors = _motors(root, model)
     return Assembly(
         root.attributes.get("model", name),
         tuple(body.name for body in model.bodies),
@@ -119,6 +121,7 @@ def read_mjcf(root: Element, name: str) -> Assembly:
         tuple(model.notes),
         model.origin.vector,
         rounding,
+        motors,
     )
 
 
@@ -471,3 +474,32 @@ def _kind_of_points(points: np.ndarray) -> tuple[JointKind, tuple[int, ...]]:
     if is_one_anchor(float(across[wide]), size):
         return JointKind.REVOLUTE, (far,)
     return JointKind.RIGID, (far, wide)
+
+
+# --- actuators ------------------------------------------------------------------------
+
+
+def _motors(root: Element, model: _Model) -> tuple[str, ...]:
+    """The variables that actuators drive; what others drive is left out by name."""
+    tendons = {
+        tendon.attributes.get("name", ""): [
+            joint.attributes.get("joint", "") for joint in tendon.all("joint")
+        ]
+        for group in root.all("tendon")
+        for tendon in group.all("fixed")
+    }
+    driven: list[str] = []
+    others = []
+    for group in root.all("actuator"):
+        for number, actuator in enumerate(group.children, start=1):
+            own = actuator.attributes
+            joint = own.get("joint", own.get("jointinparent", ""))
+            axes = [joint] if joint else tendons.get(own.get("tendon", ""), [])
+            labels = [model.labels[axis] for axis in axes if axis in model.labels]
+            driven += labels
+            if not labels:
+                others.append(own.get("name", f"{actuator.tag}{number}"))
+    if others:
+        note = f"left out, as they drive no hinge or slide: actuators {listed(others)}"
+        model.notes.append(note)
+    return tuple(dict.fromkeys(driven))

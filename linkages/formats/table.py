@@ -23,15 +23,17 @@ class FileFormat(NamedTuple):
     the help of commands says of it, if anything.
 
     ``read`` takes the path of a file, and raises `GeometryError`, `OSError` or
-    `bifurc.files.text_file.TextFileError`; without it files are TOML of this project,
-    read by `linkages.file`. An XML file is told by its first element, the ``root``,
-    whatever its ending. ``write`` and ``read_root`` name functions: the text of a
+    `bifurc.files.text_file.TextFileError`; ``read_closed`` takes the path of a file of
+    closures besides. Without it files are TOML of this project, read by
+    `linkages.file`. An XML file is told by its first element, the ``root``, whatever
+    its ending. ``write`` and ``read_root`` name functions: the text of a
     mechanism, and the assembly of a root and a name.
     """
 
     endings: tuple[str, ...]
     words: str = ""
     read: Callable[[Path], Loop | Mechanism] | None = None
+    read_closed: Callable[[Path, Path], Mechanism] | None = None
     write: str = ""
     root: str = ""
     read_root: str = ""
@@ -94,22 +96,26 @@ def _content(path: Path) -> bytes:
     return content
 
 
-CLOSURES = "robot.yaml"  # beside a robot, where no file is called as it is
-
-
 def _read_robot(path: Path) -> Mechanism:
     """A robot in URDF, with the loops that a YAML file beside it closes: one of the same
-    name, or `CLOSURES`."""
+    name, or `BESIDE`."""
+    from linkages.formats.urdf_reading import BESIDE
+
+    beside = (path.with_suffix(".yaml"), path.with_name(BESIDE))
+    file = next((one for one in beside if one.is_file()), None)
+    return _read_closed_robot(path, file)
+
+
+def _read_closed_robot(path: Path, closures: Path | None) -> Mechanism:
+    """A robot in URDF, with the loops that a YAML file closes, if there is one."""
     from linkages.formats.mechanism_of import mechanism_of_assembly
     from linkages.formats.urdf_reading import read_urdf
     from linkages.formats.xml_tree import parse_xml
 
     root = parse_xml(_content(path))
     require(root.tag == "robot", f"line {root.line}", f"<{root.tag}>", "<robot>")
-    beside = (path.with_suffix(".yaml"), path.with_name(CLOSURES))
-    file = next((one for one in beside if one.is_file()), None)
-    closures = None if file is None else _read_yaml(file)
-    return mechanism_of_assembly(read_urdf(root, path.stem, closures))
+    content = None if closures is None else (_read_yaml(closures) or {})
+    return mechanism_of_assembly(read_urdf(root, path.stem, content))
 
 
 def _read_yaml(path: Path) -> object:
@@ -176,6 +182,7 @@ FORMATS = (
         (".urdf",),
         ".urdf",
         read=_read_robot,
+        read_closed=_read_closed_robot,
         root="robot",
         read_root="linkages.formats.urdf_reading:read_urdf",
     ),

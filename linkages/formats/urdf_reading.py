@@ -5,6 +5,10 @@ pairs of frames that come together, ``closed_loop``, as a whole or in a point, `
 "6d" or "3d", the joints that motors drive, ``name_mot``, and joints of another kind than
 the URDF has words for, ``joint_name`` with ``joint_type``. A frame is called after a joint,
 where it is that of the child, or after a link.
+
+Without such a file, frames that onshape-to-robot writes close loops, as PlaCo has them:
+the origins of ``closing_NAME_1`` and ``closing_NAME_2`` come together, and their third axes
+where there are ``closing_NAME_1_z`` and ``closing_NAME_2_z``.
 """
 
 from __future__ import annotations
@@ -44,6 +48,8 @@ UNIVERSAL = {
     f"UJOINT_{'XYZ'[first]}{'XYZ'[second]}": (first, second)
     for first, second in permutations(range(3), 2)
 }
+BESIDE = "robot.yaml"  # the file with closures, where none is called as the robot is
+CLOSING = "closing_"  # how frames are called that onshape-to-robot closes loops with
 ALONG_X = (1.0, 0.0, 0.0)  # the axis of a joint that says nothing of it
 
 
@@ -69,9 +75,9 @@ def read_urdf(root: Element, name: str, closures: object = None) -> Assembly:
     content = checked_table("closures", closures or {}, "a table")
     _change_kinds(content, robot)
     _close(content, robot)
-    motors = content.get("name_mot", [])
-    if motors:
-        robot.notes.append(f"motors, which --drive takes: {listed(motors)}")
+    if closures is None:
+        _close_named(robot)
+    motors = _motors(content, robot)
     used = {body for joint in robot.joints for body in joint.bodies}
     lone = [link for link in links if link not in used]
     if lone:
@@ -83,6 +89,7 @@ def read_urdf(root: Element, name: str, closures: object = None) -> Assembly:
         tuple(robot.joints),
         {body: poses[body] for body in bodies},
         tuple(robot.notes),
+        motors=motors,
     )
 
 
@@ -259,3 +266,44 @@ def _link_of(what: str, frame: object, robot: _Robot) -> str:
     is_link = frame in robot.links
     require(is_link, what, quoted(frame), "two joints or links of the robot")
     return str(frame)
+
+
+def _motors(content: Mapping[str, Any], robot: _Robot) -> tuple[str, ...]:
+    """The variables that motors drive; names of no joint are said."""
+    names = checked_list("name_mot", content.get("name_mot", []), "a list of joints")
+    labels = {label for joint in robot.joints for label in joint.labels}
+    unknown = [str(name) for name in names if name not in labels]
+    if unknown:
+        note = f"left out: motors of {listed(unknown)}, which are no joints that move"
+        robot.notes.append(note)
+    return tuple(name for name in names if name in labels)
+
+
+# --- what names say -------------------------------------------------------------------
+
+
+def _close_named(robot: _Robot) -> None:
+    """Add a joint for every pair of frames whose names say that they come together."""
+    links = set(robot.links)
+    closed = []
+    for first in robot.links:
+        stem = first.removesuffix("_1")
+        if stem == first or not stem.startswith(CLOSING):
+            continue
+        second = f"{stem}_2"
+        if second not in links:
+            robot.notes.append(f"left out: frame {first}, as there is no {second}")
+            continue
+        is_hinge = {f"{first}_z", f"{second}_z"} <= links
+        kind = JointKind.REVOLUTE if is_hinge else JointKind.SPHERICAL
+        frames = (np.eye(4), np.eye(4))
+        robot.joints.append(BodyJoint(stem, kind, (first, second), frames))
+        closed.append(f"{stem} ({'an axis' if is_hinge else 'a point'})")
+    note = f"loops closed by the names of frames, which share: {listed(closed)}"
+    if not closed:
+        note = (
+            "no loop is closed, as a URDF is a tree; name frames that come together in "
+            f"{BESIDE} beside it, or with --closures FILE, as closed_loop: "
+            "[[frame, frame]], type: [6d], or 3d for a point"
+        )
+    robot.notes.append(note)

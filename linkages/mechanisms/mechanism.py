@@ -118,7 +118,8 @@ class Mechanism:
     they may be, where that is more than they are as doubles. ``panels`` are drawn of
     bodies that are sheets, with ``creases`` that are assigned. What hangs on joints in no
     closed loop is held where it is given, but ``with_flaps``. ``driver`` is the joint
-    variable whose dead points matter, the first one that is free if none is named.
+    variable whose dead points matter: if none is named, those that ``motors`` drive, or
+    else the first one that is free.
     ``layers`` are numbers from 1 of bodies that lie one above the other in a planar
     mechanism. Bodies that do not hang together are mechanisms of their own, its `parts`.
     Raises `GeometryError` where a joint is named twice, joints are coupled in a
@@ -134,6 +135,7 @@ class Mechanism:
     with_flaps: bool = False
     creases: tuple[Crease, ...] = field(default=(), compare=False)
     driver: str = field(default="", compare=False)
+    motors: tuple[str, ...] = field(default=(), compare=False)
     layers: tuple[tuple[str, int], ...] = field(default=(), compare=False)
     # what to do where a single loop is asked for, unless there is nothing to do
     way_to_loop: ClassVar[str] = ""

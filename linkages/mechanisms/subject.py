@@ -33,6 +33,8 @@ def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
         values["creases"] = [one._asdict() for one in mechanism.creases]
     if mechanism.layers:
         values["layers"] = dict(mechanism.layers)
+    if mechanism.motors:
+        values["motors"] = list(mechanism.motors)
     if mechanism.with_flaps:
         values["with_flaps"] = True
     return {
@@ -130,6 +132,7 @@ def mechanism_from(given: object, name: str) -> Mechanism:
         panels,
         with_flaps,
         creases,
+        motors=tuple(given.get("motors", ())),
         layers=layers,
     )
 

@@ -32,6 +32,7 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
         "frame": mechanism.frame,
         "joints": [joint_values(joint) for joint in mechanism.joints],
         "variables": _variables(readout),
+        "motors": list(mechanism.motors),
         "loops": [
             {
                 "joints": list(loop.joints),

@@ -188,7 +188,7 @@ class Family(MemberSource):
 
     def member(self, values: Mapping[str, float]) -> Member:
         """The member with the forms that its source names."""
-        return LinkageMember(load(self.name, **values))
+        return LinkageMember(load(self.name, closures=None, **values))
 
 
 @dataclass(frozen=True)

@@ -53,6 +53,8 @@ def describe_joints(readout: Readout) -> str:
     coupled = _couplings(readout.mechanism)
     if coupled:
         text += f"\n\nCoupled: {', '.join(coupled)}."
+    if readout.mechanism.motors:
+        text += f"\n\nMotors: {', '.join(readout.mechanism.motors)}."
     idle = readout.structure.idle_bodies
     if idle:
         text += (

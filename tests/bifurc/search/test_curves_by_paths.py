@@ -47,10 +47,7 @@ def small_oval(radius, n):
         x, y, *others = turn @ np.asarray(u)
         large = x**2 + y**2 - 1
         small = (x - 1.6) ** 2 + (y - 0.3) ** 2 - radius**2
-        rows = [
-            one - a * x - b * y
-            for one, (a, b) in zip(others, slopes, strict=True)
-        ]
+        rows = [one - a * x - b * y for one, (a, b) in zip(others, slopes, strict=True)]
         return [large * small, *rows]
 
     return equations
@@ -97,9 +94,7 @@ def test_angles_are_coordinates_on_circles(is_circle):
 
 def test_isolated_solutions_beside_a_curve_are_counted():
     # the line x = 0, and the point (2, 1)
-    atlas = explored(
-        lambda u: [u[0] * (u[1] - 1), u[0] * (u[0] - 2)], [(-4, 4)] * 2
-    )
+    atlas = explored(lambda u: [u[0] * (u[1] - 1), u[0] * (u[0] - 2)], [(-4, 4)] * 2)
     assert claim_of(atlas, SearchClaim.ALL_CURVES).data["degrees"] == [1]
     beside = claim_of(atlas, SearchClaim.ALL_ISOLATED_BESIDE_CURVES)
     assert (beside.data["real"], beside.data["inside"]) == (1, 1)

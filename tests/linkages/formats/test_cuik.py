@@ -154,5 +154,5 @@ def test_joints_that_cannot_fit_are_refused(tmp_path):
         ("d", "a", 1),
     ):
         text += f"revolute: {first} ({length},0,0)+(0,0,1) {second} (0,0,0)+(0,0,1)\n"
-    with pytest.raises(LinkageFileError, match="miss each other by"):
+    with pytest.raises(LinkageFileError, match="open by up to"):
         read(tmp_path, text)

@@ -325,7 +325,7 @@ BAD = {
     "a body twice": (four_bar().replace('name="rocker"', 'name="crank"'), "given once"),
     "what cannot be closed": (
         four_bar().replace('pos="2 0 0" zaxis', 'pos="9 0 0" zaxis'),
-        "miss each other",
+        "open by up to",
     ),
 }
 
@@ -511,3 +511,20 @@ def test_names_that_mujoco_keeps_apart_are_kept_apart(tmp_path, caplog):
     assert len(names) == len(set(names))
     bodies = {"body1", "body2", "body1.1", "body1.1.2", "body1.2", "world"}
     assert bodies == set(mechanism.bodies)
+
+
+MOTORS = """
+<actuator>
+  <motor joint="A"/>
+  <position tendon="both"/>
+  <general name="adhesion" body="rod"/>
+</actuator>
+<tendon><fixed name="both"><joint joint="D" coef="1"/></fixed></tendon>
+"""
+
+
+def test_actuators_are_motors(tmp_path, caplog):
+    text = four_bar().replace("</mujoco>", f"{MOTORS}</mujoco>")
+    mechanism = read(tmp_path, text)
+    assert mechanism.motors == ("A", "D")
+    assert "actuators adhesion" in caplog.text

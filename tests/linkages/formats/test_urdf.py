@@ -30,9 +30,9 @@ WHOLE = "closed_loop: [['a', 'b']]\ntype: ['6d']\nname_mot: ['A']\n"
 POINT = "closed_loop:\n  - [a, b]\ntype: [3d]\n"
 
 
-def robot(tmp_path, closures=WHOLE, **joints):
+def robot(tmp_path, closures=WHOLE, more="", **joints):
     links = "".join(f'<link name="{link}"/>' for link in LINKS)
-    text = "".join({**JOINTS, **joints}.values())
+    text = "".join({**JOINTS, **joints}.values()) + more
     path = tmp_path / "robot.urdf"
     path.write_text(f'<robot name="four-bar">{links}{text}</robot>')
     if closures:
@@ -43,7 +43,7 @@ def robot(tmp_path, closures=WHOLE, **joints):
 def test_a_loop_is_closed_by_the_file_beside(tmp_path, caplog):
     mechanism = robot(tmp_path)
     assert mechanism.independent_loops == 1
-    assert "motors, which --drive takes: A" in caplog.text
+    assert mechanism.motors == ("A",)
     (hanging,) = Structure(mechanism).hanging.joints
     assert (hanging.joint, hanging.limited) == ("H", True)
     np.testing.assert_allclose(mechanism.joint("H").place, [2, 2, 0], atol=1e-12)
@@ -58,6 +58,75 @@ def test_frames_that_share_a_point_are_held_by_a_ball(tmp_path):
     mechanism = robot(tmp_path, POINT, **joints)
     assert mechanism.joint("a=b").kind is JointKind.SPHERICAL
     assert map_linkage(mechanism).mobility == 1
+
+
+def test_another_file_closes_the_loops(tmp_path, caplog):
+    robot(tmp_path, "")
+    assert "no loop is closed" in caplog.text
+    closures = tmp_path / "loops.yaml"
+    closures.write_text(WHOLE)
+    mechanism = load(tmp_path / "robot.urdf", closures=closures)
+    assert mechanism.independent_loops == 1
+    with pytest.raises(LinkageFileError, match=r"there_is_none\.yaml"):
+        load(tmp_path / "robot.urdf", closures=tmp_path / "there_is_none.yaml")
+    with pytest.raises(LinkageFileError, match="a URDF takes them"):
+        load(tmp_path / "robot.xml", closures=closures)
+
+
+def closing_frames(*names):
+    """Frames at the ends of the rod and of the rocker, in the plane of the joints."""
+    places = {"1": ("rod", "2 0.5"), "2": ("rocker", "0 1.5")}
+    text = ""
+    for name in names:
+        link, place = places[name[0]]
+        height = 0.1 if name.endswith("_z") else 0.0
+        frame = f"closing_top_{name}"
+        text += f'<link name="{frame}"/>'
+        text += joint(f"{frame}_frame", link, frame, f"{place} {height}", kind="fixed")
+    return text
+
+
+@pytest.mark.parametrize(
+    ("frames", "kind"),
+    [
+        (("1", "2"), JointKind.SPHERICAL),
+        (("1", "1_z", "2", "2_z"), JointKind.REVOLUTE),
+    ],
+)
+def test_frames_called_closing_close_a_loop(frames, kind, tmp_path, caplog):
+    mechanism = robot(tmp_path, "", more=closing_frames(*frames))
+    assert "closed by the names of frames" in caplog.text
+    assert mechanism.joint("closing_top").kind is kind
+    assert map_linkage(mechanism).mobility == 1
+
+
+def test_a_closing_frame_without_another_one_is_said(tmp_path, caplog):
+    robot(tmp_path, "", more=closing_frames("1"))
+    assert "closing_top_1, as there is no closing_top_2" in caplog.text
+
+
+def test_a_loop_that_is_drawn_half_a_turn_from_closed_closes(tmp_path):
+    # both ends turned by half a turn: no small turn brings the frames nearer
+    far = joint("B", "crank", "rod", "0 1 0").replace("/>", ' rpy="0 0 3.1415"/>', 1)
+    mechanism = robot(tmp_path, B=far)
+    assert map_linkage(mechanism).mobility == 1
+
+
+def test_what_cannot_close_names_the_joint_that_misses(tmp_path):
+    far = joint("D", "base", "rocker", "9 0 0")
+    with pytest.raises(LinkageFileError, match=r"open by up to .*, at a=b, is not"):
+        robot(tmp_path, D=far)
+
+
+def test_motors_of_no_joint_are_said(tmp_path, caplog):
+    mechanism = robot(tmp_path, WHOLE.replace("['A']", "['A', 'M']"))
+    assert mechanism.motors == ("A",)
+    assert "motors of M" in caplog.text
+
+
+def test_motors_are_what_dead_points_are_told_of(tmp_path):
+    atlas = map_linkage(robot(tmp_path, WHOLE.replace("['A']", "['D']")))
+    assert [atlas.names[k] for k in atlas.subject["drivers"]] == ["D"]
 
 
 def test_without_a_file_all_joints_hang(tmp_path):
