@@ -333,9 +333,9 @@ def crossings_beside_curves(
     curves of singular points that are known when they are asked for; at most
     `MOST_SAMPLES`.
 
-    On a sheet F' changes its orientation only in singular points, and in curves of them
-    where no equation is redundant. Where there are none, charts went over to another
-    sheet, and the surface is `Covering.UNDECIDED`.
+    Where no equation is redundant F' changes its orientation on a sheet only in curves
+    of singular points. Where there are none, charts went over to another sheet, and the
+    surface is `Covering.UNDECIDED`.
     """
     charts = components.charts
     if charts is None or problem.n < NULLITY or components.deflated is not None:
@@ -349,12 +349,13 @@ def crossings_beside_curves(
         if components.notes.is_beside_curve(crossing.place, BESIDE * radius):
             continue
         point = _point_next_to(problem, crossing.place, radius)
-        if point is None or not (point.is_sample or is_redundant):
+        if point is not None and point.is_sample:
+            samples += 1
+            if samples <= MOST_SAMPLES:
+                yield point
+        elif not is_redundant:
             components.charts = replace(charts, outcome=Covering.UNDECIDED)
             return
-        samples += point.is_sample
-        if point.is_sample and samples <= MOST_SAMPLES:
-            yield point
 
 
 def _point_next_to(
