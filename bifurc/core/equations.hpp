@@ -9,7 +9,7 @@
 
 namespace bifurc {
 
-// F (m), F' (m, n) and F'' (m * n, n) at some points.
+// F (m) and F' (m, n) at some points.
 class Values {
 public:
     explicit Values(Index unknowns) : unknowns_(unknowns) {}
@@ -21,24 +21,17 @@ public:
         if (has_jacobians) jacobians_.resize(points * equations * unknowns_);
     }
 
-    // Makes room for second derivatives.
-    void reserve_second(Index points) { hessians_.resize(points * equations_ * unknowns_ * unknowns_); }
-
     Index equations() const { return equations_; }
     Vector<double> residual(Index point) { return {residuals_.data() + point * equations_, size(equations_)}; }
     View<double> jacobian(Index point) {
         return {jacobians_.data() + point * equations_ * unknowns_, equations_, unknowns_};
-    }
-    View<double> hessian(Index point) {
-        const Index rows = equations_ * unknowns_;
-        return {hessians_.data() + point * rows * unknowns_, rows, unknowns_};
     }
 
 private:
     static std::size_t size(Index count) { return static_cast<std::size_t>(count); }
 
     Index unknowns_, equations_ = 0;
-    std::vector<double> residuals_, jacobians_, hessians_;
+    std::vector<double> residuals_, jacobians_;
 };
 
 // F: R^n -> R^m, over its magnitude.
@@ -49,11 +42,26 @@ public:
     virtual Index unknowns() const = 0;
     // As many points as are best taken at a time.
     virtual Index at_once() const = 0;
+    // Whether F at two points next to each other are values of one function.
+    virtual bool is_continuous() const { return true; }
     // F at points (k, n), with F' or without.
     virtual void fill(View<const double> points, bool has_jacobians, Values& values) const = 0;
-    // F'' beside F and F'.
-    virtual void fill_second(View<const double> points, Values& values) const = 0;
+    // F''(v, .) at a point for each v of ``directions`` (d, n): (d * m, n).
+    virtual void bend(Vector<const double> point, View<const double> directions, View<double> out) const = 0;
 };
+
+// F''(v, .) for each v of ``directions`` (d, n), from F'' (m * n, n): (d * m, n).
+inline void bend_by(View<const double> hessian, View<const double> directions, View<double> out) {
+    const Index n = directions.columns, m = hessian.rows / n;
+    std::fill_n(out.data, out.rows * n, 0.0);
+    for (Index d = 0; d < directions.rows; ++d) {
+        for (Index row = 0; row < m; ++row) {
+            for (Index i = 0; i < n; ++i) {
+                for (Index j = 0; j < n; ++j) out(d * m + row, j) += directions(d, i) * hessian(row * n + i, j);
+            }
+        }
+    }
+}
 
 // Those of a compiled system over a ``magnitude``; ``Owner`` holds what the system refers to.
 template <CurvedSystem S, class Owner>
@@ -77,14 +85,16 @@ public:
         }
     }
 
-    void fill_second(View<const double> points, Values& values) const override {
-        fill(points, true, values);
-        values.reserve_second(points.rows);
-        for (Index k = 0; k < points.rows; ++k) {
-            const View<double> hessian = values.hessian(k);
-            system_.hessian(points.row(k), hessian);
-            divide({hessian.data, static_cast<std::size_t>(hessian.rows * hessian.columns)});
+    void bend(Vector<const double> point, View<const double> directions, View<double> out) const override {
+        if constexpr (requires { system_.bends(point, directions, out); }) {
+            system_.bends(point, directions, out);
+        } else {
+            const Index m = system_.equations(), n = unknowns();
+            Matrix<double> hessian(m * n, n);
+            system_.hessian(point, hessian);
+            bend_by(hessian, directions, out);
         }
+        divide({out.data, static_cast<std::size_t>(out.rows * out.columns)});
     }
 
 private:

@@ -18,11 +18,13 @@ public:
         : equations_(equations), rank_(rank), n_(equations.unknowns()), values_(n_) {}
 
     Index unknowns() const override { return n_; }
-    Index at_once() const override { return std::min(equations_.at_once(), most); }
+    Index at_once() const override { return equations_.at_once(); }
+
+    // Bases have signs of their own.
+    bool is_continuous() const override { return false; }
 
     void fill(View<const double> points, bool has_jacobians, Values& values) const override {
-        if (has_jacobians) equations_.fill_second(points, values_);
-        else equations_.fill(points, true, values_);
+        equations_.fill(points, true, values_);
         const Index m = values_.equations(), rights = n_ - rank_, lefts = std::max<Index>(m - rank_, 0);
         values.reserve(points.rows, m + lefts * rights, has_jacobians);
         SingularValues decomposition(m, n_);
@@ -42,18 +44,16 @@ public:
             for (Index a = 0; a < lefts; ++a) {
                 for (Index b = 0; b < rights; ++b) residual[m + a * rights + b] = dot(left_.row(a), images.row(b));
             }
-            if (has_jacobians) linearize(k, values.jacobian(k));
+            if (has_jacobians) linearize(points.row(k), jacobian, values.jacobian(k));
         }
     }
 
     // Third derivatives would be needed.
-    void fill_second(View<const double>, Values&) const override {
+    void bend(Vector<const double>, View<const double>, View<double>) const override {
         throw std::logic_error("deflated equations have no second derivatives");
     }
 
 private:
-    static constexpr Index most = 64;  // points whose second derivatives are kept at a time
-
     // Both bases, a vector a row.
     void find_bases(const SingularValues& decomposition, Index lane, Vector<const double> singular,
                     View<const double> jacobian) const {
@@ -106,23 +106,17 @@ private:
     }
 
     // F' and below it U^T F'' V.
-    void linearize(Index point, View<double> out) const {
-        const View<const double> jacobian = values_.jacobian(point), hessian = values_.hessian(point);
+    void linearize(Vector<const double> point, View<const double> jacobian, View<double> out) const {
         const Index m = jacobian.rows, rights = right_.rows();
         std::copy_n(jacobian.data, m * n_, out.data);
         std::fill(out.row(m).data(), out.data + out.rows * n_, 0.0);
-        std::vector<double> bend(n_);
-        for (Index row = 0; row < m; ++row) {
+        Matrix<double> bends(rights * m, n_);
+        equations_.bend(point, right_, bends);
+        for (Index a = 0; a < left_.rows(); ++a) {
             for (Index b = 0; b < rights; ++b) {
-                std::fill(bend.begin(), bend.end(), 0.0);
-                for (Index i = 0; i < n_; ++i) {
-                    const double share = right_(b, i);
-                    const double* const entries = hessian.row(row * n_ + i).data();
-                    for (Index j = 0; j < n_; ++j) bend[j] += share * entries[j];
-                }
-                for (Index a = 0; a < left_.rows(); ++a) {
-                    const Vector<double> target = out.row(m + a * rights + b);
-                    for (Index j = 0; j < n_; ++j) target[j] += left_(a, row) * bend[j];
+                const Vector<double> target = out.row(m + a * rights + b);
+                for (Index row = 0; row < m; ++row) {
+                    for (Index j = 0; j < n_; ++j) target[j] += left_(a, row) * bends(b * m + row, j);
                 }
             }
         }

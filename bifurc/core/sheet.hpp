@@ -28,7 +28,7 @@ constexpr double shortest = 5e-4;  // step along a ray, over its length
 constexpr int most_steps = 60;
 constexpr double tiny = 1e-300;
 constexpr double any_rank = 1e-15;  // entry of a factor, over the largest, that is rounding
-constexpr Index many_rays = 1024;   // from which others are followed after them
+constexpr double full_rank = 1e-6;  // entry on the diagonal of a factor, over the largest, that is not
 }  // namespace sheet
 
 // A plane (n, d) of ``planes`` (k * n, d).
@@ -60,6 +60,7 @@ public:
 
     // [F'; T^T] S = [0; I]
     void solve(View<const double> jacobian, View<const double> plane, double negligible, View<double> slopes) {
+        if (solve_regular(jacobian, plane, slopes)) return;
         const Index m = jacobian.rows;
         solver_.reserve(m + 2, n_, 2);
         const View<double> matrix = solver_.matrix();
@@ -72,10 +73,42 @@ public:
     }
 
 private:
+    // The same without pivots, where that is seen to be enough.
+    bool solve_regular(View<const double> jacobian, View<const double> plane, View<double> slopes) {
+        const Index m = jacobian.rows;
+        if (m + 2 < n_) return false;
+        if (!regular_ || regular_->matrix().rows != m + 2) {
+            regular_.emplace(m + 2, n_);
+            right_.resize(m + 2);
+            solution_.resize(n_);
+        }
+        const View<double> matrix = regular_->matrix();
+        std::copy(jacobian.data, jacobian.data + m * n_, matrix.data);
+        for (Index side = 0; side < 2; ++side) {
+            for (Index j = 0; j < n_; ++j) matrix(m + side, j) = plane(j, side);
+        }
+        regular_->factor();
+        double least = std::abs(matrix(0, 0)), most = least;
+        for (Index j = 1; j < n_; ++j) {
+            least = std::min(least, std::abs(matrix(j, j)));
+            most = std::max(most, std::abs(matrix(j, j)));
+        }
+        if (!(least > sheet::full_rank * most)) return false;
+        for (Index side = 0; side < 2; ++side) {
+            std::fill(right_.begin(), right_.end(), 0.0);
+            right_[m + side] = 1.0;
+            regular_->solve(right_, solution_);
+            for (Index j = 0; j < n_; ++j) slopes(j, side) = solution_[j];
+        }
+        return true;
+    }
+
     const Equations& equations_;
     Index n_;
     Values values_;
     LeastNorm solver_;
+    std::optional<Factorization> regular_;
+    std::vector<double> right_, solution_;
 };
 
 // The tangent plane (n, 2) at a solution, its smallest cosine with the plane that it was to be next to, and the

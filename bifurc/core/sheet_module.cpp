@@ -1,6 +1,7 @@
 // The part of bifurc._core that is about surfaces.
 #include "bifurc/core/sheet_module.hpp"
 
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -41,15 +42,12 @@ public:
         std::copy_n(jacobians.data(), jacobians.size(), values.jacobian(0).data);
     }
 
-    void fill_second(View<const double> points, Values& values) const override {
-        if (points.rows == 0) return;
-        fill(points, true, values);
-        values.reserve_second(points.rows);
+    void bend(Vector<const double> point, View<const double> directions, View<double> out) const override {
         const auto hessians = nb::cast<nb::ndarray<const double, nb::ndim<4>, nb::c_contig, nb::device::cpu>>(
-            hessians_(array_of(points)));
-        const View<double> first = values.hessian(0);
-        check_unknowns("hessians", hessians.size(), points.rows * first.rows * first.columns);
-        std::copy_n(hessians.data(), hessians.size(), first.data);
+            hessians_(array_of({point.data(), 1, unknowns_})));
+        const auto rows = static_cast<Index>(hessians.shape(1)) * unknowns_;
+        check_unknowns("hessians", hessians.size(), rows * unknowns_);
+        bend_by({hessians.data(), rows, unknowns_}, directions, out);
     }
 
 private:
@@ -146,6 +144,18 @@ void check_planes(const numpy::CubeIn<double>& planes, std::size_t count, Index 
     if (planes.shape(2) != 2) throw nb::value_error("planes must have two columns each");
 }
 
+// Calls ``work(begin, some)`` for some of ``count`` points after the others; Ctrl-C gets through in between.
+template <class Work>
+void in_parts(Index count, const Equations& equations, Work work) {
+    constexpr Index few = 256;
+    const Index most = std::max(equations.at_once(), few);
+    Deadline deadline(std::numeric_limits<double>::infinity(), raise_signals);
+    for (Index begin = 0; begin < count; begin += most) {
+        work(begin, std::min(most, count - begin));
+        deadline.has_passed();
+    }
+}
+
 // (points (k, n), gaps (k), is settled (k)): `Correction`.
 nb::tuple normal_corrections(const nb::capsule& equations, double scale, const Table& points,
                                     const numpy::CubeIn<double>& planes) {
@@ -158,11 +168,15 @@ nb::tuple normal_corrections(const nb::capsule& equations, double scale, const T
     at.fill({points.data(), points.size()});
     std::vector<Correction> corrections;
     const View<const double> bases = numpy::rows(planes);
-    NormalCorrector(own, scale).correct(at.matrix(), [&](Index i) { return plane_of(bases, i, n); }, corrections);
-    for (Index i = 0; i < count; ++i) {
-        gaps.data()[i] = corrections[i].gap;
-        is_settled.data()[i] = corrections[i].is_settled(scale);
-    }
+    NormalCorrector corrector(own, scale);
+    in_parts(count, own, [&](Index begin, Index some) {
+        corrector.correct({at.data() + begin * n, some, n}, [&](Index i) { return plane_of(bases, begin + i, n); },
+                          corrections);
+        for (Index i = 0; i < some; ++i) {
+            gaps.data()[begin + i] = corrections[i].gap;
+            is_settled.data()[begin + i] = corrections[i].is_settled(scale);
+        }
+    });
     return nb::make_tuple(at.release(), gaps.release(), is_settled.release());
 }
 
@@ -174,10 +188,13 @@ nb::object slopes_above(const nb::capsule& equations, const Table& points, const
     check_planes(planes, points.shape(0), n);
     numpy::Array<double> out({static_cast<Index>(points.shape(0)), n, 2});
     const View<const double> bases = numpy::rows(planes);
-    Slopes(own).at(numpy::view(points), [&](Index i) { return plane_of(bases, i, n); }, sheet::any_rank,
-                   [&](Index i, View<const double> slopes) {
-                       std::copy_n(slopes.data, 2 * n, out.entry(i).data);
-                   });
+    Slopes slopes(own);
+    in_parts(static_cast<Index>(points.shape(0)), own, [&](Index begin, Index some) {
+        slopes.at({points.data() + begin * n, some, n}, [&](Index i) { return plane_of(bases, begin + i, n); },
+                  sheet::any_rank, [&](Index i, View<const double> derivatives) {
+                      std::copy_n(derivatives.data, 2 * n, out.entry(begin + i).data);
+                  });
+    });
     return out.release();
 }
 

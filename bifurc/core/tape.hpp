@@ -443,6 +443,25 @@ public:
         }
     }
 
+    // F'' along each of the ``directions`` (d, n), which is F''(v, .) for each: (d * m, n), from the partials that
+    // `linearize` left.
+    void bends(View<const T> directions, View<T> out) const {
+        const Index n = tape_.unknowns(), m = tape_.equations();
+        const Matrix<T> gradients = forward_gradients();
+        Matrix<T> bends(tape_.slots(), n);
+        std::vector<T> along(tape_.slots());
+        for (Index d = 0; d < directions.rows; ++d) {
+            for (Index slot = 0; slot < tape_.slots(); ++slot) {
+                along[slot] = T(0.0);
+                for (Index j = 0; j < n; ++j) along[slot] += gradients(slot, j) * directions(d, j);
+                set_bend_along(slot, gradients, along, bends);
+            }
+            for (Index row = 0; row < m; ++row) {
+                std::copy_n(bends.row(tape_.output(row)).begin(), n, out.row(d * m + row).begin());
+            }
+        }
+    }
+
 private:
     Matrix<T> forward_gradients() const {
         const Index n = tape_.unknowns();
@@ -500,6 +519,26 @@ private:
                                gradients(cross.first, j) * gradients(cross.second, i);
                 bends(slot, entry) += cross.factor * both;
             }
+        }
+    }
+
+    // The same along a direction, ``along`` which the slots change by so much.
+    void set_bend_along(Index slot, const Matrix<T>& gradients, const std::vector<T>& along, Matrix<T>& bends) const {
+        const Instruction& instruction = tape_[slot];
+        const Vector<T> bend = bends.row(slot);
+        std::fill(bend.begin(), bend.end(), T(0.0));
+        if (!Tape::has_left(instruction.operation)) return;
+        const Index n = tape_.unknowns();
+        const Partials<T>& partials = partials_[slot];
+        for (Index j = 0; j < n; ++j) bend[j] = partials.left * bends(instruction.left, j);
+        if (Tape::has_right(instruction.operation)) {
+            for (Index j = 0; j < n; ++j) bend[j] += partials.right * bends(instruction.right, j);
+        }
+        if (rule_of(instruction.operation) == Rule::linear) return;
+        const Cross cross = cross_of(slot);
+        const T first = cross.factor * along[cross.first], second = cross.factor * along[cross.second];
+        for (Index j = 0; j < n; ++j) {
+            bend[j] += first * gradients(cross.second, j) + second * gradients(cross.first, j);
         }
     }
 
@@ -641,6 +680,19 @@ public:
             for (Index i = 0; i < n; ++i) {
                 for (Index j = 0; j < n; ++j) hessian(row * n + i, j) *= weights_[row] * units_[i] * units_[j];
             }
+        }
+    }
+
+    // F'' along directions (d, n): (d * m, n).
+    void bends(Vector<const double> point, View<const double> directions, View<double> out) const {
+        Matrix<double> scaled(directions.rows, directions.columns);
+        for (Index d = 0; d < directions.rows; ++d) {
+            for (Index j = 0; j < unknowns(); ++j) scaled(d, j) = units_[j] * directions(d, j);
+        }
+        sweep_.linearize(in_units(point));
+        sweep_.bends(scaled, out);
+        for (Index row = 0; row < out.rows; ++row) {
+            for (Index j = 0; j < unknowns(); ++j) out(row, j) *= weights_[row % equations()] * units_[j];
         }
     }
 
