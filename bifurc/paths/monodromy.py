@@ -33,7 +33,6 @@ QUIET, QUIET_ON_CURVE = 2, 1
 MOST_LOOPS = 60
 MOST_SOLUTIONS = 10_000
 CORNERS = 3  # of a closed way
-AT_END = 2e-2  # rest of a path that is led round its end (`bifurc/core/paths.hpp`)
 TESTS = 10  # trace tests, with further closed ways between them
 
 
@@ -120,13 +119,25 @@ def solve_generic(
     projection = projection or Projection(np.ones(family.parameters, dtype=bool), ())
     sizes = np.where(projection.targets, size, 0.0)
     ways = _Ways(sizes, QUIET, most)
-    fibre = _enlarged(family, fibre, ways, rng, deadline)
+    fibre, _ = _enlarged(family, fibre, ways, rng, deadline)
     if deadline.passed or len(fibre.solutions) > most:
         return GenericSolutions(fibre, None)
     if linear_in is not None:
         return _tested(family, fibre, ways, linear_in, rng, deadline)
+    return _tested_on_curve(family, fibre, ways, projection, rng, deadline)
+
+
+def _tested_on_curve(
+    family: Family,
+    fibre: Fibre,
+    ways: _Ways,
+    projection: Projection,
+    rng: np.random.Generator,
+    deadline: Deadline,
+) -> GenericSolutions:
+    """A fibre with all solutions, told by points of the curve over a line."""
     looked_at = projection.coordinates_of(fibre.solutions)
-    curve = _CurveOverLine(family, fibre, sizes, looked_at, rng, deadline)
+    curve = _CurveOverLine(family, fibre, ways.sizes, looked_at, rng, deadline)
     trace = None
     for _ in range(TESTS):
         curve.find_points(rng, deadline)
@@ -134,8 +145,10 @@ def solve_generic(
             break
         trace = curve.trace(deadline)
         if trace is not None and is_linear_trace(trace):
-            fibre, is_whole = curve.solutions_in(fibre, rng, deadline)
-            trace = trace if is_whole else None
+            fibre = curve.solutions_in(fibre, deadline)
+            # most of the paths there ran to infinity, and another one may be lost
+            fibre, is_closed = _enlarged(family, fibre, ways, rng, deadline)
+            trace = trace if is_closed else None
             break
     if not projection.tells_apart(fibre.solutions, looked_at):
         trace = None
@@ -157,7 +170,7 @@ def _tested(
         has_all = trace is not None and is_linear_trace(trace)
         if has_all or deadline.passed or len(fibre.solutions) > ways.most:
             break
-        fibre = _enlarged(family, fibre, ways, rng, deadline)
+        fibre, _ = _enlarged(family, fibre, ways, rng, deadline)
     return GenericSolutions(fibre, trace)
 
 
@@ -190,20 +203,27 @@ def _enlarged(
     ways: _Ways,
     rng: np.random.Generator,
     deadline: Deadline,
-) -> Fibre:
-    """A fibre with the solutions to which closed ways lead."""
+) -> tuple[Fibre, bool]:
+    """A fibre with the solutions to which closed ways lead; and whether the last of them
+    only exchanged these, without losing one."""
     known = fibre.solutions
-    quiet = 0
+    quiet, closed = 0, 0
     for _ in range(MOST_LOOPS):
         if quiet == ways.quiet or deadline.passed or len(known) > ways.most:
             break
-        points = known
+        points, is_whole = known, True
         for here, there in pairwise(ways.stops(fibre.parameters, rng)):
-            points = follow_paths(family, points, here, there, deadline).regular
+            paths = follow_paths(family, points, here, there, deadline)
+            points, is_whole = (
+                paths.regular,
+                is_whole and bool(np.all(paths.is_regular)),
+            )
         larger = distinct(np.concatenate([known, points]))
-        quiet = quiet + 1 if len(larger) == len(known) else 0
+        is_quiet = len(larger) == len(known)
+        quiet = quiet + 1 if is_quiet else 0
+        closed = closed + 1 if is_quiet and is_whole else 0
         known = larger
-    return Fibre(fibre.parameters, known)
+    return Fibre(fibre.parameters, known), 0 < closed == quiet
 
 
 def _trace(
@@ -265,39 +285,23 @@ class _CurveOverLine:
     def find_points(self, rng: np.random.Generator, deadline: Deadline) -> None:
         """Find more of the points in a generic hyperplane: it moves, and so does the
         line."""
-        self.slice = _enlarged(self.family, self.slice, self.ways, rng, deadline)
+        self.slice, _ = _enlarged(self.family, self.slice, self.ways, rng, deadline)
 
     def trace(self, deadline: Deadline) -> float | None:
         """How far the sum of the points is from linear in s, over its change; None
         where paths were lost."""
         return _trace(self.family, self.slice, -1, 1.0, deadline, self.coordinates)
 
-    def solutions_in(
-        self, fibre: Fibre, rng: np.random.Generator, deadline: Deadline
-    ) -> tuple[Fibre, bool]:
-        """The fibre at t = 0 with the points of the curve there, and whether they are
-        all that are known.
-
-        Most of the paths run to infinity there. Where one was lost on the way, they are
-        followed from another hyperplane.
-        """
-        known = fibre.solutions
-        for _ in range(TESTS):
-            first, last = self.slice.parameters, self.at_fibre
-            points = self.slice.solutions
-            paths = follow_paths(self.family, points, first, last, deadline, again=0)
-            known = distinct(np.concatenate([known, paths.regular[:, : self.n]]))
-            if not np.any(paths.is_lost & (paths.rests > AT_END)):
-                return Fibre(fibre.parameters, known), True
-            moved = np.where(
-                self.ways.sizes > 0.0, self.ways.stops(first, rng)[1], first
-            )
-            there = follow_paths(self.family, points, first, moved, deadline)
-            if np.all(there.is_regular):
-                self.slice = Fibre(moved, there.points)
-            if deadline.passed:
-                break
-        return Fibre(fibre.parameters, known), False
+    def solutions_in(self, fibre: Fibre, deadline: Deadline) -> Fibre:
+        """The fibre at t = 0 with the points of the curve there."""
+        first, last = self.slice.parameters, self.at_fibre
+        # most of them run to infinity
+        paths = follow_paths(
+            self.family, self.slice.solutions, first, last, deadline, again=0
+        )
+        back = paths.regular[:, : self.n]
+        both = distinct(np.concatenate([fibre.solutions, back]))
+        return Fibre(fibre.parameters, both)
 
 
 def _sliced(family: Family) -> Family:

@@ -24,7 +24,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from bifurc.equations.recorded import RecordedNumber
-from bifurc.paths.family import Family, complex_normal
+from bifurc.paths.family import Family
 from linkages.decisions import meets_in_one_point
 from linkages.mechanisms.joint import Motion
 from linkages.structure.cycles import Step
@@ -37,7 +37,6 @@ Point: TypeAlias = Sequence[Any]  # three numbers
 
 ROTATION = 6  # numbers of an embedded rotation: two orthonormal vectors
 X_AXIS, Y_AXIS, ORIGIN = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
-IMAGINARY = 0.2  # the part of generic numbers
 OF_SINES = -0.5j  # the sine of x is this times exp(i x) - exp(-i x)
 FREEDOMS = {ClosureKind.CYCLE: 6, ClosureKind.POINT: 3, ClosureKind.ROD: 1}
 OF_PLANE = {ClosureKind.CYCLE: 3, ClosureKind.POINT: 2, ClosureKind.ROD: 1}
@@ -189,22 +188,28 @@ class ClosureFamily:
             is_angle = structure.unknowns[number].is_angle
             parameters.add("held", number, _held(0.0, is_angle))
         for k, closure in enumerate(structure.closures):
-            if closure.rod is not None:
-                length = closure.rod.length / structure.unit
-                if placement.is_spherical:
-                    # between points of the unit sphere
-                    length /= np.linalg.norm(placement.point(closure.first))
-                if closure.rod.leg is None:
-                    parameters.add("target", k, [length * length])
-                    continue
-                parameters.add("leg", k, [length])
-                parameters.add("target", k, [0.0])
-            elif closure.kind is ClosureKind.POINT:
-                first = placement.point(closure.first)
-                parameters.add("target", k, first[: 2 if placement.is_planar else 3])
-            else:
-                parameters.add("target", k, self._rest_frame())
+            if closure.rod is not None and closure.rod.leg is not None:
+                parameters.add("leg", k, [closure.rod.length / structure.unit])
+            parameters.add("target", k, self._given_target(closure))
         return parameters
+
+    def _given_target(self, closure: Closure) -> Sequence[float]:
+        """Where the chain of a closure has to lead."""
+        if closure.kind is ClosureKind.CYCLE:
+            return self._rest_frame()
+        first = self.placement.point(closure.first)
+        if closure.kind is ClosureKind.POINT:
+            place: list[float] = first[: 2 if self.placement.is_planar else 3].tolist()
+            return place
+        rod = closure.rod
+        assert rod is not None
+        if rod.leg is not None:
+            return [0.0]
+        length = rod.length / self.structure.unit
+        if self.placement.is_spherical:
+            # between points of the unit sphere
+            length /= float(np.linalg.norm(first))
+        return [length * length]
 
     def _rest_frame(self) -> list[float]:
         """The target of a cycle that comes back to where it began: a quaternion, and
@@ -305,25 +310,25 @@ class ClosureFamily:
             if isinstance(one, RecordedNumber) and one.writer.value(one.slot) is None
         ]
 
-    def generic_parameters(self, rng: np.random.Generator) -> np.ndarray:
-        """Random parameters (q,)."""
-        drawn = complex_normal(rng, len(self.parameters.given))
-        for (name, _), place in self.parameters.blocks.items():
-            if name in ("direction", "held", "locked"):
-                drawn[place] = nearly_real(rng, place.stop - place.start)
+    def generic_parameters(
+        self, rng: np.random.Generator, imaginary: float
+    ) -> np.ndarray:
+        """Random parameters (q,) with imaginary parts of about this size."""
+        drawn = _generic(rng, len(self.parameters.given), imaginary)
         return np.where(self.are_fixed, np.array(self.parameters.given), drawn)
 
-    def generic_member(self, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-        """A random solution (n,), and the parameters (q,) of the member that it is
-        of."""
-        p = self.generic_parameters(rng)
-        x = complex_normal(rng, self.n)
+    def generic_member(
+        self, rng: np.random.Generator, imaginary: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """A random solution (n,), and the parameters (q,) of the member that it is of,
+        all with imaginary parts of about this size."""
+        p = self.generic_parameters(rng, imaginary)
+        x = _generic(rng, self.n, imaginary)
         for number, place in self.columns.items():
             if self.structure.unknowns[number].is_angle:
-                (angle,) = nearly_real(rng, 1)
-                x[place] = np.exp(np.array([1j, -1j]) * angle)
+                x[place] = np.exp(np.array([1j, -1j]) * x[place.start])
         for columns in self.structure.embedded.values():
-            frame = _rotation(complex_normal(rng, 4))
+            frame = _rotation(_generic(rng, 4, imaginary))
             place = self.columns[columns[0]].start
             x[place : place + ROTATION] = [*frame[0], *frame[1]]
         chains = _Chains(self, x, p)
@@ -332,10 +337,9 @@ class ClosureFamily:
         return x, p
 
 
-def nearly_real(rng: np.random.Generator, count: int) -> np.ndarray:
-    """Complex numbers (count,) about as large as 1, no farther from real ones: products
-    along a chain of displacements by other ones become large."""
-    numbers: np.ndarray = rng.normal(size=count) + 1j * IMAGINARY * rng.normal(
+def _generic(rng: np.random.Generator, count: int, imaginary: float) -> np.ndarray:
+    """Complex numbers (count,) about as large as 1, with such imaginary parts."""
+    numbers: np.ndarray = rng.normal(size=count) + 1j * imaginary * rng.normal(
         size=count
     )
     return numbers

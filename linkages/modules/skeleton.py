@@ -7,7 +7,7 @@ in the place of some such bodies fewer angles are unknown; the others follow.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -108,7 +108,6 @@ class Skeleton:
         """Those of all bodies."""
         structure, geometry = self.structure, self._geometry
         mechanism = structure.mechanism
-        bodies = {link.body for link in self.links}
         poses = {mechanism.frame: geometry.rest}
         pending = [pair for pair in mechanism.pairs if pair.center is None]
         while pending:
@@ -124,17 +123,18 @@ class Skeleton:
                 poses[pair.base] = poses[pair.moved].after(step.inverse())
             else:
                 pending.append(pair)
-        joints = {joint.name: joint for joint in self.full.mechanism.joints}
-        for link in self.links:
-            own, standing = [], []
-            for name in link.joints:
-                joint = joints[name]
-                other = next(one for one in joint.bodies if one not in bodies)
-                end = _end(self._placement, joint)
-                own.append(end)
-                standing.append(poses[other](end))
-            poses[link.body] = self._pose(own, standing)
-        return poses
+        return poses | {link.body: self._link_pose(link, poses) for link in self.links}
+
+    def _link_pose(self, link: Link, poses: Mapping[str, SpacePose]) -> SpacePose:
+        """That of a link, from the ``poses`` of the other bodies."""
+        own, standing = [], []
+        for name in link.joints:
+            joint = self.full.mechanism.joint(name)
+            other = next(body for body in joint.bodies if body in poses)
+            end = _end(self._placement, joint)
+            own.append(end)
+            standing.append(poses[other](end))
+        return self._pose(own, standing)
 
     def _pose(
         self, own: Sequence[np.ndarray], standing: Sequence[np.ndarray]
@@ -166,11 +166,13 @@ def _frame(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 def _end(placement: Placement, joint: Joint) -> np.ndarray:
     """The end (3,) of rods on the axis of a joint."""
     motion = joint.motions[0]
+    end: np.ndarray
     if placement.is_spherical:
-        end: np.ndarray = placement.origin + placement.unit * motion.direction
+        end = placement.origin + placement.unit * motion.direction
         return end
     normal = placement.axes[2]
-    return motion.point - normal * (normal @ (motion.point - placement.origin))
+    end = motion.point - normal * (normal @ (motion.point - placement.origin))
+    return end
 
 
 # --- which links ----------------------------------------------------------------------
@@ -215,18 +217,11 @@ def _with_rods(
     for joint in mechanism.joints:
         left = tuple(body for body in joint.bodies if body not in bodies)
         if len(left) > 1:
-            kept = (
-                [
-                    (label, body)
-                    for label, body in zip(joint.locked, joint.bodies[1:], strict=True)
-                    if body not in bodies
-                ]
-                if len(joint.locked) == len(joint.bodies) - 1
-                else []
-            )
-            locked = (
-                tuple(value for value, _ in kept) if joint.bodies[0] in left else ()
-            )
+            # what is locked, and its base, are no links
+            rows = zip(joint.bodies[1:], joint.locked, strict=False)
+            locked = tuple(value for body, value in rows if body in left)
+            if joint.bodies[0] not in left:
+                locked = ()
             joints.append(
                 replace(joint, bodies=left, locked=locked, limits=(), coupled=())
             )

@@ -28,13 +28,16 @@ from bifurc.paths.monodromy import (
 )
 from linkages.decisions import is_short_bar
 from linkages.dyads.group import UnfollowedError
-from linkages.modules.equations import ClosureFamily, nearly_real
+from linkages.modules.equations import ClosureFamily
 from linkages.modules.skeleton import Skeleton
 from linkages.structure.structure import Structure
 
 SEED = 28  # of the generic member from which paths begin
 MOST_SOLUTIONS = 200  # complex ones of a generic member
-ATTEMPTS = 4  # generic members from which paths begin
+# Imaginary parts of the numbers of generic members that are tried, one after the other.
+# Along a chain of displacements products of numbers that are far from real become large;
+# from numbers that are nearly real paths pass near singular members.
+IMAGINARY = (0.5, 1.0, 0.3, 0.5, 0.2, 1.0)
 ROUNDING = 1e-12  # of a length: it is none
 CACHE = "BIFURC_CACHE"  # the variable that names the folder of generic solutions
 
@@ -60,10 +63,7 @@ class Module:
     @cached_property
     def generic(self) -> GenericSolutions:
         """The solutions of a generic member of the family."""
-        generic = generic_solutions(self.family)
-        if not generic.are_all:
-            raise UnfollowedError("complex configurations may be missing")
-        return generic
+        return generic_solutions(self.family)
 
     @property
     def count(self) -> int:
@@ -87,9 +87,10 @@ class Module:
         fibre = self.generic.fibre
         rng = np.random.default_rng(SEED)
         last = self.family.member(dict.fromkeys(self.held.values(), 0.0))
+        drawn = self.family.generic_parameters(rng, 1.0)
         for column in self.held.values():
             block = self.family.parameters.blocks["held", column]
-            last[block] = nearly_real(rng, block.stop - block.start)
+            last[block] = drawn[block]
         if not self.held:
             return fibre
         paths = self._followed(fibre, last)
@@ -127,13 +128,13 @@ class Module:
         """The paths to a member; where one is lost, from another generic one."""
         family, deadline = self.family.family, current_deadline()
         rng = np.random.default_rng(SEED)
-        for _ in range(ATTEMPTS):
+        for imaginary in reversed(IMAGINARY):
             paths = follow_paths(
                 family, start.solutions, start.parameters, last, deadline
             )
             if not np.any(paths.is_lost) or deadline.passed:
                 break
-            start = self._elsewhere(start, rng)
+            start = self._elsewhere(start, rng, imaginary)
         if np.any(paths.is_lost):
             raise UnfollowedError(f"paths were lost: {', '.join(paths.reasons())}")
         if np.any(paths.ends == PathEnd.SINGULAR):
@@ -142,10 +143,12 @@ class Module:
             _require_no_short_length(self.skeleton.structure)
         return paths
 
-    def _elsewhere(self, start: Fibre, rng: np.random.Generator) -> Fibre:
+    def _elsewhere(
+        self, start: Fibre, rng: np.random.Generator, imaginary: float
+    ) -> Fibre:
         """The solutions of another member that differs where the given one is generic:
         in all parameters, or else in what is held."""
-        drawn = self.family.generic_parameters(rng)
+        drawn = self.family.generic_parameters(rng, imaginary)
         is_first = start.parameters is self.generic.fibre.parameters
         if not self.held or is_first:
             moved = drawn
@@ -201,12 +204,14 @@ def generic_solutions(family: ClosureFamily) -> GenericSolutions:
 
 
 def _found(family: ClosureFamily) -> GenericSolutions:
-    """By monodromy, from a few generic members until none is missing."""
+    """By monodromy, from generic members until two agree in how many there are at most:
+    a solution that is far from all others may be out of the reach of closed ways."""
     deadline = current_deadline()
     projection = Projection(family.are_targets, tuple(family.columns.values()))
-    for attempt in range(ATTEMPTS):
+    best: GenericSolutions | None = None
+    for attempt, imaginary in enumerate(IMAGINARY):
         rng = np.random.default_rng(SEED + attempt)
-        start, parameters = family.generic_member(rng)
+        start, parameters = family.generic_member(rng, imaginary)
         if not family.family.is_regular(start, parameters):
             raise UnfollowedError("it moves, or more holds it than has to")
         generic = solve_generic(
@@ -218,11 +223,16 @@ def _found(family: ClosureFamily) -> GenericSolutions:
             MOST_SOLUTIONS,
             projection=projection,
         )
-        if generic.are_all or generic.count > MOST_SOLUTIONS or deadline.passed:
-            break
-    if deadline.passed:
-        raise UnfollowedError("out of time")
-    return generic
+        if deadline.passed:
+            raise UnfollowedError("out of time")
+        if generic.count > MOST_SOLUTIONS:
+            raise UnfollowedError("there are too many complex configurations")
+        if best is not None and best.count == generic.count:
+            if best.are_all or generic.are_all:
+                return best if best.are_all else generic
+        elif best is None or generic.count > best.count:
+            best = generic
+    raise UnfollowedError("complex configurations may be missing")
 
 
 def _name(family: Family) -> str:
@@ -266,8 +276,6 @@ def _read(name: str, family: Family) -> GenericSolutions | None:
 
 def _write(name: str, generic: GenericSolutions) -> None:
     """Keep solutions, if the folder can be written."""
-    if not generic.are_all:
-        return
     file = _Folder.of_user().file(name)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)

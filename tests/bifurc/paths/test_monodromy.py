@@ -75,7 +75,14 @@ def test_the_trace_test_misses_a_point_that_is_left_out():
     family = framework(PRISM, 6)
     rng = np.random.default_rng(0)
     known = generic_solutions(family)
-    curve = monodromy._CurveOverLine(family, known.fibre, 1.0, rng, Deadline())
+    curve = monodromy._CurveOverLine(
+        family,
+        known.fibre,
+        np.ones(family.parameters),
+        np.ones(family.n, dtype=bool),
+        rng,
+        Deadline(),
+    )
     curve.find_points(rng, Deadline())
     while not GenericSolutions(known.fibre, curve.trace(Deadline())).are_all:
         curve.find_points(rng, Deadline())
@@ -138,4 +145,14 @@ def test_a_platform_on_six_legs_has_40_complex_assemblies():
     parameters[18:27] = family.residuals(start[None], parameters)[0]
     ways = _Ways(np.ones(36), quiet=3)
     fibre = Fibre(parameters, start[None])
-    assert len(_enlarged(family, fibre, ways, rng, Deadline()).solutions) == 40
+    fibre, is_closed = _enlarged(family, fibre, ways, rng, Deadline())
+    assert is_closed
+    assert len(fibre.solutions) == 40
+
+
+def test_a_trace_of_no_points_says_nothing():
+    from bifurc.paths.monodromy import _trace
+
+    family = framework(PRISM, 6)
+    nothing = Fibre(np.ones(family.parameters, dtype=complex), np.empty((0, family.n)))
+    assert _trace(family, nothing, 0, 1.0, Deadline()) is None
