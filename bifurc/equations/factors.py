@@ -279,8 +279,7 @@ class _Polynomials:
         degrees = zip(generators, polynomial.degrees(), strict=True)
         if any(not degree and nodes[k].operation in PARTIAL for k, degree in degrees):
             return None  # log(x) - log(x) is zero for positive x only
-        is_split = self.is_split
-        _, factors = polynomial.factor() if is_split else polynomial.factor_squarefree()
+        factors = self._factored(polynomial)
         shifted = [
             writer.add(slot, writer.constant(-shift)) if shift else slot
             for slot, shift in shifts.items()
@@ -288,6 +287,12 @@ class _Polynomials:
         return {
             _written(writer, factor, shifted): int(power) for factor, power in factors
         }
+
+    def _factored(self, polynomial: fmpq_mpoly) -> list[tuple[fmpq_mpoly, int]]:
+        """The factors of a polynomial, with the power of each."""
+        if self.is_split:
+            return list(polynomial.factor()[1])
+        return list(polynomial.factor_squarefree()[1])
 
     def parts_of(self, factors: Mapping[int, int]) -> dict[int, int]:
         """The same of each of the ``factors``, by their slots, with their powers; those

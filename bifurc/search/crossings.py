@@ -140,22 +140,33 @@ def _bounds_of(tape: Tape, stretches: _Stretches, sizes: np.ndarray) -> _Bounds:
     """What bounds on the equation of a tape, and on its rate, show on stretches."""
     half = 0.5 * (stretches.high - stretches.low)
     middle = 0.5 * (stretches.high + stretches.low)
-    points = stretches.points(middle)
-    reach = half[:, None] * stretches.largest(1) + BLUR * sizes
-    low, high = points - reach, points + reach
-    lowest, highest = tape.compiled.value_bounds(low, high)
     blur = BLUR * sizes
-    at_middle = tape.compiled.value_bounds(points - blur, points + blur)
-    slopes = tape.compiled.jacobian_bounds(low, high)
+    points = stretches.points(middle)
+    reach = half[:, None] * stretches.largest(1) + blur
     velocity = stretches.points(middle, 1)
     change = half[:, None] * stretches.largest(2)
+    slopes = tape.compiled.jacobian_bounds(points - reach, points + reach)
     least, most = _products(slopes, (velocity - change, velocity + change))
     steepest = half * np.maximum(np.abs(least), np.abs(most))
-    lowest = np.fmax(lowest[:, 0], at_middle[0][:, 0] - steepest)
-    highest = np.fmin(highest[:, 0], at_middle[1][:, 0] + steepest)
-    is_empty = (lowest > 0.0) | (highest < 0.0)
-    is_monotone = (least > 0.0) | (most < 0.0)
-    return _Bounds(is_empty, is_monotone, (reach / sizes).max(axis=1))
+    values = tape.compiled.value_bounds(points - reach, points + reach)
+    at_middle = tape.compiled.value_bounds(points - blur, points + blur)
+    return _Bounds(
+        is_empty=leave_out_zero(values, at_middle, steepest[:, None])[:, 0],
+        is_monotone=(least > 0.0) | (most < 0.0),
+        reach=(reach / sizes).max(axis=1),
+    )
+
+
+def leave_out_zero(
+    values: tuple[np.ndarray, np.ndarray],
+    at_middle: tuple[np.ndarray, np.ndarray],
+    reach: np.ndarray,
+) -> np.ndarray:
+    """Whether bounds on functions, or those in the middle and what they change by from
+    there at most, leave out zero; all (k, m)."""
+    lowest = np.fmax(values[0], at_middle[0] - reach)
+    highest = np.fmin(values[1], at_middle[1] + reach)
+    return np.asarray((lowest > 0.0) | (highest < 0.0))
 
 
 def _products(

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.atlas import Atlas, Event, Form, MeetingPoint
+from bifurc.atlas import Atlas, Event, Form, MeetingPoint, Provenance
 from bifurc.branch import Outcome
 from bifurc.completeness import Claim, Completeness, Doubt, Level, Scope, worst_level
 from bifurc.decisions import is_one_crossing, may_be_one_crossing
@@ -265,35 +265,18 @@ class _Union:
     def atlas(self, passes: Sequence[_Pass]) -> Atlas:
         """The atlas of all parts with these passes of forms at other parts."""
         owned = [
-            (part, number, form)
+            (part, number)
             for part, each in enumerate(self.parts)
-            for number, form in enumerate(each.forms)
+            for number in range(len(each.forms))
         ]
-        order = order_branches(self.problem, [form.branch for _, _, form in owned])
-        numbers = {owned[k][:2]: new for new, k in enumerate(order.tolist())}
+        listed = [self.parts[part].forms[number] for part, number in owned]
+        order = order_branches(self.problem, [form.branch for form in listed]).tolist()
+        numbers = {owned[k]: new for new, k in enumerate(order)}
         clusters = self._clusters(passes)
-        periods = wrapped_periods(
-            self.problem.domain.periods, self.problem.domain.bounds
-        )
-        met = self._crossings(clusters, numbers)
-        own = [
-            _renumbered(point, part, numbers)
-            for part, each in enumerate(self.parts)
-            for point in each.atlas.points
-        ]
-        points = in_order(self.problem, [*met, *own], periods)
-        forms = _forms([owned[k][2] for k in order], points)
-        first = self.parts[0].atlas
-        provenances = [part.atlas.provenance for part in self.parts]
-        provenance = replace(
-            first.provenance,
-            interrupted=any(one.interrupted for one in provenances),
-            out_of_time=any(one.out_of_time for one in provenances) or self.left > 0,
-            equations=self.problem.accuracy.equations,
-            seconds=sum(one.seconds for one in provenances),
-        )
+        points = self._points(clusters, numbers)
+        forms = _forms([listed[k] for k in order], points)
         return replace(
-            first,
+            self.parts[0].atlas,
             forms=forms,
             points=points,
             near_misses=self._events("near_misses", numbers),
@@ -301,7 +284,34 @@ class _Union:
             rigid=np.concatenate([part.atlas.rigid for part in self.parts]),
             completeness=self._completeness(clusters, numbers, points),
             closure_gap=0.0 if forms else min(p.atlas.closure_gap for p in self.parts),
-            provenance=provenance,
+            provenance=self._provenance(),
+        )
+
+    def _points(
+        self,
+        clusters: Sequence[Sequence[_Pass]],
+        numbers: Mapping[tuple[int, int], int],
+    ) -> tuple[MeetingPoint, ...]:
+        """The singular points of all parts, and where these cross."""
+        own = [
+            _renumbered(point, part, numbers)
+            for part, each in enumerate(self.parts)
+            for point in each.atlas.points
+        ]
+        domain = self.problem.domain
+        periods = wrapped_periods(domain.periods, domain.bounds)
+        met = self._crossings(clusters, numbers)
+        return in_order(self.problem, [*met, *own], periods)
+
+    def _provenance(self) -> Provenance:
+        """How the atlas came about."""
+        known = [part.atlas.provenance for part in self.parts]
+        return replace(
+            known[0],
+            interrupted=any(one.interrupted for one in known),
+            out_of_time=any(one.out_of_time for one in known) or self.left > 0,
+            equations=self.problem.accuracy.equations,
+            seconds=sum(one.seconds for one in known),
         )
 
     def _clusters(self, passes: Sequence[_Pass]) -> list[list[_Pass]]:
@@ -353,10 +363,7 @@ class _Union:
         through: dict[tuple[int, int], float] = {}
         for each in cluster:
             through.setdefault((each.part, each.number), each.s)
-        tangents = []
-        for (part, number), s in through.items():
-            tangent = self.parts[part].forms[number].branch(s, 1)
-            tangents.append(tangent / np.linalg.norm(tangent))
+        tangents = self._tangents(through)
         count = len(through)
         pairs = count * (count - 1) // 2
         domain = self.problem.domain
@@ -365,15 +372,26 @@ class _Union:
             rank=0,
             null_space=np.eye(2),
             error=max(one.error for one in cluster) * float(self.sizes.max()),
-            half_branches=np.concatenate([tangents, np.negative(tangents)]),
-            tangents=np.array(tangents),
+            half_branches=np.concatenate([tangents, -tangents]),
+            tangents=tangents,
             dimension=1,
             order=2,
             radius=radius * float(self.sizes.min()),
             invariants=Invariants(count, count, pairs, (1,) * pairs),
         )
         passes = tuple((numbers[key], s) for key, s in through.items())
-        return MeetingPoint("", Kind.BIFURCATION, point, passes, np.array(tangents))
+        return MeetingPoint("", Kind.BIFURCATION, point, passes, tangents)
+
+    def _tangents(self, through: Mapping[tuple[int, int], float]) -> np.ndarray:
+        """Unit tangents (k, 2) of forms, by part and number, at arclengths."""
+        tangents = np.array(
+            [
+                self.parts[part].forms[number].branch(s, 1)
+                for (part, number), s in through.items()
+            ]
+        )
+        unit: np.ndarray = tangents / np.linalg.norm(tangents, axis=1, keepdims=True)
+        return unit
 
     def _events(
         self, kind: str, numbers: Mapping[tuple[int, int], int]

@@ -19,6 +19,7 @@ from bifurc.domain import Domain
 from bifurc.equations.tape import Operation, Tape
 from bifurc.limits import is_time_over
 from bifurc.search.answer.completeness import SearchClaim
+from bifurc.search.crossings import leave_out_zero
 
 MOST_UNKNOWNS = 4
 WIDER = 0.05  # of a box to either side: a solution on its rim is inside then
@@ -92,26 +93,42 @@ def isolated_in_boxes(tape: Tape, domain: Domain, most: int) -> IsolatedInBoxes 
     bounds = _region(domain)
     if tape.m != tape.n or tape.n > MOST_UNKNOWNS or not np.all(np.isfinite(bounds)):
         return None
-    boxes = _Boxes(bounds[None, :, 0].copy(), bounds[None, :, 1].copy())
-    widths = np.diff(bounds, axis=1)[:, 0]
-    singles = left = boxes.at(np.zeros(1, dtype=bool))
-    count = 0
-    while len(boxes.low) and count < most and len(boxes.low) < MOST_OPEN:
-        if is_time_over():
-            break
-        now, boxes = _divided(boxes)
-        count += len(now.low)
-        verdicts = _judged(tape, now, widths)
-        singles = singles.and_others(now.at(verdicts.is_single))
+    division = _Division(tape, bounds)
+    while division.is_open and division.count < most and not is_time_over():
+        division.judge_some()
+    points = _solutions(tape, division.singles, domain)
+    left = division.left.and_others(division.waiting)
+    return IsolatedInBoxes(division.count, points, np.stack(left, axis=2))
+
+
+class _Division:
+    """A subdivision of ``bounds`` (n, 2) under way: boxes ``waiting``, ``singles`` that
+    hold a solution each, and what is ``left`` as it is too small to be cut."""
+
+    def __init__(self, tape: Tape, bounds: np.ndarray):
+        self.tape = tape
+        self.widths = np.diff(bounds, axis=1)[:, 0]
+        self.waiting = _Boxes(bounds[None, :, 0], bounds[None, :, 1])
+        self.singles = self.left = self.waiting.at(np.zeros(1, dtype=bool))
+        self.count = 0
+
+    @property
+    def is_open(self) -> bool:
+        """Whether boxes wait, and not as many as along a curve."""
+        return 0 < len(self.waiting.low) < MOST_OPEN
+
+    def judge_some(self) -> None:
+        """Settle the first of the boxes that wait, or cut them."""
+        now, later = _divided(self.waiting)
+        self.count += len(now.low)
+        verdicts = _judged(self.tape, now, self.widths)
+        self.singles = self.singles.and_others(now.at(verdicts.is_single))
         is_open = ~verdicts.is_empty & ~verdicts.is_single
         rest = verdicts.left.at(is_open)
-        is_small = _is_small(rest, LEAST * widths)
-        left = left.and_others(rest.at(is_small))
+        is_small = _is_small(rest, LEAST * self.widths)
+        self.left = self.left.and_others(rest.at(is_small))
         shares = verdicts.shares[is_open][~is_small]
-        boxes = _halves(rest.at(~is_small), shares).and_others(boxes)
-    left = left.and_others(boxes)
-    points = _solutions(tape, singles, domain)
-    return IsolatedInBoxes(count, points, np.stack(left, axis=2))
+        self.waiting = _halves(rest.at(~is_small), shares).and_others(later)
 
 
 def _region(domain: Domain) -> np.ndarray:
@@ -132,27 +149,39 @@ def _divided(boxes: _Boxes) -> tuple[_Boxes, _Boxes]:
 
 def _judged(tape: Tape, boxes: _Boxes, widths: np.ndarray) -> _Verdicts:
     """What bounds on F and F' show of boxes; ``widths`` (n,) are those of the bounds."""
-    low, high = map(np.ascontiguousarray, boxes)
-    middles = 0.5 * (low + high)
+    middles = 0.5 * (boxes.low + boxes.high)
     at_middle = tape.compiled.value_bounds(middles, middles)
-    lowest, highest = tape.compiled.value_bounds(low, high)
-    half = 0.5 * (high - low)
-    least, most = tape.compiled.jacobian_bounds(low, high)
-    changes = np.maximum(np.abs(least), np.abs(most)) * half[:, None]  # (k, m, n)
+    changes = _changes(tape, boxes)
     reach = changes.sum(axis=2)
-    lowest = np.fmax(lowest, at_middle[0] - reach)
-    highest = np.fmin(highest, at_middle[1] + reach)
-    is_empty = ((lowest > 0.0) | (highest < 0.0)).any(axis=1)
+    values = tape.compiled.value_bounds(*map(np.ascontiguousarray, boxes))
+    is_empty = np.any(leave_out_zero(values, at_middle, reach), axis=1)
     wide = boxes.wider()
     mapped = _krawczyk(tape, wide, middles, at_middle)
     is_single = ((mapped.low > wide.low) & (mapped.high < wide.high)).all(axis=1)
-    rest = _Boxes(np.maximum(low, mapped.low), np.minimum(high, mapped.high))
-    is_empty |= (rest.low > rest.high).any(axis=1)
-    with np.errstate(all="ignore"):  # an equation may not change at all
-        shares = (changes / reach[:, :, None]).max(axis=1)
-    is_known = np.isfinite(shares).all(axis=1)
-    shares = np.where(is_known[:, None], shares, half / widths)
+    rest = _Boxes(
+        np.maximum(boxes.low, mapped.low), np.minimum(boxes.high, mapped.high)
+    )
+    is_empty = np.asarray(is_empty | (rest.low > rest.high).any(axis=1))
+    shares = _shares(changes, (boxes.high - boxes.low) / widths)
     return _Verdicts(is_empty, is_single & ~is_empty, rest, shares)
+
+
+def _shares(changes: np.ndarray, widths: np.ndarray) -> np.ndarray:
+    """The largest share (k, n) that each unknown has in the ``changes`` (k, m, n) of an
+    equation; where these are not known, the ``widths`` (k, n)."""
+    with np.errstate(all="ignore"):  # an equation may not change at all
+        shares = (changes / changes.sum(axis=2, keepdims=True)).max(axis=1)
+    is_known = np.isfinite(shares).all(axis=1, keepdims=True)
+    return np.where(is_known, shares, widths)
+
+
+def _changes(tape: Tape, boxes: _Boxes) -> np.ndarray:
+    """Bounds (k, m, n) on what each unknown changes the equations by from the middle of
+    a box."""
+    least, most = tape.compiled.jacobian_bounds(*map(np.ascontiguousarray, boxes))
+    half = 0.5 * (boxes.high - boxes.low)
+    changes: np.ndarray = np.maximum(np.abs(least), np.abs(most)) * half[:, None]
+    return changes
 
 
 def _krawczyk(
@@ -163,32 +192,61 @@ def _krawczyk(
 ) -> _Boxes:
     """The boxes that Krawczyk's operator makes of others, with bounds on F in the
     ``middles`` (k, n); infinite ones where F' is singular or not finite."""
-    low, high = map(np.ascontiguousarray, boxes)
-    count, n = low.shape
-    mapped = _Boxes(np.full((count, n), -np.inf), np.full((count, n), np.inf))
-    least, most = tape.compiled.jacobian_bounds(low, high)
-    rows = np.maximum(np.abs(least), np.abs(most)).max(axis=2, keepdims=True)
-    center = 0.5 * (least + most) / rows
-    is_regular = np.isfinite(center).all(axis=(1, 2))
-    is_regular[is_regular] = np.linalg.det(center[is_regular]) != 0.0
-    chosen = np.flatnonzero(is_regular)
+    slopes, rows = _slopes_in(tape, boxes)
+    chosen = _regular(slopes.center)
+    low, high = np.full(middles.shape, -np.inf), np.full(middles.shape, np.inf)
     if not len(chosen):
-        return mapped
-    center, rows = center[chosen], rows[chosen]
-    inverse = np.linalg.inv(center)
-    sizes = np.abs(inverse)
-    # the rounding of these products is far less than the last term
-    radius = 0.5 * (most - least)[chosen] / rows + PRODUCTS * np.abs(center)
-    value = 0.5 * (values[0] + values[1])[chosen, :, None] / rows
-    spread = 0.5 * (values[1] - values[0])[chosen, :, None] / rows
-    left_over = np.abs(np.eye(n) - inverse @ center) + sizes @ radius
-    half = 0.5 * (high - low)[chosen, :, None]
-    reach = left_over @ half + sizes @ (spread + PRODUCTS * np.abs(value))
-    ends = middles[chosen] - (inverse @ value)[:, :, 0]
-    is_known = np.isfinite(ends + reach[:, :, 0]).all(axis=1)
-    mapped.low[chosen[is_known]] = (ends - reach[:, :, 0])[is_known]
-    mapped.high[chosen[is_known]] = (ends + reach[:, :, 0])[is_known]
-    return mapped
+        return _Boxes(low, high)
+    ends = [value[chosen, :, None] / rows[chosen] for value in values]
+    half = 0.5 * (boxes.high - boxes.low)[chosen, :, None]
+    value, spread = 0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0])
+    step, reach = slopes.at(chosen).newton_step(value, spread, half)
+    # what overflows shows nothing
+    lowest, highest = middles[chosen] - step - reach, middles[chosen] - step + reach
+    low[chosen] = np.where(np.isnan(lowest), -np.inf, lowest)
+    high[chosen] = np.where(np.isnan(highest), np.inf, highest)
+    return _Boxes(low, high)
+
+
+def _slopes_in(tape: Tape, boxes: _Boxes) -> tuple[_Slopes, np.ndarray]:
+    """F' in boxes over the size of each row (k, n, 1), and these sizes."""
+    least, most = tape.compiled.jacobian_bounds(*map(np.ascontiguousarray, boxes))
+    rows = np.maximum(np.abs(least), np.abs(most)).max(axis=2, keepdims=True)
+    with np.errstate(all="ignore"):  # F' may vanish, or not be finite
+        return _Slopes(0.5 * (least + most) / rows, 0.5 * (most - least) / rows), rows
+
+
+def _regular(matrices: np.ndarray) -> np.ndarray:
+    """The numbers of those of the matrices (k, n, n) that are finite and regular."""
+    is_regular = np.isfinite(matrices).all(axis=(1, 2))
+    is_regular[is_regular] = np.linalg.det(matrices[is_regular]) != 0.0
+    return np.flatnonzero(is_regular)
+
+
+class _Slopes(NamedTuple):
+    """F' in boxes: within a ``radius`` of a ``center``, both (k, n, n)."""
+
+    center: np.ndarray
+    radius: np.ndarray
+
+    def at(self, chosen: np.ndarray) -> _Slopes:
+        """Those in some of the boxes."""
+        return _Slopes(self.center[chosen], self.radius[chosen])
+
+    def newton_step(
+        self, value: np.ndarray, spread: np.ndarray, half: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Newton's step (k, n) for F within a ``spread`` of a ``value``, and how far from
+        there Krawczyk's operator reaches (k, n) in boxes of ``half`` widths; all
+        (k, n, 1)."""
+        inverse = np.linalg.inv(self.center)
+        sizes = np.abs(inverse)
+        # the rounding of these products is far less than the last term
+        radius = self.radius + PRODUCTS * np.abs(self.center)
+        identity = np.eye(self.center.shape[1])
+        left_over = np.abs(identity - inverse @ self.center) + sizes @ radius
+        reach = left_over @ half + sizes @ (spread + PRODUCTS * np.abs(value))
+        return (inverse @ value)[:, :, 0], reach[:, :, 0]
 
 
 def _is_small(boxes: _Boxes, least: np.ndarray) -> np.ndarray:
