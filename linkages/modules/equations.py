@@ -15,7 +15,7 @@ tangent of its half, and a rotation is that of a quaternion of any length.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain
@@ -33,7 +33,7 @@ from linkages.structure.structure import Closure, ClosureKind, Structure
 
 # recorded, complex or real
 Number: TypeAlias = Any
-Point: TypeAlias = Sequence[Any]  # three numbers
+Point: TypeAlias = Any  # three of them, in any sequence
 
 ROTATION = 6  # numbers of an embedded rotation: two orthonormal vectors
 X_AXIS, Y_AXIS, ORIGIN = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
@@ -50,7 +50,7 @@ class Parameters:
     blocks: dict[tuple[str, int], slice] = field(default_factory=dict)
     given: list[complex] = field(default_factory=list)
 
-    def add(self, name: str, number: int, values: Sequence[complex]) -> None:
+    def add(self, name: str, number: int, values: Iterable[complex]) -> None:
         """A further block, with the values that the given mechanism has there."""
         first = len(self.given)
         self.given.extend(map(complex, values))
@@ -179,19 +179,24 @@ class ClosureFamily:
             parameters.add("point", k, point[: 2 if placement.is_planar else 3])
         for pair, free in structure.point_pairs.items():
             parameters.add("shift", pair, (free.directions @ placement.axes.T).ravel())
-        for number, variable in enumerate(structure.mechanism.variables):
-            if variable.locked:
-                unit = 1.0 if variable.motion.is_turn else structure.unit
-                value = variable.locked / unit
-                parameters.add("locked", number, _held(value, variable.motion.is_turn))
-        for number in self.held:
-            is_angle = structure.unknowns[number].is_angle
-            parameters.add("held", number, _held(0.0, is_angle))
+        self._add_held(parameters)
         for k, closure in enumerate(structure.closures):
             if closure.rod is not None and closure.rod.leg is not None:
                 parameters.add("leg", k, [closure.rod.length / structure.unit])
             parameters.add("target", k, self._given_target(closure))
         return parameters
+
+    def _add_held(self, parameters: Parameters) -> None:
+        """Add what is locked, and what is held."""
+        structure = self.structure
+        for number, variable in enumerate(structure.mechanism.variables):
+            if variable.locked:
+                is_turn = variable.motion.is_turn
+                value = variable.locked / (1.0 if is_turn else structure.unit)
+                parameters.add("locked", number, _held(value, is_turn))
+        for number in self.held:
+            is_angle = structure.unknowns[number].is_angle
+            parameters.add("held", number, _held(0.0, is_angle))
 
     def _given_target(self, closure: Closure) -> Sequence[float]:
         """Where the chain of a closure has to lead."""
@@ -470,7 +475,7 @@ class _Chains:
         c, s = float(np.cos(share.offset)), float(np.sin(share.offset))
         return c * cosine - s * sine, s * cosine + c * sine
 
-    def _cosine_and_sine(self, own: Sequence[Number]) -> tuple[Number, Number]:
+    def _cosine_and_sine(self, own: Any) -> tuple[Number, Number]:
         """Those of an angle x, from exp(i x) and exp(-i x)."""
         first, second = own
         (factor,) = self._block("of sines", 0)

@@ -51,12 +51,15 @@ class Module:
 
     def __init__(self, full: Structure, held: tuple[int, ...] = ()):
         self.skeleton = Skeleton.of(full, held)
-        own = tuple(self.skeleton.held(column) for column in held)
-        if None in own:
-            raise UnfollowedError("what is held is in no chain")
-        self.held = dict(zip(held, own, strict=True))
+        self.held: dict[int, int] = {}  # by their numbers in the full structure
+        for column in held:
+            own = self.skeleton.held(column)
+            if own is None:
+                raise UnfollowedError("what is held is in no chain")
+            self.held[column] = own
         try:
-            self.family = ClosureFamily(self.skeleton.structure, own)
+            structure = self.skeleton.structure
+            self.family = ClosureFamily(structure, tuple(self.held.values()))
         except ValueError as error:
             raise UnfollowedError(str(error)) from error
 
@@ -76,7 +79,7 @@ class Module:
         """How many points stay in a plane, on one side of a line in it."""
         points = self.skeleton.structure.free_points
         return sum(
-            len(one.directions) == 2 and -one.limits[1, 0] != one.limits[1, 1]
+            len(one.directions) == 2 and bool(-one.limits[1, 0] != one.limits[1, 1])
             for one in points
         )
 
@@ -284,7 +287,7 @@ def _write(name: str, generic: GenericSolutions) -> None:
             part,
             parameters=generic.fibre.parameters,
             solutions=generic.fibre.solutions,
-            trace=generic.trace,
+            trace=float(generic.trace or 0.0),
         )
         part.replace(file)
     except OSError:
