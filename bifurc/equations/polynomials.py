@@ -173,7 +173,8 @@ class PolynomialSystem:
             OF_COORDINATES[kind](unknowns[:, number])
             for number, kind in self.coordinates
         ]
-        return np.array(columns).T / self.sizes
+        places: np.ndarray = np.array(columns).T / self.sizes
+        return places
 
 
 def polynomial_system(tape: Tape, reading: Reading) -> PolynomialSystem | None:

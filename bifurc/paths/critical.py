@@ -13,14 +13,20 @@ bounded, or of which the function is a distance, one of them is a point).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
+from itertools import islice
 
 import numpy as np
 
 from bifurc.equations.tape import TapeWriter
 from bifurc.limits import Deadline
-from bifurc.paths.curves import CurveEquations, HyperplaneSection, on_patch
+from bifurc.paths.curves import (
+    CurveEquations,
+    HyperplaneSection,
+    on_patch,
+    with_affine_ends,
+)
 from bifurc.paths.family import Family, complex_normal
 from bifurc.paths.follow import Paths, follow_paths
 from bifurc.paths.homogeneous import (
@@ -58,37 +64,28 @@ class CriticalPoints:
         """The family of pairs of homogeneous coordinates (n + 1) and directions (n);
         parameters are two linear functions that are 1, one of each, the shares of the
         equations and of the products, and the factors of these: of x, then of v."""
-        n = self.equations.n
-        size, factors = n + 1, sum(self.degrees)
+        n, factors = self.equations.n, sum(self.degrees)
+        size = n + 1
         total = 2 * (size + n) + 2 + factors * size + n * n
         writer = TapeWriter(total)
-        slots = iter([writer.unknown(k) for k in range(total)])
-
-        def take(count: int) -> list[int]:
-            return [next(slots) for _ in range(count)]
-
-        places, along = take(size), take(n)
-        patch, patch_of_directions = take(size), take(n)
-        share, start = take(2)
-        of_places = [write_linear(writer, take(size), places) for _ in range(factors)]
-        of_directions = [write_linear(writer, take(n), along) for _ in range(n)]
-        outputs = [
-            write_homogeneous(writer, one, places, degree_of(one))
-            for one in self.equations.polynomials
-        ]
+        slots = map(writer.unknown, range(total))
+        places, along = list(islice(slots, size)), list(islice(slots, n))
+        units = [write_linear(writer, slots, one) for one in (places, along)]
+        share, start = islice(slots, 2)
+        of_places = [write_linear(writer, slots, places) for _ in range(factors)]
+        of_directions = [write_linear(writer, slots, along) for _ in range(n)]
+        products = self._products(writer, of_places, of_directions)
         one = writer.constant(1.0)
-        outputs.append(writer.subtract(write_linear(writer, patch, places), one))
-        unit = write_linear(writer, patch_of_directions, along)
-        outputs.append(writer.subtract(unit, one))
-        given = self._written(writer, places, along)
-        for row, product in zip(
-            given, self._products(writer, of_places, of_directions), strict=True
-        ):
-            both = writer.add(
-                writer.multiply(share, row), writer.multiply(start, product)
-            )
-            outputs.append(both)
-        return Family(writer.tape(outputs), size + n, is_projective=True, places=size)
+        outputs = [
+            write_homogeneous(writer, polynomial, places, degree_of(polynomial))
+            for polynomial in self.equations.polynomials
+        ]
+        outputs += [writer.subtract(unit, one) for unit in units]
+        rows = self._written(writer, places, along)
+        for pair in zip(rows, products, strict=True):
+            outputs.append(write_linear(writer, pair, (share, start)))
+        tape = writer.tape(outputs)
+        return Family(tape, size + n, is_projective=True, places=size)
 
     def _products(
         self, writer: TapeWriter, of_places: list[int], of_directions: list[int]
@@ -130,28 +127,34 @@ class CriticalPoints:
         planes = complex_normal(rng, (sum(self.degrees), n + 1))
         directions = complex_normal(rng, (n, n))
         patch, unit = complex_normal(rng, n + 1), complex_normal(rng, n)
-        starts, before = [], []
-        owners = np.repeat(np.arange(n), self.degrees)
-        for owner, plane in zip(owners.tolist(), planes, strict=True):
-            # all products but one vanish by their factor of v
-            others = np.delete(directions, owner, axis=0)
-            along = np.linalg.solve(np.vstack([others, unit]), np.eye(n)[n - 1])
-            moved = self.equations.follow(section, plane, rng, deadline)
-            before.append(moved)
-            places = on_patch(moved.points, patch)
-            starts.append(np.hstack([places, np.tile(along, (len(places), 1))]))
-        joined = np.concatenate([np.empty((0, 2 * n + 1)), *starts])
-        fixed = np.concatenate([patch, unit])
-        products = np.concatenate([planes.ravel(), directions.ravel()])
+        before = [self.equations.follow(section, one, rng, deadline) for one in planes]
+        vectors = np.repeat(_kernels(directions, unit), self.degrees, axis=0)
+        starts = [np.empty((0, 2 * n + 1))]
+        for vector, moved in zip(vectors, before, strict=True):
+            along = np.tile(vector, (len(moved.points), 1))
+            starts.append(np.hstack([on_patch(moved.points, patch), along]))
         gamma = np.exp(2j * np.pi * rng.random())
-        first = np.concatenate([fixed, [0.0, gamma], products])
-        last = np.concatenate([fixed, [1.0, 0.0], products])
+        shares = np.array([[0.0, gamma], [1.0, 0.0]])
+        first, last = (
+            np.concatenate([patch, unit, pair, planes.ravel(), directions.ravel()])
+            for pair in shares
+        )
+        joined = np.concatenate(starts)
         paths = follow_paths(
             self.family, joined, first, last, deadline, farthest=farthest
         )
-        with np.errstate(all="ignore"):
-            points = paths.points[:, 1 : n + 1] / paths.points[:, :1]
-        return replace(paths, points=points), _together(before, n)
+        return with_affine_ends(paths, n), _together(before, n)
+
+
+def _kernels(directions: np.ndarray, unit: np.ndarray) -> np.ndarray:
+    """Vectors (n, n), at each of which all linear functions ``directions`` (n, n) but one
+    are zero, so that all products but one vanish, and another one, ``unit``, is 1."""
+    n = len(unit)
+    vectors = []
+    for number in range(n):
+        rows = np.vstack([np.delete(directions, number, axis=0), unit])
+        vectors.append(np.linalg.solve(rows, np.eye(n)[n - 1]))
+    return np.array(vectors)
 
 
 def _written_gradient(

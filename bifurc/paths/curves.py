@@ -20,7 +20,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.decisions import is_plainly_linear, solves_all_equations
+from bifurc.decisions import (
+    is_linear_trace,
+    is_plainly_linear,
+    solves_all_equations,
+)
 from bifurc.equations.tape import TapeWriter
 from bifurc.limits import Deadline
 from bifurc.paths.family import Family, complex_normal
@@ -154,8 +158,8 @@ class CurveEquations:
             paths = self._from_powers(plane, rng, deadline)
             if not np.any(paths.is_lost):
                 return plane, paths
-        paths = self._from_generic(plane, rng, deadline, most)
-        return None if paths is None else (plane, paths)
+        others = self._from_generic(plane, rng, deadline, most)
+        return None if others is None else (plane, others)
 
     def _from_powers(
         self, plane: np.ndarray, rng: np.random.Generator, deadline: Deadline
@@ -170,7 +174,8 @@ class CurveEquations:
         gamma = np.exp(2j * np.pi * rng.random())
         ends = (np.r_[patch, plane, 0.0, gamma], np.r_[patch, plane, 1.0, 0.0])
         starts = on_patch(starts, patch)
-        return _affine(follow_paths(self.from_powers, starts, *ends, deadline))
+        paths = follow_paths(self.from_powers, starts, *ends, deadline)
+        return with_affine_ends(paths, self.n)
 
     def _from_generic(
         self,
@@ -209,7 +214,7 @@ class CurveEquations:
         paths = follow_paths(
             self.sections, starts, first, last, deadline, farthest=farthest
         )
-        return _affine(paths)
+        return with_affine_ends(paths, self.n)
 
     # --- irreducible curves -----------------------------------------------------------
 
@@ -237,15 +242,17 @@ class CurveEquations:
             joined = self._joined(section, group, rng, deadline)
             quiet = quiet + 1 if np.array_equal(joined, group) else 0
             group, traces = joined, _traces(moved, joined)
-        is_open = np.array([not is_plainly_linear(traces[k]) for k in group.tolist()])
-        # points that no way joined, and that are linear only together
-        group[is_open] = -1
-        traces = _traces(moved, group)
-        if not _are_linear(traces):
+        # groups that no way joined, and whose sums are linear only together
+        are_open = [k for k, trace in traces.items() if not is_plainly_linear(trace)]
+        together = np.isin(group, are_open) & (len(are_open) > 1)
+        group[together] = -1
+        trace = max(_traces(moved, group).values())
+        if not is_linear_trace(trace):
             return None
         points = tuple(section.points[group == k] for k in np.unique(group))
-        together = int(np.count_nonzero(is_open))
-        return IrreducibleCurves(section.plane, points, max(traces.values()), together)
+        return IrreducibleCurves(
+            section.plane, points, trace, int(np.count_nonzero(together))
+        )
 
     def curve_through(
         self, point: np.ndarray, rng: np.random.Generator, deadline: Deadline, most: int
@@ -262,7 +269,7 @@ class CurveEquations:
                 break
             section = HyperplaneSection(plane, points)
             moved = self._parallel(section, rng, deadline)
-            if moved is not None and is_plainly_linear(_trace(moved)):
+            if moved is not None and is_linear_trace(_trace(moved)):
                 return IrreducibleCurves(plane, (points,), _trace(moved))
             back = self._round_trip(section, rng, deadline)
             points = distinct(np.concatenate([points, back.regular]))
@@ -328,10 +335,12 @@ def on_patch(points: np.ndarray, patch: np.ndarray) -> np.ndarray:
     return scaled
 
 
-def _affine(paths: Paths) -> Paths:
-    """Paths with their ends (k, n) no longer in homogeneous coordinates."""
+def with_affine_ends(paths: Paths, n: int) -> Paths:
+    """Paths with their ends (k, n) no longer in homogeneous coordinates, which the
+    first n + 1 of them are."""
     with np.errstate(all="ignore"):
-        return replace(paths, points=paths.points[:, 1:] / paths.points[:, :1])
+        points = paths.points[:, 1 : n + 1] / paths.points[:, :1]
+    return replace(paths, points=points)
 
 
 def _written_planes(writer: TapeWriter, places: Sequence[int], first: int) -> list[int]:

@@ -38,6 +38,10 @@ LEAST_RATIO = (
 )
 NEARBY = 1e-6  # along any direction: points that are compared
 HALF_THE_DIGITS = 30.0  # times less well a multiple end is known than what is the same
+# Places about a singular end, and how far from it, over 1 + its size, from which Newton's
+# method looks for regular ones; of these it then moves less than paths that are the same.
+PLACES, DISTANCES = 8, np.geomspace(1e-2, 1e-7, 6)
+NEWTON_STEPS, STILL = 12, 1e-2
 BESIDE = 0.1  # over 1 + the size of a point: where rows have the sizes of most places
 
 
@@ -136,6 +140,7 @@ def follow_paths(
         for name in vars(paths):
             getattr(paths, name)[doubtful] = getattr(others, name)
     _tell_meetings(family, paths, last)
+    _tell_apart(family, paths, last)
     return paths
 
 
@@ -158,6 +163,54 @@ def _tell_meetings(family: Family, paths: Paths, last: np.ndarray) -> None:
     is_singular = is_singular_meeting(_rank_ratios(matrices, others))
     paths.ends[has_jumped] = PathEnd.STUCK
     paths.ends[meeting[is_singular]] = PathEnd.SINGULAR
+
+
+def _tell_apart(family: Family, paths: Paths, last: np.ndarray) -> None:
+    """Put regular solutions in the place of a singular end of several paths where there
+    are as many beside it: from farther away they look like one."""
+    singular = np.flatnonzero(paths.ends == PathEnd.SINGULAR)
+    copies = copy_of(paths.points[singular], HALF_THE_DIGITS)
+    for first in np.unique(copies).tolist():
+        members = singular[copies == first]
+        if len(members) < 2:
+            continue
+        found = _regular_solutions_beside(family, paths.points[members[0]], last)
+        if len(found) == len(members):
+            paths.points[members] = found
+            paths.ends[members] = PathEnd.REGULAR
+
+
+def _regular_solutions_beside(
+    family: Family, point: np.ndarray, last: np.ndarray
+) -> np.ndarray:
+    """The regular solutions (k, n) that Newton's method finds from places about a point
+    (n,), near and less near."""
+    rng = np.random.default_rng(0)
+    size = 1.0 + float(np.abs(point).max())
+    shifts = complex_normal(rng, (PLACES, len(DISTANCES), family.n))
+    points = point + size * (DISTANCES[:, None] * shifts).reshape(-1, family.n)
+    moves = np.full(len(points), np.inf)
+    for _ in range(NEWTON_STEPS):
+        steps = _newton_steps(family, points, last)
+        points = points - steps
+        moves = np.abs(steps).max(axis=1)
+        is_near = np.abs(points - point).max(axis=1) < size * DISTANCES[0]
+        points, moves = points[is_near], moves[is_near]
+    points = distinct(points[is_same_path_end(moves / size, STILL)])
+    others = family.jacobians(points + BESIDE * size * shifts[0, 0], last)
+    ratios = _rank_ratios(family.jacobians(points, last), others)
+    regular: np.ndarray = points[~is_singular_meeting(ratios)]
+    return regular
+
+
+def _newton_steps(
+    family: Family, points: np.ndarray, parameters: np.ndarray
+) -> np.ndarray:
+    """F'^+ F (k, n) at points (k, n)."""
+    matrices = family.jacobians(points, parameters)
+    residuals = family.residuals(points, parameters)
+    steps: np.ndarray = (np.linalg.pinv(matrices) @ residuals[:, :, None])[:, :, 0]
+    return steps
 
 
 class _Way(NamedTuple):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TypeAlias
 
 import numpy as np
@@ -78,11 +78,12 @@ def write_product(writer: TapeWriter, factors: Sequence[int]) -> int:
 
 
 def write_linear(
-    writer: TapeWriter, factors: Sequence[int], slots: Sequence[int]
+    writer: TapeWriter, factors: Iterable[int], slots: Sequence[int]
 ) -> int:
-    """The slot of the sum of products of ``factors`` and what is in ``slots``."""
+    """The slot of the sum of products of what is in ``slots`` and of the first
+    ``factors``."""
     total = writer.constant(0.0)
-    for factor, slot in zip(factors, slots, strict=True):
+    for slot, factor in zip(slots, factors, strict=False):
         total = writer.add(total, writer.multiply(factor, slot))
     return total
 

@@ -17,10 +17,11 @@ import numpy as np
 from bifurc.completeness import Claim, Level, Scope
 from bifurc.decisions import (
     Decision,
-    is_beyond_bounds,
+    ends_beyond_reach,
     is_plainly_at_infinity,
-    is_real_end,
-    may_be_real_end,
+    is_real_path_end,
+    is_same_point,
+    may_be_real_path_end,
 )
 from bifurc.equations.polynomials import PolynomialSystem
 from bifurc.equations.tape import Operation
@@ -105,6 +106,7 @@ class CountedCurves:
         else:
             kind = SearchClaim.ALL_CURVES
             more = {"points": parts.count, "singular": parts.count_singular}
+            data["least"] = is_same_point.threshold
         is_whole = kind is SearchClaim.ALL_CURVES
         level = Level.CERTIFIED if is_whole else Level.ESTIMATED
         claim = kind.claim(Scope.MOTIONS, level, **data, **more)
@@ -141,9 +143,9 @@ class PointsOnParts:
         self.lost += int(np.count_nonzero(paths.is_lost))
         at_infinity = paths.points[paths.ends == PathEnd.AT_INFINITY]
         self.far += int(np.count_nonzero(~_are_away(at_infinity, self.reach)))
-        self.regular.append(_real(paths.regular, is_real_end))
+        self.regular.append(_real(paths.regular, is_real_path_end))
         singular = paths.points[paths.ends == PathEnd.SINGULAR]
-        self.singular.append(_real(singular, may_be_real_end))
+        self.singular.append(_real(singular, may_be_real_path_end))
 
 
 class CurveCounter:
@@ -276,7 +278,7 @@ class CurveCounter:
         through = np.r_[-(normal @ point), normal]
         paths = self.equations.follow(section, through, self.rng, self.deadline)
         gaps = np.abs(paths.points - point).max(axis=1, initial=0.0)
-        return bool(np.any(may_be_real_end(gaps / (1.0 + np.abs(point).max()))))
+        return bool(np.any(may_be_real_path_end(gaps / (1.0 + np.abs(point).max()))))
 
     def degrees_through(self, points: np.ndarray) -> list[int]:
         """The degrees of the irreducible curves through regular points (k, n), each
@@ -306,6 +308,7 @@ def _are_away(points: np.ndarray, reach: float) -> np.ndarray:
     """Which ends at infinity (k, c) are farther away than any point within ``reach``."""
     # at infinity a coordinate that is zero is none
     sizes = np.fmax.reduce(np.abs(points), axis=1, initial=1.0)
+    are_away: np.ndarray = ends_beyond_reach(reach / sizes)
     if np.isinf(reach):
-        return is_plainly_at_infinity(1.0 / sizes)
-    return is_beyond_bounds(reach / sizes)
+        are_away = is_plainly_at_infinity(1.0 / sizes)
+    return are_away

@@ -17,7 +17,7 @@ from bifurc.checks import (
     check_type,
     index_of_unknown,
 )
-from bifurc.completeness import Completeness, Level
+from bifurc.completeness import Claim, Completeness, Level
 from bifurc.diagrams.diagram import Diagram
 from bifurc.diagrams.events import EventRequests, events_of
 from bifurc.diagrams.make_diagram import diagram_of, named_points
@@ -48,6 +48,7 @@ from bifurc.search.own_units.unit_problem import (
     in_own_units,
     is_of_equations,
 )
+from bifurc.search.path_audit import system_of
 from bifurc.search.search import Search
 from bifurc.seeds import Seeds
 from bifurc.settings import LOOSEST, SearchSettings
@@ -226,16 +227,11 @@ def _atlas_of_solutions(
     problem: FunctionProblem, request: _Request, solutions: IsolatedInBoxes
 ) -> Atlas:
     """The atlas of equations of which all solutions are known, and isolated."""
-    from bifurc.search.isolated import isolated_solutions  # few searches need it
-
     deadline = current_deadline()
     claims = [solutions.claim]
-    if request.settings.paths:
-        followed = isolated_solutions(problem, request.settings.paths, deadline)
-        inside = len(solutions.points)
-        counted = None if followed is None else followed.claim(inside)
-        if counted is not None and counted.level is Level.CERTIFIED:
-            claims.append(replace(counted, level=None))  # boxes show more
+    counted = _counted_by_paths(problem, request, len(solutions.points))
+    if counted is not None and counted.level is Level.CERTIFIED:
+        claims.append(replace(counted, level=None))  # boxes show more
     provenance = _provenance(problem, request, False, deadline)
     provenance = replace(provenance, out_of_time=False)
     domain = problem.domain
@@ -252,6 +248,21 @@ def _atlas_of_solutions(
         completeness=Completeness(tuple(claims), (), 0.0),
         provenance=provenance,
     )
+
+
+def _counted_by_paths(
+    problem: FunctionProblem, request: _Request, inside: int
+) -> Claim | None:
+    """What paths say of isolated solutions, so many ``inside`` the bounds; None of
+    equations that are no polynomials."""
+    most, bounds = request.settings.paths, problem.domain.bounds
+    system = system_of(problem.domain, problem.recording.tape) if most else None
+    if system is None or not system.is_square:
+        return None
+    from bifurc.search.isolated import isolated_solutions  # few searches need it
+
+    found = isolated_solutions(system, bounds, most, current_deadline())
+    return None if found is None else found.claim(inside)
 
 
 def _solutions_of(

@@ -51,14 +51,13 @@ class IsolatedSolutions:
         """What is said of the isolated solutions, of which so many are ``inside`` the
         bounds; ``are_on_curves`` tells of points (k, c) whether all of them lie on
         curves that are known."""
-        ends = self.paths.ends
-        singular = int(np.count_nonzero(ends == PathEnd.SINGULAR))
+        singular = len(self.singular_ends)
         lost = int(np.count_nonzero(self.paths.is_lost))
         data = {
             "real": self.real,
             "complex": self.complex,
             "inside": inside,
-            "paths": len(ends),
+            "paths": len(self.paths.ends),
             "trace": self.trace,
         }
         if lost:
@@ -66,12 +65,10 @@ class IsolatedSolutions:
             kind, more = SearchClaim.PATHS_LOST, {"lost": lost, "reasons": reasons}
         elif far := self._are_far():
             kind, more = SearchClaim.PATHS_FAR_AWAY, {"far": far}
-        elif are_on_curves is not None and are_on_curves(
-            self.paths.points[ends == PathEnd.SINGULAR]
-        ):
+        elif are_on_curves is not None and are_on_curves(self.singular_ends):
             kind = SearchClaim.ALL_ISOLATED_BESIDE_CURVES
-            data["singular"] = singular
-            return kind.claim(Scope.ASSEMBLIES, Level.CERTIFIED, **data)
+            level = Level.CERTIFIED
+            return kind.claim(Scope.ASSEMBLIES, level, **data, singular=singular)
         elif singular or self.has_curves:
             kind, more = SearchClaim.PATHS_TO_SINGULAR, {"singular": singular}
         elif self.has_curves is None:
@@ -80,6 +77,12 @@ class IsolatedSolutions:
             kind = SearchClaim.ALL_ISOLATED
             return kind.claim(Scope.ASSEMBLIES, Level.CERTIFIED, **data)
         return kind.claim(Scope.ASSEMBLIES, Level.ESTIMATED, **data, **more)
+
+    @property
+    def singular_ends(self) -> np.ndarray:
+        """The ends of paths (s, c) that are singular."""
+        ends: np.ndarray = self.paths.points[self.paths.ends == PathEnd.SINGULAR]
+        return ends
 
     def _are_far(self) -> int:
         """How many paths ended so far away that rounding may hide a solution there."""

@@ -20,6 +20,7 @@ from bifurc.search.records import Start, half_branch_starts
 from bifurc.seeds import Audit, Seeds
 
 if TYPE_CHECKING:
+    from bifurc.domain import Domain
     from bifurc.equations.polynomials import PolynomialSystem
     from bifurc.equations.tape import Tape
     from bifurc.search.curves_by_paths import CountedCurves, CurveCounter
@@ -38,6 +39,21 @@ class _Isolated(NamedTuple):
 
     solutions: IsolatedSolutions
     inside: int
+
+
+def system_of(domain: Domain, tape: Tape | None) -> PolynomialSystem | None:
+    """The equations of a tape as polynomials in all unknowns of a ``domain``; None where
+    they are none."""
+    if tape is None:
+        return None
+    # sympy and flint take longer to import than a small problem to solve
+    from bifurc.equations.polynomials import polynomial_system, simplest_ratio
+
+    system = polynomial_system(tape, simplest_ratio)
+    if system is None or np.any(np.isfinite(domain.periods) & ~system.are_angles):
+        return None
+    numbers = {number for number, _ in system.coordinates}
+    return system if len(numbers) == len(domain.periods) else None
 
 
 class PathAudit:
@@ -60,11 +76,8 @@ class PathAudit:
         """Take all isolated solutions of as many polynomials as unknowns for seeds, and
         say how many there are."""
         users = self._users()
-        tape = None if users is None else users.recording.tape
-        if users is None or tape is None or tape.m != tape.n:
-            return
-        system = self._system(tape)
-        if system is None or not system.is_square:
+        system = None if users is None else self._square_system(users)
+        if users is None or system is None:
             return
         from bifurc.search.isolated import isolated_solutions  # few searches need it
 
@@ -80,8 +93,8 @@ class PathAudit:
         self.isolated = _Isolated(found, solved)
         claim = found.claim(solved)
         has_all = claim.level is Level.CERTIFIED
-        more = len(findings.traced) + len(findings.components.seeds)
-        if has_all and (more or len(findings.rigid) != solved):
+        moves = bool(findings.traced or findings.components.seeds)
+        if has_all and (moves or len(findings.rigid) != solved):
             return  # doubles do not tell them apart, or from what is nearly solved
         findings.set_audit(Audit((claim,), np.empty((0, self.problem.n)), has_all))
 
@@ -94,7 +107,7 @@ class PathAudit:
         users, findings = self._users(), self.findings
         if users is None or findings.components.seeds or self._has_no_curves():
             return
-        system = self._system(self._tape_of_curves(users))
+        system = system_of(self.problem.domain, self._tape_of_curves(users))
         if system is None or len(system.polynomials) < len(system.coordinates) - 1:
             return
         from bifurc.search.curves_by_paths import CurveCounter  # few searches need it
@@ -176,8 +189,9 @@ class PathAudit:
         return [kind.claim(Scope.ASSEMBLIES, Level.ESTIMATED)]
 
     def _has_no_curves(self) -> bool:
-        """Whether it is known, or likely, that there are none."""
-        return self.isolated is not None and not self.isolated.solutions.has_curves
+        """Whether it is known that there are none."""
+        isolated = self.isolated
+        return isolated is not None and isolated.solutions.has_curves is False
 
     # --- the problem ------------------------------------------------------------------
 
@@ -202,19 +216,13 @@ class PathAudit:
             return self.problem.tape
         return users.recording.tape
 
-    def _system(self, tape: Tape | None) -> PolynomialSystem | None:
-        """Equations as polynomials in all unknowns; None where they are none."""
-        if tape is None:
+    def _square_system(self, users: FunctionProblem) -> PolynomialSystem | None:
+        """The equations as as many polynomials as there are unknowns."""
+        tape = users.recording.tape
+        if tape is None or tape.m != tape.n:
             return None
-        # sympy and flint take longer to import than a small problem to solve
-        from bifurc.equations.polynomials import polynomial_system, simplest_ratio
-
-        system = polynomial_system(tape, simplest_ratio)
-        is_circle = np.isfinite(self.problem.domain.periods)
-        if system is None or np.any(is_circle & ~system.are_angles):
-            return None
-        numbers = {number for number, _ in system.coordinates}
-        return system if len(numbers) == self.problem.n else None
+        system = system_of(self.problem.domain, tape)
+        return system if system and system.is_square else None
 
     def _is_unbounded(self) -> bool:
         """Whether the search chose bounds where there are none."""
