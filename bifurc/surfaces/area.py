@@ -110,24 +110,30 @@ class _Measure:
         count = ends.shape[1]
         chart = np.repeat(self._cells.chart, count)
         t, t_weights = _gauss(RAYS)
-        points, is_there = self._graphs.part(chart).along(ends.reshape(-1, 2), t)
+        flat = ends.reshape(-1, 2)
+        points, is_there = self._graphs.part(chart).along(flat, t)
         ratio = self._ratios(chart, points)
-        positions = ends.reshape(-1, 1, 2) * t[:, None]
+        positions = flat[:, None] * t[:, None]
         gaps = _fill_cells(ratio, positions, is_there, chart).reshape(-1, count)[:, 1:]
         ratio = ratio.reshape(-1, count, RAYS)
         weighted = t * t_weights * turned[:, :, None]
         is_outside = self._are_outside(points).reshape(ratio.shape)[:, 1:]
-        is_outside &= ~self._are_bent(turned)[self._cells.chart, None, None]
         outside = ratio[:, 1:] * weighted * is_outside
-        at_center, lower = _lower_weights_from_center(t)
-        flat = self._ratios(np.arange(self._count), self._graphs.centers[:, None])
-        from_center = at_center * flat[self._cells.chart]
+        outside[self._are_bent(turned)[self._cells.chart]] = 0.0
         return _Rays(
             integrals=ratio @ (t * t_weights),
-            lower_integrals=from_center + ratio @ lower,
+            lower_integrals=self._lower_integrals(ratio, t),
             gaps=gaps * np.abs(weighted).sum(axis=2),
             outside=self._sums(outside.sum(axis=2)),
         )
+
+    def _lower_integrals(self, ratio: np.ndarray, t: np.ndarray) -> np.ndarray:
+        """What the lower rule makes (e, r) of the ``ratio`` (e, r, s) at places ``t``
+        (s,) and in the centres."""
+        at_center, weights = _lower_weights_from_center(t)
+        flat = self._ratios(np.arange(self._count), self._graphs.centers[:, None])
+        integrals: np.ndarray = at_center * flat[self._cells.chart] + ratio @ weights
+        return integrals
 
     def _are_bent(self, turned: np.ndarray) -> np.ndarray:
         """Which cells (c,) are differences of sectors, some of which are turned (e, k)

@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.problem import Problem
-from bifurc.surfaces.graphs import SOLVED, Graphs, bounds_of
+from bifurc.surfaces.graphs import Graphs, bounds_of
 from bifurc.surfaces.polygon import BORDER, FlatCharts, Polygon
+from bifurc.surfaces.sheet import SOLVED
 from bifurc.system import relative_gaps
 
 # Corners of neighbouring polygons closer than this, over their charts' radius, are one

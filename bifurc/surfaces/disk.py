@@ -70,7 +70,9 @@ def fitting_disk(
     disk = _core.fitting_disk(
         compiled_equations(problem),
         problem.domain.scale,
-        *(np.ascontiguousarray(one) for one in plane),
+        plane.center,
+        np.ascontiguousarray(plane.basis),
+        plane.normal,
         largest=largest,
         smallest=smallest,
         bend=BEND,
