@@ -85,7 +85,8 @@ def _loaded(
         member = of_file.build(**read_parameters(of_file.parameters, parameters))
         return Linkage(member) if isinstance(member, Loop) else member
     family: Entry | NetworkEntry = NETWORKS.get(text) or entry(text)
-    return load(text, **read_parameters(family.parameters, parameters))
+    values = read_parameters(family.parameters, parameters)
+    return load(text, closures=None, **values)
 
 
 def _require_size(text: str, linkage: Linkage | Mechanism) -> None:
