@@ -33,7 +33,6 @@ from bifurc.search.records import Components, SingularCurve
 from bifurc.settings import TraceSettings
 from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
-from bifurc.singular.point import SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.crossing_sheets import is_on_singular_curve, sign_changes
 from bifurc.surfaces.geodesic import entrances
@@ -76,11 +75,9 @@ APART, ERRORS = 1e-5, 10
 PROBE, PROBES = 1e-2, 3
 
 
-def _is_on_curve(problem: Problem, curve: SingularCurve, point: SingularPoint) -> bool:
-    """Whether a singular point is one of a curve of such points."""
-    if point.rank != curve.rank:
-        return False
-    places, are_solved = RankDeflated(problem, curve.rank).next_to(point.u[None])
+def _is_on_curve(problem: Problem, curve: SingularCurve, u: np.ndarray) -> bool:
+    """Whether a singular point (n,) of its rank is one of a curve of such points."""
+    places, are_solved = RankDeflated(problem, curve.rank).next_to(u[None])
     distance, _ = curve.branch.nearest(places)
     return bool(are_solved[0] and is_same_point(distance[0], problem.domain.scale))
 
@@ -88,20 +85,21 @@ def _is_on_curve(problem: Problem, curve: SingularCurve, point: SingularPoint) -
 def singular_curve_through(
     problem: Problem,
     components: Components,
-    point: SingularPoint,
+    u: np.ndarray,
+    rank: int,
     tracing: TraceSettings,
     deadline: Deadline,
 ) -> SingularCurve | None:
-    """The curve of singular points of one rank on which a singular point lies, one that
-    is known or is traced now; None where it lies on none that is regular and can be
+    """The curve of singular points of one ``rank`` on which a singular point ``u`` (n,)
+    lies, one that is known or is traced now; None where it lies on none that is regular and can be
     followed to its end."""
     for known in components.notes.all_curves():
-        if _is_on_curve(problem, known, point):
+        if known.rank == rank and _is_on_curve(problem, known, u):
             return known
     if problem.domain.is_large or deadline.passed:
         return None
-    deflated = RankDeflated(problem, point.rank)
-    places, are_solved = deflated.next_to(point.u[None])
+    deflated = RankDeflated(problem, rank)
+    places, are_solved = deflated.next_to(u[None])
     if not are_solved[0]:
         return None
     local = local_dimensions(deflated, places, deadline)
@@ -111,9 +109,9 @@ def singular_curve_through(
     if branch.outcome not in WHOLE:
         return None
     places = branch.sample(LOOKS)
-    if _miss_in_more_digits(problem, places, point.rank, OFF_CURVE):
+    if _miss_in_more_digits(problem, places, rank, OFF_CURVE):
         return None  # sheets come near to each other, and do not meet
-    return SingularCurve(branch, point.rank)
+    return SingularCurve(branch, rank)
 
 
 def components_of_seeds(
@@ -342,13 +340,20 @@ def crossings_beside_curves(
         return
     is_redundant = problem.jacobians(charts.centers[:1]).shape[1] > problem.n - 2
     samples = 0
-    for crossing in sign_changes(problem, charts):
+    crossings = sign_changes(problem, charts)
+    radii = np.array([charts.radii[crossing.pair].max() for crossing in crossings])
+    # where charts are large no other singular point is near
+    for k in np.argsort(-radii, kind="stable"):
         if deadline.passed:
             return
-        radius = float(charts.radii[crossing.pair].max())
+        crossing, radius = crossings[k], float(radii[k])
         if components.notes.is_beside_curve(crossing.place, BESIDE * radius):
             continue
-        point = _point_next_to(problem, crossing.place, radius)
+        point = None
+        if not is_redundant:
+            point = _crossing_next_to(problem, crossing.place, radius)
+        if point is None:
+            point = _point_next_to(problem, crossing.place, radius)
         if point is not None and point.is_sample:
             samples += 1
             if samples <= MOST_SAMPLES:
@@ -356,6 +361,21 @@ def crossings_beside_curves(
         elif not is_redundant:
             components.charts = replace(charts, outcome=Covering.UNDECIDED)
             return
+
+
+def _crossing_next_to(
+    problem: Problem, place: np.ndarray, radius: float
+) -> SurfacePoint | None:
+    """The point of a curve of singular points next to a ``place`` (n,) between charts
+    of a ``radius``: where F = 0 and F' has no higher rank, which has no need to go to
+    where the curve itself is singular."""
+    points, gaps = RankDeflated(problem, problem.n - NULLITY).project(place[None])
+    distance = float(np.linalg.norm(problem.domain.difference(points[0], place)))
+    if not closes_to_rounding(float(gaps[0])) or distance > REACH * radius:
+        return None
+    null_space = factors_of(problem.jacobians(points)[0]).right[problem.n - NULLITY :].T
+    located = LocatedPoint(points[0], null_space, ACROSS * problem.domain.scale)
+    return SurfacePoint(located, is_sample=True)
 
 
 def _point_next_to(

@@ -37,7 +37,12 @@ from bifurc.search.findings import Findings, Run
 from bifurc.search.near_motion_search import NearMotionSearch
 from bifurc.search.path_audit import PathAudit
 from bifurc.search.point_search import BRANCH_REACH, SEED_REACH, PointSearch
-from bifurc.search.records import PointSighting, Start, half_branch_starts
+from bifurc.search.records import (
+    PointSighting,
+    SingularCurve,
+    Start,
+    half_branch_starts,
+)
 from bifurc.search.seed_book import Fate, SeedFate
 from bifurc.search.seed_fates import SeedJudge
 from bifurc.search.solutions import (
@@ -250,20 +255,33 @@ class Search:
                 self._trace_singular_curve(number)
         deadline = self.run.deadline
         for found in crossings_beside_curves(self.problem, components, deadline):
+            u, null_space = found.located.u, found.located.null_space
+            rank = self.problem.n - null_space.shape[1]
+            parts = parts_through(components, self.problem, u)
+            curve = self._singular_curve_through(u, rank)
+            if curve is not None and len(parts) == 1:
+                components.notes.add_curve(curve, parts)
+                continue
             sighting = self._sight_on_surface(found)
             if sighting.is_new and sighting.point.kind is Kind.CURVE_SAMPLE:
                 self._trace_singular_curve(sighting.number)
         yield []
 
+    def _singular_curve_through(self, u: np.ndarray, rank: int) -> SingularCurve | None:
+        """The curve of singular points of a ``rank`` on which one at ``u`` (n,) lies."""
+        components, deadline = self.findings.components, self.run.deadline
+        tracing = self.settings.tracing
+        return singular_curve_through(
+            self.problem, components, u, rank, tracing, deadline
+        )
+
     def _trace_singular_curve(self, number: int) -> None:
         """Trace the curve of singular points on which a singular point, given by its
         number, lies."""
         findings, components = self.findings, self.findings.components
-        point, deadline = findings.points[number], self.run.deadline
+        point = findings.points[number]
         parts = parts_through(components, self.problem, point.u)
-        curve = singular_curve_through(
-            self.problem, components, point, self.settings.tracing, deadline
-        )
+        curve = self._singular_curve_through(point.u, point.rank)
         if curve is None or not parts:
             if point.is_sample:
                 components.notes.unfollowed.append(parts)

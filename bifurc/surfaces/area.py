@@ -35,7 +35,7 @@ BLURRED = 3.0
 
 class Sizes(NamedTuple):
     """The ``areas`` (c,) of cells, their ``errors`` (c,), and what of them is seen to
-    lie ``outside`` the bounds (c,)."""
+    lie ``outside`` the bounds (c,), all of one with a vertex there."""
 
     areas: np.ndarray
     errors: np.ndarray
@@ -48,14 +48,18 @@ def cell_sizes(
     """The areas of the cells of ``charts``, lengths being taken after the unknowns are
     multiplied by ``metric`` (n,).
 
-    The error of a cell whose edges do not fit those of its neighbours, or over which
-    the surface is not followed everywhere, is its whole area; where one leaves the
-    bounds a few times the area outside, as far as nodes show it, is added.
+    The error of a cell whose edges do not fit those of its neighbours, with a vertex
+    outside the bounds, or over which the surface is not followed everywhere, is its
+    whole area; where one leaves the bounds a few times the area outside, as far as
+    nodes show it, is added.
     """
     measure = _Measure(problem, charts, cells, metric)
     areas, errors, outside = measure.sizes()
     errors += ROUNDING * np.abs(areas)
     errors[cells.chart[cells.misfits()]] = np.inf
+    is_outside = ~problem.domain.are_inside(cells.vertices)
+    leaving = cells.chart[is_outside[cells.begin]]
+    errors[leaving], outside[leaving] = np.inf, areas[leaving]
     return Sizes(areas, np.minimum(errors, np.abs(areas)), outside)
 
 

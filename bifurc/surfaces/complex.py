@@ -200,7 +200,8 @@ def _merge_corners(
     problem: Problem, corners: _Corners, radii: np.ndarray, neighbours: np.ndarray
 ) -> np.ndarray:
     """Number (v,) of the vertex that each corner is: corners that nearly coincide, of
-    one polygon or of two neighbours, are one."""
+    one polygon or of two neighbours, are one, but for the ends of an edge along a bound
+    between two others: that corner of the region is not cut off."""
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import connected_components
 
@@ -211,11 +212,23 @@ def _merge_corners(
     distance = np.linalg.norm(gaps, axis=1)
     distance /= np.minimum(radii[owner[i]], radii[owner[j]])
     is_same = np.all(corners.between[i] == corners.between[j], axis=1)
-    is_one = (distance < MERGED) | (is_same & (distance < MERGED_OF_SAME))
+    is_nested = _are_nested(corners.between, problem.n, i, j)
+    is_one = (distance < MERGED) & is_nested | (is_same & (distance < MERGED_OF_SAME))
     i, j = i[is_one], j[is_one]
     graph = csr_array((np.ones(len(i)), (i, j)), shape=(count, count))
     vertex: np.ndarray = connected_components(graph, directed=False)[1]
     return vertex
+
+
+def _are_nested(
+    between: np.ndarray, n: int, i: np.ndarray, j: np.ndarray
+) -> np.ndarray:
+    """Whether of two corners (p,) and (p,), each ``between`` three charts and bounds (v,
+    3), one lies on all bounds of the other."""
+    on_bounds = bounds_of(between.ravel(), n).reshape(len(between), -1, 2 * n)
+    one, other = on_bounds[i].any(axis=1), on_bounds[j].any(axis=1)
+    are_nested: np.ndarray = np.all(one <= other, axis=1) | np.all(other <= one, axis=1)
+    return are_nested
 
 
 def _corners_of_pairs(

@@ -214,3 +214,16 @@ def test_wrong_seeds_and_limits_are_refused() -> None:
         cover_surface(SPHERE, np.zeros(3))
     with pytest.raises(ProblemError, match="radius"):
         cover_surface(SPHERE, np.zeros((1, 3)), radius=0.0)
+
+
+@pytest.mark.parametrize("edge", [1e-2, 1e-3, 1e-5])
+def test_a_corner_of_the_bounds_that_is_cut_off_is_no_vertex(edge: float) -> None:
+    def plane(u: np.ndarray) -> np.ndarray:
+        return np.array([u.sum() - 1.0 + edge])
+
+    problem = FunctionProblem(plane, [(-1, 1)] * 3)
+    charts = cover_surface(problem, np.full((1, 3), (1.0 - edge) / 3))
+    # a triangle without its three corners
+    area = np.sqrt(3) / 2 * ((4.0 - edge) ** 2 - 3 * (2.0 - edge) ** 2)
+    assert charts.area == pytest.approx(area, rel=1e-12)
+    assert charts.euler_characteristic == 1
