@@ -94,7 +94,7 @@ def test_what_random_starts_miss_is_found():
     def two_ovals(u):
         x, y = u
         ovals = (x**2 + y**2 - 1) * ((x - 0.5) ** 2 + y**2 - 1e-6)
-        return [ovals + 1e-12 * np.exp(x)]  # of no two factors
+        return [ovals + 1e-15 * np.exp(x)]  # of no two factors
 
     few = SearchSettings(starts=3, boxes=MANY)
     missing = explore(problem(two_ovals), settings=replace(few, boxes=0))
