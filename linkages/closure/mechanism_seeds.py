@@ -53,9 +53,9 @@ SOURCES: tuple[ForSubject, ...] = (
     dyads.built_at_once,
     modules.all_assemblies,
     dyads.for_subject,
-    modules.for_subject,
     whole_turns.for_subject,
     cut_at_limits.for_subject,
+    modules.for_subject,
 )
 
 

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import networkx as nx
 import numpy as np
 
+from linkages.decisions import is_parallel_axis, meets_in_one_point
 from linkages.dyads.space import SpaceGeometry, SpacePose
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
@@ -51,14 +52,18 @@ class Skeleton:
         placement = Placement.of_chain(motions, full.unit)
         if not (placement.is_spherical or placement.is_planar):
             return Skeleton(full, full)
-        links = _links(full, held)
-        if not links:
-            return Skeleton(full, full)
         ends = {
             joint.name: _end(placement, joint)
             for joint in mechanism.joints
             if joint.kind is JointKind.REVOLUTE
         }
+        links = tuple(
+            link
+            for link in _links(full, held)
+            if _are_apart(placement, *(ends[name] for name in link.joints))
+        )
+        if not links:
+            return Skeleton(full, full)
         return Skeleton(full, Structure(_with_rods(mechanism, links, ends)), links)
 
     def held(self, column: int) -> int | None:
@@ -173,6 +178,16 @@ def _end(placement: Placement, joint: Joint) -> np.ndarray:
     normal = placement.axes[2]
     end = motion.point - normal * (normal @ (motion.point - placement.origin))
     return end
+
+
+def _are_apart(placement: Placement, first: np.ndarray, second: np.ndarray) -> bool:
+    """Whether two ends of a rod leave a link no freedom: it does not turn about both."""
+    if placement.is_planar:
+        gap = float(np.linalg.norm(second - first))
+        return not meets_in_one_point(gap, placement.unit)
+    one, other = first - placement.origin, second - placement.origin
+    sine = float(np.linalg.norm(np.cross(one, other)))
+    return not is_parallel_axis(sine, placement.unit**2)
 
 
 # --- which links ----------------------------------------------------------------------

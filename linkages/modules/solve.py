@@ -72,7 +72,7 @@ class Module:
     def count(self) -> int:
         """How many complex configurations there are for generic lengths: what a plane
         through two points of it mirrors is counted once."""
-        return self.generic.count // 2**self._mirrored
+        return self.generic.count >> self._mirrored
 
     @property
     def _mirrored(self) -> int:
