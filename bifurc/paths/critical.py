@@ -13,6 +13,7 @@ bounded, or of which the function is a distance, one of them is a point).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
@@ -66,26 +67,26 @@ class CriticalPoints:
         equations and of the products, and the factors of these: of x, then of v."""
         n, factors = self.equations.n, sum(self.degrees)
         size = n + 1
-        total = 2 * (size + n) + 2 + factors * size + n * n
-        writer = TapeWriter(total)
-        slots = map(writer.unknown, range(total))
+        writer = TapeWriter(2 * (size + n) + 2 + factors * size + n * n)
+        slots = map(writer.unknown, range(writer.n))
         places, along = list(islice(slots, size)), list(islice(slots, n))
         units = [write_linear(writer, slots, one) for one in (places, along)]
         share, start = islice(slots, 2)
         of_places = [write_linear(writer, slots, places) for _ in range(factors)]
         of_directions = [write_linear(writer, slots, along) for _ in range(n)]
         products = self._products(writer, of_places, of_directions)
-        one = writer.constant(1.0)
-        outputs = [
+        outputs = self._written_curves(writer, places)
+        outputs += [writer.subtract(unit, writer.constant(1.0)) for unit in units]
+        for pair in zip(self._written(writer, places, along), products, strict=True):
+            outputs.append(write_linear(writer, pair, (share, start)))
+        return Family(writer.tape(outputs), size + n, True, size)
+
+    def _written_curves(self, writer: TapeWriter, places: list[int]) -> list[int]:
+        """The slots of F."""
+        return [
             write_homogeneous(writer, polynomial, places, degree_of(polynomial))
             for polynomial in self.equations.polynomials
         ]
-        outputs += [writer.subtract(unit, one) for unit in units]
-        rows = self._written(writer, places, along)
-        for pair in zip(rows, products, strict=True):
-            outputs.append(write_linear(writer, pair, (share, start)))
-        tape = writer.tape(outputs)
-        return Family(tape, size + n, is_projective=True, places=size)
 
     def _products(
         self, writer: TapeWriter, of_places: list[int], of_directions: list[int]
@@ -129,21 +130,31 @@ class CriticalPoints:
         patch, unit = complex_normal(rng, n + 1), complex_normal(rng, n)
         before = [self.equations.follow(section, one, rng, deadline) for one in planes]
         vectors = np.repeat(_kernels(directions, unit), self.degrees, axis=0)
-        starts = [np.empty((0, 2 * n + 1))]
-        for vector, moved in zip(vectors, before, strict=True):
-            along = np.tile(vector, (len(moved.points), 1))
-            starts.append(np.hstack([on_patch(moved.points, patch), along]))
-        gamma = np.exp(2j * np.pi * rng.random())
-        shares = np.array([[0.0, gamma], [1.0, 0.0]])
-        first, last = (
-            np.concatenate([patch, unit, pair, planes.ravel(), directions.ravel()])
-            for pair in shares
-        )
-        joined = np.concatenate(starts)
+        starts = _pairs(before, vectors, patch)
+        shares = np.array([[0.0, complex_normal(rng, ())], [1.0, 0.0]])
+        products = np.concatenate([planes.ravel(), directions.ravel()])
+        first, last = (np.r_[patch, unit, pair, products] for pair in shares)
         paths = follow_paths(
-            self.family, joined, first, last, deadline, farthest=farthest
+            self.family,
+            starts,
+            first,
+            last,
+            deadline,
+            farthest=farthest,
         )
         return with_affine_ends(paths, n), _together(before, n)
+
+
+def _pairs(
+    paths: Sequence[Paths], vectors: np.ndarray, patch: np.ndarray
+) -> np.ndarray:
+    """Ends (k, n) of each of the ``paths`` in homogeneous coordinates, with the direction
+    that is in ``vectors`` (p, n) at its place."""
+    pairs = [np.empty((0, len(patch) + vectors.shape[1]))]
+    for ends, vector in zip(paths, vectors, strict=True):
+        along = np.tile(vector, (len(ends.points), 1))
+        pairs.append(np.hstack([on_patch(ends.points, patch), along]))
+    return np.concatenate(pairs)
 
 
 def _kernels(directions: np.ndarray, unit: np.ndarray) -> np.ndarray:

@@ -134,7 +134,8 @@ class PathAudit:
         inside, _ = self._inside(points)
         self._add(inside)
         yield []
-        near, _ = self._inside(counter.unknowns(parts.singular), is_exact=False)
+        singular = counter.unknowns(parts.singular)
+        near, _ = self._inside(singular, is_exact=False)
         for place in near:
             if not self._is_singular_point(place) and not self.run.is_over:
                 sighting = self.points.near(place, 2, BRANCH_REACH)
@@ -142,7 +143,8 @@ class PathAudit:
                     yield half_branch_starts(sighting.point)
         unlisted = sum(not self._is_singular_point(place) for place in near)
         unlisted += int(np.count_nonzero(~self._are_listed(inside)))
-        outside = len(points) - len(inside) if self._is_unbounded() else 0
+        beyond = len(points) - len(inside) + len(singular) - len(near)
+        outside = beyond if self._is_unbounded() else 0
         claims = found.claims(parts, unlisted, outside)
         self._take_claims([*claims, *self._claims_beside_curves(found, counter)])
 
