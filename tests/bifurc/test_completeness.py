@@ -26,7 +26,7 @@ DATA = {
     "far": 1,
     "forms": 3,
     "inside": 3,
-    "least": "nothing is missing",
+    "least": 1e-6,
     "left": 4,
     "lost": 2,
     "missed": 0.02,
@@ -50,6 +50,7 @@ DATA = {
     "trace": 1e-9,
     "unknowns": ["x", "y"],
     "unlisted": 1,
+    "weakest": "nothing is missing",
 }
 # what a program may ask of a text: nothing of those in which claims are put
 ASKING = {"startswith", "endswith", "find", "index", "partition", "split", "count"}
