@@ -47,7 +47,11 @@ class Skeleton:
         variables = mechanism.variables
         motions = [one.motion for one in variables if one.locked != 0.0]
         is_free = any(pair.center is not None for pair in mechanism.pairs)
-        if is_free or mechanism.is_coupled or not all(one.is_turn for one in motions):
+        if (
+            is_free
+            or mechanism.is_coupled
+            or not all(one.is_turn and one.advance == 0.0 for one in motions)
+        ):
             return Skeleton(full, full)
         placement = Placement.of_chain(motions, full.unit)
         if not (placement.is_spherical or placement.is_planar):
@@ -60,7 +64,8 @@ class Skeleton:
         links = tuple(
             link
             for link in _links(full, held)
-            if _are_apart(placement, *(ends[name] for name in link.joints))
+            if all(name in ends for name in link.joints)
+            and _are_apart(placement, *(ends[name] for name in link.joints))
         )
         if not links:
             return Skeleton(full, full)
