@@ -2,13 +2,14 @@
 
     python -m studies.margins [--members 2] [--near 60] [--page] [--nearest NAME]
 
-The quantities on which `bifurc.decisions` and `linkages.decisions` decide are noted over
-the catalogue and random members of its linkages, linkages that nearly bifurcate or end
-in something larger, surfaces, curves on which other methods fail, and random plane
-curves. For every decision the study prints how many quantities fell into which decade,
-where the threshold stands, and how wide the empty gap around it is. With --page the
-table and the histogram are written as a page of the docs; with --nearest the study says
-in which cases the quantities of one decision lie nearest to its threshold.
+The quantities on which `bifurc.decisions` and `linkages.decisions` decide are noted
+over the catalogue and random members of its linkages, linkages that nearly bifurcate or
+end in something larger, surfaces, curves on which other methods fail, random plane
+curves, and lines through one point or next to one. For every decision the study prints
+how many quantities fell into which decade, where the threshold stands, and how wide the
+empty gap around it is. With --page the table and the histogram are written as a page of
+the docs; with --nearest the study says in which cases the quantities of one decision
+lie nearest to its threshold.
 """
 
 from __future__ import annotations
@@ -292,6 +293,30 @@ def _plane_curves(count: int) -> Iterator[Case]:
         yield Case(f"plane curve {number}", partial(explore, problem))
 
 
+def _products_of_lines(count: int) -> Iterator[Case]:
+    """Lines through one point, with numbers that are rounded, and next to one."""
+    rng = np.random.default_rng(0)
+    for number in range(count):
+        lines = int(rng.integers(3, 12))
+        apart = 0.0 if number % 2 else 10.0 ** -rng.uniform(2, 6)
+        angles = np.pi * (np.arange(lines) + rng.uniform(0.1, 0.9, lines)) / lines
+        normals = np.column_stack([np.cos(angles), np.sin(angles)])
+        distances = normals @ rng.uniform(-1, 1, 2) + apart * rng.normal(size=lines)
+        function = partial(_product_of_lines, normals, distances)
+        problem = FunctionProblem(function, [(-2.0, 2.0)] * 2)
+        name = f"{lines} lines {apart:.1e} from one point"
+        yield Case(name, partial(explore, problem))
+
+
+def _product_of_lines(
+    normals: np.ndarray, distances: np.ndarray, u: np.ndarray
+) -> list[float]:
+    """The product of the distances of a point (2,) from lines."""
+    pairs = zip(normals.tolist(), distances.tolist(), strict=True)
+    product: float = np.prod([a * u[0] + b * u[1] - c for (a, b), c in pairs])
+    return [product]
+
+
 # --- the page -------------------------------------------------------------------------
 
 
@@ -321,8 +346,9 @@ Every comparison on which a count, a kind, a level or a word hangs compares one 
 in the tables `decisions.toml` of both packages; singular values and residuals are over the problem's magnitude,
 lengths over its scale. `python -m studies.margins --page` writes this page: it notes every quantity that was decided on
 over the catalogue, random members of its linkages, linkages that nearly bifurcate or end in something larger, surfaces,
-mechanisms, networks, hard cases and random plane curves. `python -m studies.margins --nearest "same point"` says in
-which cases the quantities of a decision lie nearest to its threshold.
+mechanisms, networks, hard cases, random plane curves and lines.
+`python -m studies.margins --nearest "same point"` says in which cases the quantities of a decision lie nearest to
+its threshold.
 
 A *verdict* decides a count, a kind, a level or a word. Its threshold stands in an empty gap of three decades or more.
 Where the truth itself has no gap (a linkage may miss a condition by any amount), it has a *third answer*: what is said
@@ -416,6 +442,7 @@ def main(members: int, near: int, target: bool, name: str | None) -> None:
         yield from _networks()
         yield from _hard_curves()
         yield from _plane_curves(CURVES)
+        yield from _products_of_lines(CURVES)
 
     gathered = _gather(cases())
     if name is not None:

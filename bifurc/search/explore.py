@@ -17,7 +17,6 @@ from bifurc.checks import (
     check_type,
     index_of_unknown,
 )
-from bifurc.completeness import Claim, Completeness, Level
 from bifurc.diagrams.diagram import Diagram
 from bifurc.diagrams.events import EventRequests, events_of
 from bifurc.diagrams.make_diagram import diagram_of, named_points
@@ -36,7 +35,7 @@ from bifurc.limits import (
 )
 from bifurc.problem import Problem
 from bifurc.search.answer.assemble import assemble_atlas
-from bifurc.search.answer.settled_in_boxes import listed_solutions, settled_in_boxes
+from bifurc.search.answer.settled_in_boxes import settled_in_boxes
 from bifurc.search.factor_by_factor import explored_by_factors
 from bifurc.search.isolated_boxes import IsolatedInBoxes, isolated_in_boxes
 from bifurc.search.many_unknowns import explore_many_unknowns, has_many_unknowns
@@ -48,7 +47,6 @@ from bifurc.search.own_units.unit_problem import (
     in_own_units,
     is_of_equations,
 )
-from bifurc.search.path_audit import system_of
 from bifurc.search.search import Search
 from bifurc.seeds import Seeds
 from bifurc.settings import LOOSEST, SearchSettings
@@ -217,52 +215,9 @@ def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
     solutions = _solutions_of(problem, request)
     if solutions is None:
         return _explored_in_own_units(problem, request)
-    if solutions.is_complete and len(solutions.points):
-        return _atlas_of_solutions(problem, request, solutions)
-    atlas = _explored_in_own_units(problem, request)
-    return settled_in_boxes(atlas, solutions, problem.domain)
-
-
-def _atlas_of_solutions(
-    problem: FunctionProblem, request: _Request, solutions: IsolatedInBoxes
-) -> Atlas:
-    """The atlas of equations of which all solutions are known, and isolated."""
-    deadline = current_deadline()
-    claims = [solutions.claim]
-    counted = _counted_by_paths(problem, request, len(solutions.points))
-    if counted is not None and counted.level is Level.CERTIFIED:
-        claims.append(replace(counted, level=None))  # boxes show more
-    provenance = _provenance(problem, request, False, deadline)
-    provenance = replace(provenance, out_of_time=False)
-    domain = problem.domain
-    return Atlas(
-        names=domain.names,
-        units=domain.units,
-        periods=domain.periods,
-        forms=(),
-        points=(),
-        near_misses=(),
-        dead_points=(),
-        rigid=listed_solutions(solutions, domain),
-        surfaces=(),
-        completeness=Completeness(tuple(claims), (), 0.0),
-        provenance=provenance,
-    )
-
-
-def _counted_by_paths(
-    problem: FunctionProblem, request: _Request, inside: int
-) -> Claim | None:
-    """What paths say of isolated solutions, so many ``inside`` the bounds; None of
-    equations that are no polynomials."""
-    most, bounds = request.settings.paths, problem.domain.bounds
-    system = system_of(problem.domain, problem.recording.tape) if most else None
-    if system is None or not system.is_square:
-        return None
-    from bifurc.search.isolated import isolated_solutions  # few searches need it
-
-    found = isolated_solutions(system, bounds, most, current_deadline())
-    return None if found is None else found.claim(inside)
+    # what units of its own let a search see is known where boxes show all
+    search = _explored if solutions.is_complete else _explored_in_own_units
+    return settled_in_boxes(search(problem, request), solutions, problem.domain)
 
 
 def _solutions_of(

@@ -5,8 +5,12 @@ plane of one of the two charts, the same for both; along a bound it runs in that
 cells divide the surface without gaps. In the plane of its chart a cell consists of
 sectors, from the centre to its edges: over each the ratio of areas, from the
 derivatives of the graph, is integrated by Gauss's rule along the edge and along the
-rays. The error of every cell is the change to a rule of lower order on the same places
-and, as neighbours share them, the centre and the ends of the edges.
+rays.
+
+The error of every cell comes of the same places, as null rules say it (Berntsen and
+Espelid 1991, Error estimation in automatic quadrature routines): the last coefficients in
+Legendre polynomials shrink at some rate, and what would come four degrees later at that
+rate is taken for the error of a rule that is exact far beyond.
 """
 
 from __future__ import annotations
@@ -14,7 +18,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
+from numpy.polynomial.legendre import leggauss, legvander
 
 from bifurc.problem import Problem
 from bifurc.surfaces.complex import Cells
@@ -64,13 +68,12 @@ def cell_sizes(
 
 
 class _Rays(NamedTuple):
-    """The ratio of areas along rays, of which each edge has r: its ``integrals`` (e, r),
-    and the ``lower_integrals`` (e, r) by the lower rule; how far off the area is by
-    ``gaps`` (e, r - 1) in the ratio, and what lies ``outside`` the bounds (c,)."""
+    """The ``integrals`` (e, r) of the ratio of areas along rays, of which each edge has r,
+    how far off the area is by each but the first, ``errors`` (e, r - 1), and what of it
+    lies ``outside`` the bounds (c,)."""
 
     integrals: np.ndarray
-    lower_integrals: np.ndarray
-    gaps: np.ndarray
+    errors: np.ndarray
     outside: np.ndarray
 
 
@@ -91,21 +94,22 @@ class _Measure:
         self._pairs, self._first, self._edge = pairs, first, edge
 
     def sizes(self) -> Sizes:
-        """Areas, and errors by the lower rule, by nodes to which the surface was not
+        """Areas, and errors by the quadrature, by nodes to which the surface was not
         followed and by what lies outside the bounds."""
         nodes, weights = _gauss(ALONG)
         curves, are_known = self._curves(nodes)
-        corners, rates = self._outlines(curves, nodes)
-        turned = _cross(corners, rates)  # (e, ALONG + 2)
-        lower_turned = turned * _lower_weights(np.concatenate([[0.0], nodes, [1.0]]))
-        turned = turned[:, 1:-1] * weights
-        rays = self._rays(corners[:, :-1], turned)
-        areas = self._sums(turned * rays.integrals[:, 1:])
-        after = rays.lower_integrals[self._cells.following, :1]
-        lower = np.concatenate([rays.lower_integrals, after], axis=1)
-        errors = np.abs(areas - self._sums(lower_turned * lower))
-        errors += self._sums(rays.gaps) + BLURRED * rays.outside
+        outline = self._outlines(curves)
+        places = np.concatenate([[0.0], nodes, [1.0]])
+        rates = np.einsum("ij,ejk->eik", _differentiation(places), outline)
+        turned = _cross(outline, rates)  # (e, ALONG + 2)
+        rays = self._rays(outline[:, :-1], turned[:, 1:-1] * weights)
+        at_ends = rays.integrals[self._cells.following, :1]
+        sectors = turned * np.concatenate([rays.integrals, at_ends], axis=1)
+        errors = self._sums(rays.errors) + BLURRED * rays.outside
+        errors += self._sums(_tails(sectors, places)[:, None])
+        errors += self._sums(_errors_of_edges(outline, places)[:, None])
         errors[self._cells.chart[~are_known[self._edge]]] = np.inf
+        areas = self._sums(sectors[:, 1:-1] * weights)
         return Sizes(areas, errors, rays.outside)
 
     def _rays(self, ends: np.ndarray, turned: np.ndarray) -> _Rays:
@@ -117,27 +121,18 @@ class _Measure:
         flat = ends.reshape(-1, 2)
         points, is_there = self._graphs.part(chart).along(flat, t)
         ratio = self._ratios(chart, points)
-        positions = flat[:, None] * t[:, None]
-        gaps = _fill_cells(ratio, positions, is_there, chart).reshape(-1, count)[:, 1:]
+        gaps = _fill_cells(ratio, flat[:, None] * t[:, None], is_there, chart)
+        gaps = np.maximum(gaps, _tails(ratio, t)[:, None]).reshape(-1, count)[:, 1:]
         ratio = ratio.reshape(-1, count, RAYS)
         weighted = t * t_weights * turned[:, :, None]
-        is_outside = self._are_outside(points).reshape(ratio.shape)[:, 1:]
-        outside = ratio[:, 1:] * weighted * is_outside
+        outside = ratio * self._are_outside(points).reshape(ratio.shape)
+        outside = outside[:, 1:] * weighted
         outside[self._are_bent(turned)[self._cells.chart]] = 0.0
         return _Rays(
             integrals=ratio @ (t * t_weights),
-            lower_integrals=self._lower_integrals(ratio, t),
-            gaps=gaps * np.abs(weighted).sum(axis=2),
+            errors=gaps * np.abs(weighted).sum(axis=2),
             outside=self._sums(outside.sum(axis=2)),
         )
-
-    def _lower_integrals(self, ratio: np.ndarray, t: np.ndarray) -> np.ndarray:
-        """What the lower rule makes (e, r) of the ``ratio`` (e, r, s) at places ``t``
-        (s,) and in the centres."""
-        at_center, weights = _lower_weights_from_center(t)
-        flat = self._ratios(np.arange(self._count), self._graphs.centers[:, None])
-        integrals: np.ndarray = at_center * flat[self._cells.chart] + ratio @ weights
-        return integrals
 
     def _are_bent(self, turned: np.ndarray) -> np.ndarray:
         """Which cells (c,) are differences of sectors, some of which are turned (e, k)
@@ -218,11 +213,9 @@ class _Measure:
         between: np.ndarray = ends[0] + np.vander(nodes, len(places)) @ through
         return between
 
-    def _outlines(
-        self, curves: np.ndarray, nodes: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
+    def _outlines(self, curves: np.ndarray) -> np.ndarray:
         """Positions (e, k + 2, 2) of the beginning, the nodes and the end of each edge in
-        the plane of its chart, and their derivatives along it (e, k + 2, 2)."""
+        the plane of its chart."""
         cells, n = self._cells, self._problem.n
         is_back = cells.begin > cells.end
         inner = curves[self._edge]
@@ -231,10 +224,15 @@ class _Measure:
         points = np.concatenate([begin[:, None], inner, end[:, None]], axis=1)
         count = points.shape[1]
         graphs = self._graphs.part(np.repeat(cells.chart, count))
-        outline = graphs.positions(points.reshape(-1, n)).reshape(-1, count, 2)
-        places = np.concatenate([[0.0], nodes, [1.0]])
-        rates = np.einsum("ij,ejk->eik", _differentiation(places), outline)
-        return outline, rates
+        return graphs.positions(points.reshape(-1, n)).reshape(-1, count, 2)
+
+
+def _errors_of_edges(outline: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """How much area (e,) edges move from one cell to the next where the polynomials
+    through their ``outline`` (e, k, 2) at ``places`` (k,) are off."""
+    lengths: np.ndarray = np.linalg.norm(outline[:, -1] - outline[:, 0], axis=1)
+    off = _tails(np.swapaxes(outline, 1, 2), places)
+    return lengths * np.linalg.norm(off, axis=1)
 
 
 def _fill_cells(
@@ -268,22 +266,17 @@ def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
     return 0.5 * (nodes + 1.0), 0.5 * weights
 
 
-def _lower_weights(places: np.ndarray) -> np.ndarray:
-    """Weights (k,) by which polynomials through values at ``places`` (k,) are integrated
-    from 0 to 1."""
-    powers = np.arange(len(places))
-    weights: np.ndarray = np.linalg.solve(
-        places ** powers[:, None], 1.0 / (powers + 1.0)
-    )
-    return weights
-
-
-def _lower_weights_from_center(t: np.ndarray) -> tuple[float, np.ndarray]:
-    """The weight at 0 and the weights (k,) at places ``t`` (k,) by which polynomials
-    through values there, times the place, are integrated from 0 to 1."""
-    powers = np.arange(1, len(t) + 1)
-    weights = np.linalg.solve(t ** powers[:, None], 1.0 / (powers + 2.0))
-    return 0.5 - float(weights.sum()), weights
+def _tails(values: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """What is left (...) of a smooth function with ``values`` (..., k) at ``places`` (k,)
+    four degrees after the polynomial through these, if its coefficients go on to shrink as
+    the last four do."""
+    basis = legvander(2.0 * places - 1.0, len(places) - 1)
+    sizes = np.abs(values @ np.linalg.inv(basis).T)
+    last = sizes[..., -2:].max(axis=-1)
+    before = sizes[..., -4:-2].max(axis=-1)
+    rate = last / np.maximum(before, np.maximum(last, 1e-300))
+    tails: np.ndarray = last * rate**2
+    return tails
 
 
 def _differentiation(places: np.ndarray) -> np.ndarray:

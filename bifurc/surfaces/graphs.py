@@ -24,7 +24,7 @@ class Graphs:
         self._problem = problem
         self._charts = charts
         every = np.arange(len(charts.radii)) if numbers is None else numbers
-        self.centers = charts.centers[every]
+        self._centers = charts.centers[every]
         self._planes = charts.bases[every]
         self._radii = charts.radii[every]
         self._are_clear = charts.are_clear[every]
@@ -35,14 +35,14 @@ class Graphs:
 
     def flat(self, positions: np.ndarray) -> np.ndarray:
         """Points (k, n) of the planes."""
-        flat: np.ndarray = self.centers + np.einsum(
+        flat: np.ndarray = self._centers + np.einsum(
             "kij,kj->ki", self._planes, positions
         )
         return flat
 
     def positions(self, points: np.ndarray) -> np.ndarray:
         """Positions (k, 2) of points (k, n) in the planes."""
-        offsets = self._problem.domain.difference(points, self.centers)
+        offsets = self._problem.domain.difference(points, self._centers)
         positions: np.ndarray = np.einsum("kij,ki->kj", self._planes, offsets)
         return positions
 
@@ -62,13 +62,13 @@ class Graphs:
         solutions straight above stand for them.
         """
         ways = np.einsum("kij,kj->ki", self._planes, positions)
-        flat = self.centers[:, None] + shares[:, None] * ways[:, None]
+        flat = self._centers[:, None] + shares[:, None] * ways[:, None]
         points, is_there = flat.copy(), np.zeros(flat.shape[:2], dtype=bool)
         beside = np.flatnonzero(~self._are_clear)
         if len(beside):
             points[beside], is_there[beside] = follow_along(
                 self._problem,
-                self.centers[beside],
+                self._centers[beside],
                 self._planes[beside],
                 positions[beside],
                 shares,

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from bifurc.atlas import Atlas
-from bifurc.completeness import Scope
+from bifurc.completeness import Claim, Scope
 from bifurc.decisions import is_same_point
 from bifurc.domain import Domain
-from bifurc.search.answer.completeness import SearchDoubt
+from bifurc.search.answer.completeness import SearchClaim, SearchDoubt
 from bifurc.search.canonical_order import order_points
 from bifurc.search.isolated_boxes import IsolatedInBoxes
 from bifurc.torus import wrap, wrapped_periods
@@ -21,15 +21,16 @@ OF_SOLUTIONS = (
     SearchDoubt.DOUBLE_SOLUTIONS,
     SearchDoubt.NEAR_ASSEMBLIES,
     SearchDoubt.SHORT_STOPS,
+    SearchDoubt.ON_RIM,
 )
 
 
 def settled_in_boxes(atlas: Atlas, found: IsolatedInBoxes, domain: Domain) -> Atlas:
-    """The atlas of as many equations as unknowns with the solutions ``found`` in boxes,
-    of which there are none where these settle all of the bounds; else with a doubt where
-    they leave open places that it does not know."""
+    """The atlas of as many equations as unknowns with the solutions ``found`` in boxes
+    where these settle all of the bounds; else with a doubt where they leave open places
+    that it does not know."""
     if found.is_complete:
-        return _without_any(atlas, found)
+        return _with_all(atlas, found, domain)
     places = found.left.mean(axis=2)
     is_claimed = any(
         claim.scope is Scope.ASSEMBLIES for claim in atlas.completeness.claims
@@ -44,33 +45,38 @@ def settled_in_boxes(atlas: Atlas, found: IsolatedInBoxes, domain: Domain) -> At
     return replace(atlas, completeness=replace(atlas.completeness, doubts=doubts))
 
 
-def listed_solutions(found: IsolatedInBoxes, domain: Domain) -> np.ndarray:
-    """The solutions (k, n) found in boxes, as an atlas lists them."""
+def _with_all(atlas: Atlas, found: IsolatedInBoxes, domain: Domain) -> Atlas:
+    """The atlas of equations of which all solutions are ``found``, each isolated; where it
+    has others, what it doubts is of these."""
     periods = wrapped_periods(domain.periods, domain.bounds)
-    rigid = wrap(found.points, periods)
-    listed: np.ndarray = rigid[order_points(rigid, periods, domain.scale)]
-    return listed
-
-
-def _without_any(atlas: Atlas, found: IsolatedInBoxes) -> Atlas:
-    """The atlas of equations that have no solution; where it has some, what it doubts is
-    of these."""
-    is_same = not any(
-        map(len, (atlas.forms, atlas.surfaces, atlas.points, atlas.rigid))
-    )
+    points = wrap(found.points, periods)
+    points = points[order_points(points, periods, domain.scale)]
     known = atlas.completeness
     names = [kind.name for kind in OF_SOLUTIONS]
     doubts = tuple(doubt for doubt in known.doubts if doubt.kind not in names)
-    estimates = tuple(claim for claim in known.claims if claim.level is None)
-    if not is_same:
+    if any(map(len, (atlas.forms, atlas.surfaces, atlas.points))):
         atlas = replace(atlas, forms=(), surfaces=(), points=(), near_motions=())
-        atlas = replace(atlas, near_misses=(), dead_points=(), rigid=found.points)
+        atlas = replace(atlas, near_misses=(), dead_points=())
         doubts = ()
+    others = [_beside_boxes(claim, len(points)) for claim in known.claims]
+    claims = (found.claim, *(claim for claim in others if claim is not None))
     return replace(
         atlas,
-        completeness=replace(known, claims=(found.claim, *estimates), doubts=doubts),
+        rigid=points,
+        completeness=replace(known, claims=claims, doubts=doubts),
         provenance=replace(atlas.provenance, out_of_time=False),
     )
+
+
+def _beside_boxes(claim: Claim, count: int) -> Claim | None:
+    """What a claim says beside boxes with so many solutions, which show more: an estimate,
+    or that of all paths which end at as many."""
+    if claim.level is None:
+        return claim
+    is_same = (
+        SearchClaim.ALL_ISOLATED.is_kind_of(claim) and claim.data["inside"] == count
+    )
+    return replace(claim, level=None) if is_same else None
 
 
 def _are_known(atlas: Atlas, places: np.ndarray, domain: Domain) -> np.ndarray:

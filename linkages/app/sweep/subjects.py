@@ -21,6 +21,7 @@ from linkages.linkage import is_linkage_file, load
 from linkages.mapping import map_linkage
 from linkages.networks.entries import LENGTHS, NETWORKS
 from linkages.subject import subject_at
+from linkages.values import GeometryError
 
 if TYPE_CHECKING:
     from bifurc.atlas import Atlas, Form
@@ -303,8 +304,8 @@ def _fingerprint(values: Mapping[str, object]) -> str:
 def choose_subject(
     text: str, parameters: Sequence[str] = (), is_without_centre: bool = False
 ) -> MemberSource:
-    """What is called ``text`` in the catalogue, or is in the file ``text``, which takes
-    ``parameters`` where it holds equations only.
+    """What is called ``text`` in the catalogue, or is in the file ``text``, whose
+    ``parameters`` are swept only where it holds equations.
 
     Raises as `choose_linkage`, `EquationFileError`, and `CommandError` for a file with a single loop, and
     for anything but a network without its centre.
@@ -321,7 +322,9 @@ def choose_subject(
     equations = _equations_in(text)
     if equations is not None:
         return FileEquations(equations.system({}).name, equations)
-    chosen = choose_linkage(text, parameters)
+    if parameters:
+        raise GeometryError(PARAM, parameters[0], "left out with a file that is swept")
+    chosen = choose_linkage(text)
     from linkages.mechanisms.mechanism import Mechanism
 
     refusal = (

@@ -209,7 +209,10 @@ BAD = {
     ),
     "lengths that vanish": (("map", "tiny.toml"), "choose a unit"),
     "a number beyond all doubles": (("map", "huge.toml"), "huge.toml"),
-    "parameters for a file": (("map", "mine.toml", "--param", "a=1"), "--param"),
+    "a parameter that a file does not have": (
+        ("map", "mine.toml", "--param", "a=1"),
+        "one of a12, alpha12, R1",
+    ),
     "parameters for an atlas": (
         ("route", "kite.nc", "kite", "folded", "--param", "a=1"),
         "--param",
