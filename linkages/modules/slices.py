@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from bifurc.limits import current_deadline, until
+from bifurc.limits import Deadline, current_deadline, until
 from bifurc.problem import Problem
 from linkages.dyads.group import UnfollowedError
 from linkages.dyads.slices import (
@@ -26,7 +26,8 @@ from linkages.structure.structure import Structure
 MOST_COORDINATES = 30  # of a module that is looked at
 MOST_UNKNOWNS = 10  # all of which drive, one after the other
 MOST_PATHS = 400  # complex configurations at a value of every unknown, in all
-TIME = 0.4  # of the time that is left, for generic solutions and paths
+# Of the time that is left, and s at most: for generic solutions and paths.
+TIME, SECONDS = 0.4, 60.0
 
 
 def all_assemblies(
@@ -34,7 +35,7 @@ def all_assemblies(
 ) -> DyadSlices | None:
     """All assemblies of the mechanism of a ``structure`` that nothing moves; None where
     it is not known that they are all."""
-    with until(current_deadline().share(TIME)):
+    with until(_deadline()):
         try:
             return _assemblies(structure)
         except UnfollowedError:
@@ -47,11 +48,16 @@ def for_subject(
     """Slices of the mechanism of a ``structure`` at evenly spaced values, the first one
     drawn, of all of its unknowns; None where it is not known that they have all
     configurations."""
-    with until(current_deadline().share(TIME)):
+    with until(_deadline()):
         try:
             return _slices(structure, rng)
         except UnfollowedError:
             return None
+
+
+def _deadline() -> Deadline:
+    share = current_deadline().share(TIME)
+    return share if share.left < SECONDS else Deadline(SECONDS)
 
 
 def _assemblies(structure: Structure) -> DyadSlices:

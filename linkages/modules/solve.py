@@ -37,7 +37,7 @@ MOST_SOLUTIONS = 200  # complex ones of a generic member
 # Imaginary parts of the numbers of generic members that are tried, one after the other.
 # Along a chain of displacements products of numbers that are far from real become large;
 # from numbers that are nearly real paths pass near singular members.
-IMAGINARY = (0.5, 1.0, 0.3, 0.5, 0.2, 1.0)
+IMAGINARY = (0.5, 0.4, 0.6, 0.3)
 ROUNDING = 1e-12  # of a length: it is none
 CACHE = "BIFURC_CACHE"  # the variable that names the folder of generic solutions
 
