@@ -20,7 +20,7 @@ DATA = {
     "complex": 8,
     "count": 2,
     "curves": 2,
-    "degrees": "2 and 4",
+    "degrees": [4, 2],
     "ends": 1,
     "factors": 3,
     "far": 1,
@@ -46,10 +46,10 @@ DATA = {
     "rounding": 1e-9,
     "singular": 1,
     "starts": 40,
-    "together": 2,
+    "together": 3,
     "trace": 1e-9,
     "unknowns": ["x", "y"],
-    "unlisted": 1,
+    "unlisted": 2,
     "weakest": "nothing is missing",
 }
 # what a program may ask of a text: nothing of those in which claims are put

@@ -249,8 +249,7 @@ class UnitProblem(EquationProblem):
         values = values_of(matrices / (rows[:, None] + TINY))
         if values.shape[1] < self.n - 1:
             return False
-        ratios = values[:, self.n - 2] / (values[:, 0] + TINY)
-        return bool(np.median(ratios) > REGULAR)
+        return bool(np.median(values[:, self.n - 2]) > REGULAR)
 
     def _powers_along(self, branch: Branch) -> dict[int, int]:
         """The sum of the powers of the factors that vanish all along a ``branch`` in
