@@ -234,6 +234,7 @@ class Tape:
         most_steps: int,
         places: int,
         farthest: float,
+        is_precise: bool,
         seconds: float,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
     def project(

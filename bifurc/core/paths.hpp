@@ -16,6 +16,7 @@
 #include "bifurc/core/arrays.hpp"
 #include "bifurc/core/lu.hpp"
 #include "bifurc/core/tape.hpp"
+#include "bifurc/core/twofold.hpp"
 
 namespace bifurc {
 
@@ -60,10 +61,14 @@ struct PathSettings {
     // interest.
     Index places;
     double farthest;
+    // Whether residuals are computed with twice the digits of doubles, as far from 1, and near singular
+    // points, they are corrected to the last digits of the point with them only.
+    bool is_precise;
 };
 
 // F(x; p) = 0 with x the first unknowns of a tape and p the others, on the line of parameters
 // last + t (first - last). With more equations than unknowns ``combinations`` (n, m) of them are solved.
+// Residuals of `linearize` are ``precise`` where that is set.
 class PathSystem {
 public:
     using Complex = paths::Complex;
@@ -73,24 +78,29 @@ public:
         : tape_(tape),
           n_(unknowns),
           combinations_(combinations),
+          first_(first.begin(), first.end()),
           last_(last.begin(), last.end()),
           change_(last.size()),
           point_(tape.unknowns()),
           step_(tape.unknowns()),
           row_(unknowns),
           equations_(tape.equations()),
+          precise_point_(tape.unknowns()),
+          precise_values_(tape.slots()),
           sweep_(tape),
           series_(tape, order) {
         for (std::size_t i = 0; i < change_.size(); ++i) change_[i] = first[i] - last[i];
     }
 
     Index unknowns() const { return n_; }
+    void set_precise(bool is_precise) { is_precise_ = is_precise; }
 
     // F at a point and t, and its factored derivatives by x; false where these are singular.
     bool linearize(Vector<const Complex> x, Complex t, Vector<Complex> residual, ComplexLu& lu) {
         place(x, t);
         sweep_.linearize(point_);
         for (Index row = 0; row < tape_.equations(); ++row) equations_[row] = sweep_.value(row);
+        if (is_precise_) evaluate_precisely(x, t);
         combine(residual);
         const View<Complex> matrix = lu.matrix();
         std::fill_n(matrix.data, n_ * n_, Complex(0.0));
@@ -140,6 +150,17 @@ private:
         for (std::size_t i = 0; i < change_.size(); ++i) point_[n_ + i] = last_[i] + t * change_[i];
     }
 
+    // F with twice the digits, also of the parameters at t.
+    void evaluate_precisely(Vector<const Complex> x, Complex t) {
+        std::copy(x.begin(), x.end(), precise_point_.begin());
+        const TwofoldComplex share(t), rest = TwofoldComplex(1.0) - share;
+        for (std::size_t i = 0; i < change_.size(); ++i) {
+            precise_point_[n_ + i] = rest * TwofoldComplex(last_[i]) + share * TwofoldComplex(first_[i]);
+        }
+        tape_.evaluate<TwofoldComplex>(precise_point_, precise_values_);
+        for (Index row = 0; row < tape_.equations(); ++row) equations_[row] = precise_values_[tape_.output(row)].rounded();
+    }
+
     void combine(Vector<Complex> out) const {
         if (!combinations_.rows) {
             std::copy(equations_.begin(), equations_.end(), out.begin());
@@ -154,7 +175,9 @@ private:
     const Tape& tape_;
     Index n_;
     View<const Complex> combinations_;
-    std::vector<Complex> last_, change_, point_, step_, row_, equations_;
+    bool is_precise_ = false;
+    std::vector<Complex> first_, last_, change_, point_, step_, row_, equations_;
+    std::vector<TwofoldComplex> precise_point_, precise_values_;
     Sweep<Complex> sweep_;
     SeriesSweep<Complex> series_;
 };
@@ -169,7 +192,9 @@ public:
           settings_(settings),
           lu_(system.unknowns()),
           coefficients_(settings.order + 1, system.unknowns()),
-          correction_(system.unknowns()) {}
+          correction_(system.unknowns()) {
+        system_.set_precise(settings.is_precise);
+    }
 
     struct Outcome {
         Point point;
@@ -406,6 +431,12 @@ private:
 
     // Newton's method at the end, as long as its steps become shorter.
     void polish(Point& point) {
+        system_.set_precise(true);
+        converge(point);
+        system_.set_precise(settings_.is_precise);
+    }
+
+    void converge(Point& point) {
         double former = 1.0;
         for (int i = 0; i < paths::last_corrections; ++i) {
             Point better = point;

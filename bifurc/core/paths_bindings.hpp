@@ -17,10 +17,11 @@ using ComplexMatrix = numpy::MatrixIn<std::complex<double>>;
 // at the parameters ``first`` (q) to ``last`` (q). ``combinations`` (n, m) of the equations are solved, or,
 // where it has no rows, the equations themselves. The first unknowns are homogeneous coordinates of so many
 // ``places``, and what is farther away than ``farthest`` is of no interest.
+// ``is_precise``: residuals are computed with twice the digits of doubles.
 inline nb::tuple tape_follow_paths(const Tape& tape, const ComplexMatrix& starts, const ComplexVector& first,
                                    const ComplexVector& last, const ComplexMatrix& combinations, Index order,
                                    double tolerance, int most_steps, Index places, double farthest,
-                                   double seconds) {
+                                   bool is_precise, double seconds) {
     const auto count = static_cast<Index>(starts.shape(0)), n = static_cast<Index>(starts.shape(1));
     check_unknowns("first", first.shape(0), tape.unknowns() - n);
     check_unknowns("last", last.shape(0), tape.unknowns() - n);
@@ -40,7 +41,7 @@ inline nb::tuple tape_follow_paths(const Tape& tape, const ComplexMatrix& starts
         nb::gil_scoped_release release;
         Deadline deadline(seconds, raise_signals);
         PathSystem system(tape, n, numpy::view(combinations), numpy::view(first), numpy::view(last), order);
-        PathTracker tracker(system, {order, tolerance, most_steps, places, farthest});
+        PathTracker tracker(system, {order, tolerance, most_steps, places, farthest, is_precise});
         for (Index k = 0; k < count; ++k) {
             PathTracker::Outcome outcome{{from.row(k).begin(), from.row(k).end()}};
             outcome.end = PathEnd::out_of_time;

@@ -30,6 +30,9 @@ Starts: TypeAlias = Iterator[Sequence[Start]]
 
 # How exactly a singular point is known to which paths come, over the scale.
 ERROR_OF_SINGULAR = 1e-5
+# Coordinates from which on fewer paths are followed: a step of each takes longer with the
+# square of their number at least.
+SMALL = 8
 SAMPLE = 0.37  # of the length of a form: where its curve is looked at
 MOST_FORMS = 20  # of which the curves are looked at
 
@@ -81,7 +84,7 @@ class PathAudit:
             return
         from bifurc.search.isolated import isolated_solutions  # few searches need it
 
-        most, deadline = self.run.settings.paths, self.run.deadline
+        most, deadline = self._most_paths(system), self.run.deadline
         found = isolated_solutions(system, users.domain.bounds, most, deadline)
         if found is None:
             return
@@ -112,8 +115,8 @@ class PathAudit:
             return
         from bifurc.search.curves_by_paths import CurveCounter  # few searches need it
 
-        settings, deadline = self.run.settings, self.run.deadline
-        counter = CurveCounter(system, self._bounds(), settings.paths, deadline)
+        most, deadline = self._most_paths(system), self.run.deadline
+        counter = CurveCounter(system, self._bounds(), most, deadline)
         found = counter.count(is_unbounded=self._is_unbounded())
         if found is None:
             self._take_claims(self._claims_of_forms(counter))
@@ -225,6 +228,11 @@ class PathAudit:
             return None
         system = system_of(self.problem.domain, tape)
         return system if system and system.is_square else None
+
+    def _most_paths(self, system: PolynomialSystem) -> int:
+        """Along how many paths solutions are looked for."""
+        share = min(1.0, (SMALL / len(system.coordinates)) ** 2)
+        return int(self.run.settings.paths * share)
 
     def _is_unbounded(self) -> bool:
         """Whether the search chose bounds where there are none."""

@@ -284,17 +284,18 @@ def _that_move(
 
 
 def slice_places(
-    unknown: Unknown, rng: np.random.Generator
+    unknown: Unknown, rng: np.random.Generator, count: int = SLICES
 ) -> tuple[np.ndarray, float]:
-    """The values of an unknown at which slices are, and how far apart they are."""
+    """The values (k,) of an unknown at which so many slices are, and how far apart they
+    are."""
     low, high = unknown.low, unknown.high
     if np.isfinite(unknown.period):
         low, high = 0.0, unknown.period
     elif unknown.is_angle:
         # what is a turn away is the same
         high = min(high, low + TURN)
-    step = (high - low) / SLICES
-    return low + step * (np.arange(SLICES) + rng.uniform()), step
+    step = (high - low) / count
+    return low + step * (np.arange(count) + rng.uniform()), step
 
 
 def _slice(builder: Builder, number: int, rng: np.random.Generator) -> _Slice | None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from bifurc.limits import Deadline, current_deadline, until
+from bifurc.limits import current_deadline, until
 from bifurc.problem import Problem
 from linkages.dyads.group import UnfollowedError
 from linkages.dyads.slices import (
@@ -25,9 +25,9 @@ from linkages.structure.structure import Structure
 
 MOST_COORDINATES = 30  # of a module that is looked at
 MOST_UNKNOWNS = 10  # all of which drive, one after the other
-MOST_PATHS = 400  # complex configurations at a value of every unknown, in all
-# Of the time that is left, and s at most: for generic solutions and paths.
-TIME, SECONDS = 0.4, 60.0
+SLICES = 12  # of each of them, at which paths lead to all configurations
+MOST_PATHS = 100  # complex configurations at a value of every unknown, in all
+TIME = 0.4  # of what is left of a budget, for generic solutions and paths
 
 
 def all_assemblies(
@@ -35,7 +35,7 @@ def all_assemblies(
 ) -> DyadSlices | None:
     """All assemblies of the mechanism of a ``structure`` that nothing moves; None where
     it is not known that they are all."""
-    with until(_deadline()):
+    with until(current_deadline().share(TIME)):
         try:
             return _assemblies(structure)
         except UnfollowedError:
@@ -48,16 +48,11 @@ def for_subject(
     """Slices of the mechanism of a ``structure`` at evenly spaced values, the first one
     drawn, of all of its unknowns; None where it is not known that they have all
     configurations."""
-    with until(_deadline()):
+    with until(current_deadline().share(TIME)):
         try:
             return _slices(structure, rng)
         except UnfollowedError:
             return None
-
-
-def _deadline() -> Deadline:
-    share = current_deadline().share(TIME)
-    return share if share.left < SECONDS else Deadline(SECONDS)
 
 
 def _assemblies(structure: Structure) -> DyadSlices:
@@ -87,7 +82,7 @@ def _slices(structure: Structure, rng: np.random.Generator) -> DyadSlices:
     points: list[np.ndarray] = []
     steps = []
     for number, module in enumerate(modules):
-        places, step = slice_places(unknowns[number], rng)
+        places, step = slice_places(unknowns[number], rng, SLICES)
         steps.append(step)
         for place in places:
             for point in module.configurations({number: float(place)}):

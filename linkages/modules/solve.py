@@ -1,18 +1,16 @@
 """All configurations of a mechanism while some unknowns have given values.
 
-The complex solutions of a generic member are found once for all mechanisms of the same
-equations, and kept in a folder of the user's. From there paths lead to a member with
-the geometry of the mechanism, generic in what is held, and from that to every other
-value of it.
+The complex solutions of a generic member are found once a process for all mechanisms of
+the same equations; of common types with many of them they are at hand. From there paths
+lead to a member with the geometry of the mechanism, generic in what is held, and from
+that to every other value of it.
 """
 
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Mapping
-from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 import numpy as np
@@ -33,13 +31,15 @@ from linkages.modules.skeleton import Skeleton
 from linkages.structure.structure import Structure
 
 SEED = 28  # of the generic member from which paths begin
-MOST_SOLUTIONS = 200  # complex ones of a generic member
+# Complex ones of a generic member that are looked for: some seconds. Types with more of
+# them are at hand, or are not followed.
+MOST_SOLUTIONS = 24
 # Imaginary parts of the numbers of generic members that are tried, one after the other.
 # Along a chain of displacements products of numbers that are far from real become large;
 # from numbers that are nearly real paths pass near singular members.
 IMAGINARY = (0.5, 0.4, 0.6, 0.3)
 ROUNDING = 1e-12  # of a length: it is none
-CACHE = "BIFURC_CACHE"  # the variable that names the folder of generic solutions
+SHIPPED = Path(__file__).with_name("generic_solutions.npz")
 
 
 class Module:
@@ -192,26 +192,26 @@ _known: dict[str, GenericSolutions] = {}
 
 
 def generic_solutions(family: ClosureFamily) -> GenericSolutions:
-    """Those of one generic member: known, read from the folder of the user, or found.
+    """Those of one generic member: of a common type, known, or found.
 
-    Raises `UnfollowedError` where it moves, and where the time is over.
+    Raises `UnfollowedError` where it moves, where there are more than `MOST_SOLUTIONS`,
+    and where the time is over.
     """
-    name = _name(family.family)
+    name = name_of(family.family)
     if name not in _known:
-        kept = _read(name, family.family)
-        if kept is None:
-            kept = _found(family)
-            _write(name, kept)
-        _known[name] = kept
+        shipped = _shipped().get(name)
+        _known[name] = shipped or find_generic(family, MOST_SOLUTIONS)
     return _known[name]
 
 
-def _found(family: ClosureFamily) -> GenericSolutions:
-    """By monodromy, from generic members until two agree in how many there are at most:
-    a solution that is far from all others may be out of the reach of closed ways."""
+def find_generic(family: ClosureFamily, most: int) -> GenericSolutions:
+    """The solutions of a generic member, at ``most`` so many, by monodromy: all of them,
+    as the trace test says.
+
+    Raises `UnfollowedError`.
+    """
     deadline = current_deadline()
     projection = Projection(family.are_targets, tuple(family.columns.values()))
-    best: GenericSolutions | None = None
     for attempt, imaginary in enumerate(IMAGINARY):
         rng = np.random.default_rng(SEED + attempt)
         start, parameters = family.generic_member(rng, imaginary)
@@ -223,72 +223,36 @@ def _found(family: ClosureFamily) -> GenericSolutions:
             parameters,
             rng,
             deadline,
-            MOST_SOLUTIONS,
+            most,
             projection=projection,
         )
         if deadline.passed:
             raise UnfollowedError("out of time")
-        if generic.count > MOST_SOLUTIONS:
+        if generic.count > most:
             raise UnfollowedError("there are too many complex configurations")
-        if best is not None and best.count == generic.count:
-            if best.are_all or generic.are_all:
-                return best if best.are_all else generic
-        elif best is None or generic.count > best.count:
-            best = generic
+        if generic.are_all:
+            return generic
     raise UnfollowedError("complex configurations may be missing")
 
 
-def _name(family: Family) -> str:
+def name_of(family: Family) -> str:
     """What equations are called: the same have the same name."""
     nodes, outputs = family.tape.nodes()
     return hashlib.sha256(repr((nodes, outputs, family.n)).encode()).hexdigest()[:32]
 
 
-@dataclass(frozen=True)
-class _Folder:
-    """Where generic solutions are kept."""
-
-    path: Path
-
-    @staticmethod
-    def of_user() -> _Folder:
-        home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-        return _Folder(Path(os.environ.get(CACHE) or Path(home) / "bifurc"))
-
-    def file(self, name: str) -> Path:
-        return self.path / f"{name}.npz"
-
-
-def _read(name: str, family: Family) -> GenericSolutions | None:
-    """The solutions that are kept; None where there are none, or where they are not
-    solutions of these equations."""
-    try:
-        with np.load(_Folder.of_user().file(name)) as kept:
-            fibre = Fibre(kept["parameters"], kept["solutions"])
-            trace = float(kept["trace"])
-    except (OSError, ValueError, KeyError):
-        return None
-    fits = fibre.parameters.shape == (family.parameters,)
-    fits = fits and fibre.solutions.ndim == 2 and fibre.solutions.shape[1] == family.n
-    if not fits or not len(fibre.solutions):
-        return None
-    here = follow_paths(family, fibre.solutions, fibre.parameters, fibre.parameters)
-    are_all = np.all(here.is_regular) and np.all(here.solves_all)
-    return GenericSolutions(fibre, trace) if are_all else None
-
-
-def _write(name: str, generic: GenericSolutions) -> None:
-    """Keep solutions, if the folder can be written."""
-    file = _Folder.of_user().file(name)
-    try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        part = file.with_suffix(f".{os.getpid()}.npz")
-        np.savez(
-            part,
-            parameters=generic.fibre.parameters,
-            solutions=generic.fibre.solutions,
-            trace=float(generic.trace or 0.0),
-        )
-        part.replace(file)
-    except OSError:
-        return
+@cache
+def _shipped() -> dict[str, GenericSolutions]:
+    """The solutions of generic members of common types, by the names of their
+    equations."""
+    if not SHIPPED.exists():
+        return {}
+    with np.load(SHIPPED) as arrays:
+        names = sorted({key.split()[0] for key in arrays})
+        return {
+            name: GenericSolutions(
+                Fibre(arrays[f"{name} parameters"], arrays[f"{name} solutions"]),
+                float(arrays[f"{name} trace"]),
+            )
+            for name in names
+        }

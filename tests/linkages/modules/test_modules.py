@@ -4,15 +4,24 @@ import numpy as np
 import pytest
 
 from linkages.closure.closure import Closure
+from bifurc.limits import Deadline
+from bifurc.paths.follow import distinct
+from bifurc.paths.monodromy import CurveOverLine, Effort, Fibre, Projection
 from linkages.dyads.group import UnfollowedError
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.modules import solve
 from linkages.modules.slices import for_subject
-from linkages.modules.solve import Module
+from linkages.modules.solve import Module, generic_solutions
 from linkages.structure.structure import Structure
+from tests.linkages.modules.common_types import (
+    K33,
+    PRISM,
+    TYPES,
+    random_on_sphere,
+    random_platform,
+    vector,
+)
 
-K33 = [(i, j) for i in (0, 2, 4) for j in (1, 3, 5)]
 OF_LETTER = {
     "R": JointKind.REVOLUTE,
     "P": JointKind.PRISMATIC,
@@ -24,51 +33,6 @@ OF_LETTER = {
 # (RSSR, RCCC: Bennett's and Duffy's input-output equations of degree 2 in the tangent of
 # the half-angle), and of a sphere on a curve of the fourth degree
 OF_LOOPS = {"RSSR": 2, "RSCR": 4, "RUSR": 4}
-
-
-@pytest.fixture(autouse=True)
-def own_folder(tmp_path_factory, monkeypatch):
-    """Generic solutions are kept with the tests."""
-    folder = tmp_path_factory.getbasetemp() / "generic"
-    monkeypatch.setenv(solve.CACHE, str(folder))
-    return folder
-
-
-def vector(numbers):
-    x, y, z = map(float, numbers)
-    return x, y, z
-
-
-def on_sphere(directions, arcs):
-    """Points (k, 3) on a sphere, and arcs between them."""
-    bodies = {point: [] for arc in arcs for point in arc}
-    for start, end in arcs:
-        bodies[start].append(f"{start}-{end}")
-        bodies[end].append(f"{start}-{end}")
-    return Mechanism(
-        tuple(
-            Joint(
-                f"P{point}",
-                JointKind.REVOLUTE,
-                tuple(own),
-                (0.0, 0.0, 0.0),
-                vector(directions[point]),
-            )
-            for point, own in sorted(bodies.items())
-        )
-    )
-
-
-def platform(rng):
-    joints = []
-    for number in range(6):
-        foot, head = rng.normal(size=(2, 3))
-        leg = f"leg{number}"
-        joints += [
-            Joint(f"A{number}", JointKind.SPHERICAL, ("frame", leg), vector(foot)),
-            Joint(f"B{number}", JointKind.SPHERICAL, (leg, "plate"), vector(head)),
-        ]
-    return Mechanism(tuple(joints))
 
 
 def loop(letters, rng):
@@ -93,11 +57,47 @@ def are_among(points, others):
     return bool(np.all(gaps.min(axis=1, initial=np.inf) < 1e-6))
 
 
-def test_a_framework_on_a_sphere_has_all_its_assemblies():
-    """K(3,3) has 16, with reflections."""
-    mechanism = on_sphere(np.random.default_rng(5).normal(size=(6, 3)), K33)
+@pytest.mark.parametrize("name", TYPES)
+def test_shipped_solutions_are_all_of_a_generic_member(name):
+    """Their number is that of the literature, and the trace test says so anew."""
+    family = TYPES[name].module.family
+    known = generic_solutions(family)
+    fibre = known.fibre
+    assert known.count == TYPES[name].count
+    assert len(distinct(fibre.solutions)) == known.count
+    gaps = np.abs(family.family.residuals(fibre.solutions, fibre.parameters))
+    sizes = 1.0 + np.abs(fibre.solutions).max() ** 2
+    assert gaps.max() < 1e-13 * sizes
+    assert trace_of(family, fibre) < 1e-9
+
+
+def trace_of(family, fibre):
+    """That of the curve over a line through a member of a family."""
+    rng = np.random.default_rng(1)
+    projection = Projection(family.are_targets, tuple(family.columns.values()))
+    sizes = np.where(family.are_targets, 1.0, 0.0)
+    looked_at = projection.coordinates_of(fibre.solutions)
+    curve = CurveOverLine(family.family, fibre, sizes, looked_at, rng)
+    trace = np.inf
+    while not trace < 1e-6:
+        curve.find_points(rng, Effort(Deadline()))
+        trace = curve.trace(Effort(Deadline())) or np.inf
+        assert len(curve.solutions) == len(fibre.solutions)
+    return trace
+
+
+def test_the_trace_test_misses_a_solution_that_is_left_out():
+    family = TYPES["K(3,3) on a sphere"].module.family
+    fibre = generic_solutions(family).fibre
+    with pytest.raises(AssertionError):
+        trace_of(family, Fibre(fibre.parameters, fibre.solutions[:-1]))
+
+
+@pytest.mark.parametrize(("arcs", "count"), [(K33, 16), (PRISM, 32)])
+def test_a_framework_on_a_sphere_has_all_its_assemblies(arcs, count):
+    mechanism = random_on_sphere(arcs, 7)
     module = Module(Structure(mechanism))
-    assert module.count == 16
+    assert module.count == count
     known = module.configurations({})
     assert len(known) % 2 == 0
     closure = Closure(mechanism)
@@ -107,25 +107,18 @@ def test_a_framework_on_a_sphere_has_all_its_assemblies():
     assert are_among(points[gaps < 1e-10], known)
 
 
-def test_a_platform_on_six_legs_has_40_complex_assemblies():
-    """Ronga and Vust 1995."""
-    followed = []
-    for seed in range(6):
-        mechanism = platform(np.random.default_rng(seed))
-        module = Module(Structure(mechanism))
-        assert module.count == 40
-        try:
-            known = module.configurations({})
-        except UnfollowedError:  # a path was lost, and that is said
-            continue
-        followed.append(seed)
-        assert len(known) % 2 == 0
-        closure = Closure(mechanism)
-        starts = np.random.default_rng(1).normal(size=(800, closure.n))
-        points, gaps = closure.project(starts)
-        away = np.abs(points[gaps < 1e-10][:, None] - known[None]).max(axis=2)
-        assert np.all(away.min(axis=1, initial=np.inf) < 1e-6)
-    assert len(followed) >= 3
+@pytest.mark.parametrize("seed", range(1, 7))
+def test_a_platform_on_six_legs_has_all_its_assemblies(seed):
+    mechanism = random_platform(seed)
+    module = Module(Structure(mechanism))
+    assert module.count == 40
+    known = module.configurations({})
+    assert len(known) % 2 == 0
+    closure = Closure(mechanism)
+    starts = np.random.default_rng(1).normal(size=(400, closure.n))
+    points, gaps = closure.project(starts)
+    away = np.abs(points[gaps < 1e-10][:, None] - known[None]).max(axis=2)
+    assert np.all(away.min(axis=1, initial=np.inf) < 1e-6)
 
 
 @pytest.mark.parametrize("letters", OF_LOOPS)
@@ -154,19 +147,3 @@ def test_slices_of_a_spatial_loop_are_complete():
 def test_what_moves_is_no_module():
     with pytest.raises(UnfollowedError, match="moves"):
         Module(Structure(loop("RUSR", np.random.default_rng(3))))
-
-
-def test_generic_solutions_are_kept_and_read_again(own_folder, monkeypatch):
-    structure = Structure(loop("RSSR", np.random.default_rng(3)))
-    first = Module(structure, (0,)).generic
-    monkeypatch.setattr(solve, "_known", {})
-    monkeypatch.setattr(solve, "_found", None)  # would raise TypeError
-    again = Module(structure, (0,)).generic
-    assert np.array_equal(first.fibre.solutions, again.fibre.solutions)
-    # what is no solution is not taken
-    for file in own_folder.glob("*.npz"):
-        kept = dict(np.load(file))
-        np.savez(file, **(kept | {"solutions": kept["solutions"] + 0.5}))
-    monkeypatch.setattr(solve, "_known", {})
-    with pytest.raises(TypeError):
-        _ = Module(structure, (0,)).generic
