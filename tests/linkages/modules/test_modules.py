@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from linkages.closure.closure import Closure
 from bifurc.limits import Deadline
 from bifurc.paths.follow import distinct
 from bifurc.paths.monodromy import CurveOverLine, Effort, Fibre, Projection
+from linkages.closure.closure import Closure
 from linkages.dyads.group import UnfollowedError
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
