@@ -296,6 +296,9 @@ def made_in_time(make: Callable[[], Value]) -> Value | None:
         return None
 
 
+_LEFT: set[threading.Thread] = set()  # calls that a cut has left behind, or may leave
+
+
 def left_behind(size: int, function: Callable[..., Any]) -> Callable[..., Any]:
     """A compiled function that cannot be asked to end, of matrices of this ``size``. Where
     it may last and what runs may be cut off it is called in a thread, which a cut leaves
@@ -314,9 +317,11 @@ def left_behind(size: int, function: Callable[..., Any]) -> Callable[..., Any]:
                 errors.append(error)
 
         thread = threading.Thread(target=run, daemon=True)
+        _LEFT.add(thread)
         thread.start()
         while thread.is_alive():
             thread.join(AGAIN)
+        _LEFT.discard(thread)
         if errors:
             raise errors[0]
         return values[0]
@@ -368,14 +373,21 @@ SMALL = 8
 def one_thread(n: int) -> Iterator[None]:
     """Within it BLAS works on one thread, where ``n`` unknowns would take more.
 
-    The limit holds for the whole process; what was set before comes back.
+    The limit holds for the whole process. What was set before comes back, but for where a
+    call was left behind: after that OpenBLAS with several threads does not end with the
+    process.
     """
     if n <= SMALL:
         yield
         return
     # SciPy has a BLAS of its own, which a controller knows where it is loaded before
-    with _controller("scipy.linalg" in sys.modules).limit(limits=1, user_api="blas"):
+    controller = _controller("scipy.linalg" in sys.modules)
+    limit = controller.limit(limits=1, user_api="blas")
+    try:
         yield
+    finally:
+        if not _LEFT:
+            limit.restore_original_limits()
 
 
 @cache

@@ -29,6 +29,7 @@ from bifurc.equations.tape import Tape
 from bifurc.errors import ProblemError
 from bifurc.function_problem import FunctionProblem
 from bifurc.limits import is_time_over, made_in_time
+from bifurc.numerics.connected_parts import connected_parts
 from bifurc.search.answer.assemble import (
     component_numbers,
     near_misses_of,
@@ -164,12 +165,8 @@ def _joined(
     groups: Sequence[tuple[int, ...]], pairs: Sequence[tuple[int, int]]
 ) -> list[tuple[int, ...]]:
     """The groups of factors, with each of the ``pairs``, by their numbers, in one."""
-    leader = list(range(len(groups)))
-    for one, other in pairs:
-        first, second = leader[one], leader[other]
-        leader = [first if number == second else number for number in leader]
     members: dict[int, list[int]] = defaultdict(list)
-    for number, group in zip(leader, groups, strict=True):
+    for number, group in zip(connected_parts(len(groups), pairs), groups, strict=True):
         members[number] += group
     return [tuple(sorted(numbers)) for numbers in members.values()]
 
