@@ -206,12 +206,17 @@ def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
     it."""
     if not is_of_equations(problem) or not has_no_own_answers(problem):
         return _explored_in_own_units(problem, request)
-    if request.seeds is None:
-        atlas = explored_by_factors(
-            problem, lambda part: _explored_in_own_units(part, request)
-        )
-        if atlas is not None:
-            return atlas
+    if request.seeds is not None:
+        return _explored_in_boxes(problem, request)
+    return explored_by_factors(
+        problem,
+        lambda part: _explored_in_own_units(part, request),
+        lambda: _explored_in_boxes(problem, request),
+    )
+
+
+def _explored_in_boxes(problem: FunctionProblem, request: _Request) -> Atlas:
+    """The atlas, settled by boxes where these show the isolated solutions."""
     solutions = _solutions_of(problem, request)
     if solutions is None:
         return _explored_in_own_units(problem, request)

@@ -98,30 +98,55 @@ class _Pass(NamedTuple):
 
 
 def explored_by_factors(
-    problem: FunctionProblem, explored: Callable[[FunctionProblem], Atlas]
-) -> Atlas | None:
-    """The atlas of a plane curve made of those of its factors, each ``explored`` alone as
-    far as no other touches it; None where there are less than three, and where all have
-    to be explored together."""
+    problem: FunctionProblem,
+    part: Callable[[FunctionProblem], Atlas],
+    whole: Callable[[], Atlas],
+) -> Atlas:
+    """The atlas of a problem. That of a plane curve of three factors or more is made of
+    those of its factors, each explored as a ``part`` of its own as far as no other
+    touches it; of others, and where all have to be explored together, it is the
+    ``whole``, but for where there was no time for that and parts are known."""
     factors = _factors_of(problem)
     if factors is None:
-        return None
+        return whole()
     groups: list[tuple[int, ...]] = [(number,) for number in range(len(factors.powers))]
     known: dict[tuple[int, ...], _Part] = {}
-    while len(groups) > 1 and not is_time_over():
+    while True:
         for numbers in groups:
             if numbers not in known and not is_time_over():
-                part = _part_of(problem, factors, numbers, explored)
-                if part is None:
-                    return None
-                known[numbers] = part
-        parts = [known[numbers] for numbers in groups if numbers in known]
-        union = _Union(problem, parts, len(groups) - len(parts))
+                explored = _part_of(problem, factors, numbers, part)
+                if explored is None:
+                    return whole()
+                known[numbers] = explored
+        union = _union_of(problem, factors, groups, known)
+        if union is None:
+            return whole()
         passes, entangled = union.meetings()
-        if not entangled:
-            return union.atlas(passes)
+        if not entangled or is_time_over():
+            return union.atlas(union.left_apart(passes, entangled))
         groups = _joined(groups, entangled)
-    return None
+        if len(groups) == 1:
+            atlas = whole()
+            if not atlas.provenance.out_of_time:
+                return atlas
+            return union.atlas(union.left_apart(passes, entangled))
+
+
+def _union_of(
+    problem: FunctionProblem,
+    factors: Factors,
+    groups: Sequence[tuple[int, ...]],
+    known: Mapping[tuple[int, ...], _Part],
+) -> _Union | None:
+    """What is known of the factors, those of a group together where these are; None where
+    nothing is."""
+    parts = [
+        part
+        for numbers, part in known.items()
+        if not any(set(numbers) < set(more) for more in known)
+    ]
+    left = sum(len(numbers) for numbers in groups if numbers not in known)
+    return _Union(problem, parts, len(factors.powers), left) if parts else None
 
 
 def _factors_of(problem: FunctionProblem) -> Factors | None:
@@ -172,12 +197,15 @@ def _joined(
 
 
 class _Union:
-    """The atlases of ``parts`` of a ``problem`` put together; so many factors are
-    ``left`` that there was no time for."""
+    """The atlases of ``parts`` of a ``problem`` put together, which has ``count``
+    factors; so many of them are ``left`` that there was no time for."""
 
-    def __init__(self, problem: FunctionProblem, parts: Sequence[_Part], left: int):
+    def __init__(
+        self, problem: FunctionProblem, parts: Sequence[_Part], count: int, left: int
+    ):
         self.problem = problem
         self.parts = parts
+        self.count = count
         self.left = left
         self.is_cut = False  # whether there was no time to look along all forms
         self.sizes = np.diff(problem.domain.bounds, axis=1)[:, 0]
@@ -314,6 +342,13 @@ class _Union:
         return max(gaps)
 
     # --- the atlas --------------------------------------------------------------------
+
+    def left_apart(
+        self, passes: Sequence[_Pass], pairs: Sequence[tuple[int, int]]
+    ) -> list[_Pass]:
+        """The passes but for those of ``pairs`` of parts, which count as ``left``."""
+        self.left += len({part for pair in pairs for part in pair})
+        return [one for one in passes if (one.part, one.other) not in pairs]
 
     def atlas(self, passes: Sequence[_Pass]) -> Atlas:
         """The atlas of all parts with these passes of forms at other parts."""
@@ -539,7 +574,7 @@ class _Union:
         yield SearchClaim.FACTORS.claim(
             Scope.MOTIONS,
             levels[worst],
-            factors=sum(len(part.numbers) for part in self.parts) + self.left,
+            factors=self.count,
             least="; ".join(claim.text for claim in known[worst].claims),
         )
 

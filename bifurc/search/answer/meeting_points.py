@@ -38,8 +38,36 @@ def meeting_points(
 
     ``periods`` (n,) are those of the unknowns that were wrapped.
     """
-    meeting = [_meeting_point(problem, p, branches, surfaces) for p in points]
+    near = _branches_near(problem, points, branches)
+    meeting = [
+        _meeting_point(problem, point, branches, here, surfaces)
+        for point, here in zip(points, near, strict=True)
+    ]
     return in_order(problem, meeting, periods)
+
+
+def _branches_near(
+    problem: Problem, points: Sequence[SingularPoint], branches: Sequence[Branch]
+) -> list[list[int]]:
+    """The branches, by their numbers, that may pass each of the points or end there."""
+    near: list[list[int]] = [[] for _ in points]
+    if not points:
+        return near
+    places = np.array([point.u for point in points])
+    within = 2 * np.array([_within(problem, point) for point in points])
+    for index, branch in enumerate(branches):
+        distances, _ = branch.nearest(places, float(within.max()))
+        is_near = distances < within
+        if branch.outcome is Outcome.STALLED:
+            is_near[:] = True
+        for k in np.flatnonzero(is_near).tolist():
+            near[k].append(index)
+    return near
+
+
+def _within(problem: Problem, point: SingularPoint) -> float:
+    """How near to a point a branch comes that passes it."""
+    return is_same_point.threshold * problem.domain.scale + 2 * point.error
 
 
 def in_order(
@@ -65,16 +93,18 @@ def _meeting_point(
     problem: Problem,
     point: SingularPoint,
     branches: Sequence[Branch],
+    near: Sequence[int],
     surfaces: tuple[Surface, ...],
 ) -> MeetingPoint:
-    """A singular point with the branches that pass it or end there, and the surfaces on
-    which it lies; where the branches and the section disagree, a note."""
+    """A singular point with the branches, of those ``near``, that pass it or end there,
+    and the surfaces on which it lies; where the branches and the section disagree, a
+    note."""
     point = _within_bounds(problem, point)
     through: list[tuple[int, float]] = []
     ending: list[tuple[int, float]] = []
-    for index, branch in enumerate(branches):
-        ends = ends_at(problem, branch, point)
-        passes = _passes_at(problem, branch, point, ends)
+    for index in near:
+        ends = ends_at(problem, branches[index], point)
+        passes = _passes_at(problem, branches[index], point, ends)
         ending += [(index, s) for s in ends]
         through += [(index, s) for s in passes]
     at_bounds = [_ends_at_bounds(branches[k], s, point) for k, s in through]
@@ -217,7 +247,7 @@ def _passes_at(
 ) -> list[float]:
     """Arclengths at which a branch passes a point, but for the ``ends`` that lie
     there."""
-    within = is_same_point.threshold * problem.domain.scale + 2 * point.error
+    within = _within(problem, point)
     near = [float(s) for s in branch.passes(point.u, within)]
     passes = _distinct(
         [s for s in near if _may_pass(problem, branch(s), point)], 2 * within
