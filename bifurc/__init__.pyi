@@ -66,6 +66,8 @@ from .settings import SearchSettings as SearchSettings
 from .settings import TraceSettings as TraceSettings
 from .singular.point import Kind as Kind
 from .singular.point import SingularPoint as SingularPoint
+from .singular.prestress import SecondOrder as SecondOrder
+from .singular.prestress import second_order_at as second_order_at
 from .surfaces.chart_atlas import ChartAtlas as ChartAtlas
 from .surfaces.chart_atlas import Covering as Covering
 from .system import Accuracy as Accuracy

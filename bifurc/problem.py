@@ -39,3 +39,9 @@ class Problem(System):
     ) -> Seeds:
         """Solutions to start from, ``count`` random starts among what they come of, or
         as many of these as there is time for before a ``deadline``."""
+
+    def is_given_at(self, point: np.ndarray) -> bool:
+        """Whether the equations were given by their solution at ``point`` (n,), or one
+        that is singular there as it is: it is there for certain, also where rounding
+        does not tell it from two, or none."""
+        return False

@@ -266,7 +266,11 @@ class MechanismSubject(Subject):
 
     @cached_property
     def closure(self) -> Closure:
-        return Closure(self.mechanism, structure=self.readout.structure)
+        from linkages.readout.rigidity import is_as_drawn
+
+        closure = Closure(self.mechanism, structure=self.readout.structure)
+        closure.as_drawn = partial(is_as_drawn, self.readout)
+        return closure
 
     @property
     def held_freedoms(self) -> int:

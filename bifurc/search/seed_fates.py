@@ -12,7 +12,9 @@ import numpy as np
 
 from bifurc.curves.deflation import RankDeflated
 from bifurc.decisions import (
+    closes_to_rounding,
     is_beside_singular,
+    is_known_assembly,
     is_start_solved,
     is_weakly_isolated,
     may_be_mobile,
@@ -28,6 +30,8 @@ from bifurc.search.records import Start, half_branch_starts
 from bifurc.search.seed_book import SeedFate
 from bifurc.search.solutions import polished
 from bifurc.search.tracing import Tracer
+from bifurc.singular.point import Kind
+from bifurc.system import relative_gaps
 
 log = logging.getLogger(__name__)
 
@@ -55,6 +59,10 @@ class Seed:
     def cannot_move(self) -> bool:
         """Whether F' has full rank there."""
         return not may_be_mobile(float(self.values[self.problem.n - 1]))
+
+    def is_weak(self) -> bool:
+        """Whether F' has not full rank, or hardly."""
+        return is_weakly_isolated(float(self.values[self.problem.n - 1]))
 
     def may_be_shaky(self) -> bool:
         """Whether F' may have rank n - 3 all along a curve."""
@@ -104,6 +112,7 @@ class SeedJudge:
         self.points = points
         self.tracer = tracer
         self.rules = (
+            _Rule(Seed.is_weak, self._isolated_point, "a known point, to rounding"),
             _Rule(Seed.cannot_move, self._assembly, "F' has full rank"),
             _Rule(Seed.is_any, self._near_motion, "a known near motion"),
             _Rule(Seed.may_be_shaky, self._shaky_curve, "rank n - 3 all along"),
@@ -124,6 +133,17 @@ class SeedJudge:
                 log.debug("seed %d is %s: %s", number, fate.fate.value, rule.reason)
                 return fate
         raise AssertionError("the last rule has an answer for every seed")
+
+    def _isolated_point(self, seed: Seed) -> SeedFate | None:
+        """The known isolated singular point from which rounding does not tell it: F is
+        rounding half-way, too."""
+        known = self.findings.point_near(seed.point, is_known_assembly.threshold)
+        if known is None or known.point.kind is not Kind.ISOLATED:
+            return None
+        offset = self.problem.domain.difference(known.point.u, seed.point)
+        half_way = seed.point + 0.5 * offset
+        gap = float(relative_gaps(self.problem, half_way[None])[0])
+        return known.fate if closes_to_rounding(gap) else None
 
     def _near_motion(self, seed: Seed) -> SeedFate | None:
         """The known near motion on which it lies."""

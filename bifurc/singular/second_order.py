@@ -32,10 +32,17 @@ def second_order_tangents(
     """
     if null_space.shape[1] != 2:
         return None
-    reduced = _reduced_forms(problem, point, null_space)
-    if not np.all(np.isfinite(reduced)):
+    lines = common_lines(_reduced_forms(problem, point, null_space))
+    return None if lines is None else lines @ null_space.T
+
+
+def common_lines(forms: np.ndarray) -> np.ndarray | None:
+    """Unit vectors (t, 2) along which all binary quadratic forms, rows (w, 3) of
+    coefficients, vanish; None where that is not told, as of a double root, and where
+    no form is left."""
+    if not np.all(np.isfinite(forms)):
         return None
-    forms = _independent_forms(reduced)
+    forms = _independent_forms(forms)
     if not len(forms):
         return None
     a, b, c = forms[0]
@@ -43,14 +50,14 @@ def second_order_tangents(
     if len(forms) == 1 and is_zero_form(abs(discriminant)):
         return None
     if discriminant < 0:
-        return np.empty((0, len(point)))
+        return np.empty((0, 2))
     roots = _real_roots(a, b, c)
     values = _values(forms, roots)
     common = np.all(is_zero_form(np.abs(values)), axis=1)
     if not np.any(common) and len(forms) == 2 and _have_common_root(forms):
         return None
-    tangents: np.ndarray = roots[common] @ null_space.T
-    return tangents
+    lines: np.ndarray = roots[common]
+    return lines
 
 
 def lines_of_form(form: np.ndarray) -> np.ndarray:

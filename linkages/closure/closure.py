@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from bifurc.limits import Deadline
@@ -14,7 +16,14 @@ from linkages.slices.completeness import sliced_seeds
 class Closure(ClosureSystem):
     """The closure equations of a subject, and where a search of them begins: a loop at
     complete slices of its joints, a mechanism where the first source begins that applies
-    to it."""
+    to it. ``as_drawn`` tells of an assembly of a mechanism, which is given by one, whether
+    what is singular in it is as it is drawn."""
+
+    as_drawn: Callable[[np.ndarray], bool] | None = None
+
+    def is_given_at(self, point: np.ndarray) -> bool:
+        """Whether what is singular at a configuration (n,) is as it is drawn."""
+        return self.as_drawn is not None and self.as_drawn(point)
 
     def seeds(
         self, rng: np.random.Generator, count: int, deadline: Deadline | None = None

@@ -47,6 +47,7 @@ class Part(Enum):
     JOINT = "joint"
     GROUND = "ground"
     PATH = "path"
+    FLEX = "flex"
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +85,8 @@ class Picture:
 class Painter:
     """Makes pictures of some parts, all from one side: from where that of the
     configuration ``first`` (n,) is clear, with rails as long as slides are used at
-    ``points`` (k, n), and the paths there of ``traced`` points."""
+    ``points`` (k, n), and the paths there of ``traced`` points. ``size`` is that of the
+    linkage, ``radius`` that of a joint."""
 
     def __init__(
         self,
@@ -101,8 +103,8 @@ class Painter:
             self._camera = _camera_of(parts.best_view(first))
         else:
             self._camera = _camera_above(normal)
-        self._size = self._extent(first) or parts.size
-        self._radius = RADIUS * self._size
+        self.size = self._extent(first) or parts.size
+        self.radius = RADIUS * self.size
         self._traced = traced
         paths = [self._seen(traced_path(parts, one, points)) for one in traced]
         self._paths = [Stroke(Part.PATH, path[:, :2], -np.inf) for path in paths]
@@ -121,7 +123,7 @@ class Painter:
                 names.append(Name(text, self._seen(symbol.place)[:2]))
         for one in self._traced:
             (seen,) = self._seen(traced_path(self._parts, one, point[None]))
-            ring = seen[:2] + DOT * self._radius * CIRCLE
+            ring = seen[:2] + DOT * self.radius * CIRCLE
             strokes.append(Stroke(Part.JOINT, ring, np.inf, closed=True))
             names.append(Name(one.name, seen[:2]))
         strokes += self._paths
@@ -129,6 +131,12 @@ class Painter:
         return Picture(strokes, names)
 
     # --- places -----------------------------------------------------------------------
+
+    def seen(self, places: np.ndarray, point: np.ndarray) -> np.ndarray:
+        """Places (..., 3) of a configuration (n,), given with the frame at rest, as
+        `Stroke` has them, with the depth as third number."""
+        held = np.linalg.inv(self._parts.poses(point[None])[0][self._parts.held])
+        return self._seen(places @ held[:3, :3].T + held[:3, 3])
 
     def _poses(self, point: np.ndarray) -> np.ndarray:
         """The poses (b, 4, 4) of all bodies seen from the one that is drawn at rest."""
@@ -175,7 +183,7 @@ class Painter:
         part = at_rest if is_frame else Part.LINK
         strokes = []
         for line in self._lines[body]:
-            if np.linalg.norm(line[1] - line[0]) < NOTHING * self._size:
+            if np.linalg.norm(line[1] - line[0]) < NOTHING * self.size:
                 continue
             seen = self._seen(line @ pose[:3, :3].T + pose[:3, 3])
             strokes.append(Stroke(part, seen[:, :2], float(seen[:, 2].mean())))
@@ -186,12 +194,12 @@ class Painter:
         seen = self._seen(symbol.place)
         place, depth = seen[:2], float(seen[2])
         direction = self._seen(symbol.direction)
-        outline = self._radius * _outline(symbol.shape, direction)
+        outline = self.radius * _outline(symbol.shape, direction)
         has_axis = symbol.shape is Shape.CYLINDER
-        behind = 0.0 if has_axis else self._radius  # a pin on a slider is seen
+        behind = 0.0 if has_axis else self.radius  # a pin on a slider is seen
         strokes = [Stroke(Part.JOINT, place + outline, depth - behind, closed=True)]
         if has_axis and np.linalg.norm(direction[:2]) > END_ON:
-            reach = REACH * self._size * direction[:2]
+            reach = REACH * self.size * direction[:2]
             axis = np.array([place - reach, place + reach])
             strokes.append(Stroke(Part.AXIS, axis, depth))
         if self._is_planar and symbol.is_on(self._parts.frame):
@@ -202,14 +210,14 @@ class Painter:
         self, symbol: Symbol, place: np.ndarray, direction: np.ndarray, depth: float
     ) -> list[Stroke]:
         """A foot below a pin; strokes beside the rail of a slider."""
-        below = depth - self._radius
+        below = depth - self.radius
         if symbol.shape is not Shape.CYLINDER:
             along = direction[:2]
             aside = np.array([along[1], -along[0]])
             aside *= 1.0 if aside[1] <= 0 else -1.0
-            start = place + BOXES[Shape.BOX][1] * self._radius * aside
-            return _hatching(start, along, aside, 3 * self._radius, below)
-        half, height = self._radius * np.array(FOOT)
+            start = place + BOXES[Shape.BOX][1] * self.radius * aside
+            return _hatching(start, along, aside, 3 * self.radius, below)
+        half, height = self.radius * np.array(FOOT)
         corners = np.array([[0.0, 0.0], [half, -height], [-half, -height]])
         foot = Stroke(Part.GROUND, place + corners, below, closed=True)
         floor = place - [0.0, height]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,6 +19,7 @@ from bifurc.figures.rc import drawing_style, size_of_user
 from bifurc.figures.selection import Selection
 from bifurc.figures.style import Properties
 from linkages.links.traced_points import traced_point
+from linkages.pictures.flex_arrows import flex_strokes
 from linkages.pictures.picture import Painter, Part, Picture, Stroke
 from linkages.subject import subject_at
 from linkages.viewing.start import Place, first_place, start_of
@@ -35,13 +37,15 @@ STYLES: dict[Part, Properties] = {
     Part.AXIS: {"color": "0.5", "linewidth": 0.8, "linestyle": (0, (8, 2, 1.5, 2))},
     Part.GROUND: {"color": "0.25", "linewidth": 0.9},
     Part.PATH: {"color": "#D55E00", "linewidth": 1.2},
+    Part.FLEX: {"color": "#D55E00", "linewidth": 1.6},
 }
 OUTLINES: dict[Part, Properties] = {
     Part.JOINT: {"color": "0.15", "linewidth": 1.1},
     Part.GROUND: {"color": "0.25", "linewidth": 1.1},
     Part.PANEL: {"color": LINK, "linewidth": 0.9},
+    Part.FLEX: {"color": "#D55E00", "linewidth": 0.0},
 }
-FILLS = {Part.PANEL: "#D6E6F2"}  # white for all others
+FILLS = {Part.PANEL: "#D6E6F2", Part.FLEX: "#D55E00"}  # white for all others
 
 
 def plot_linkage(
@@ -58,7 +62,8 @@ def plot_linkage(
     where nothing is said.
 
     Planar linkages are seen straight from above, with the symbols for ground, pins and
-    sliders; others with the axes of their joints. It is drawn into ``ax``, or into a
+    sliders; others with the axes of their joints. Infinitesimal flexes of a mechanism that
+    is rigid there are arrows. It is drawn into ``ax``, or into a
     ``figure`` or a part of one, or into a new one. The paths of points along the form are
     drawn that ``trace`` names as "BODY:X,Y" or "BODY:X,Y,Z". Raises `ProblemError` for a
     form that is not there, `linkages.GeometryError` for a point of no body, and
@@ -75,6 +80,10 @@ def plot_linkage(
     with drawing_style():
         ax = ax or _new_axes(figure)
         picture = painter.picture(place.point)
+        readout = subject_at(atlas).readout
+        if place.form is None and readout is not None:
+            flexes = flex_strokes(painter, readout, place.point)
+            picture = replace(picture, strokes=[*picture.strokes, *flexes])
         draw_picture(ax, picture, picture.corners)
     return figure_of(ax)
 

@@ -35,6 +35,7 @@ from bifurc.search.answer.doubts import (
     doubts_of,
     doubts_of_findings,
     doubts_of_near_misses,
+    is_held,
     loose_ends,
 )
 from bifurc.search.answer.meeting_points import meeting_points
@@ -96,6 +97,8 @@ def assemble_atlas(
         *doubts_of_near_misses(problem, near_misses),
         *doubts_of_findings(problem, findings, located),
     ]
+    shaky = [point.point.u for point in points if point.kind is Kind.ISOLATED]
+    held = sum(is_held(problem, u) for u in [*shaky, *rigid])
     gap = 0.0
     if near_motions and not is_mobile:
         gap = min(near.misclosure for near in near_motions)
@@ -112,7 +115,7 @@ def assemble_atlas(
         rigid=rigid[order_points(rigid, periods, problem.domain.scale)],
         surfaces=surfaces,
         near_motions=near_motions,
-        completeness=judge_completeness(findings, provenance, doubts),
+        completeness=judge_completeness(findings, provenance, doubts, held),
         closure_gap=gap,
         provenance=provenance,
     )

@@ -30,9 +30,13 @@ NO_SOLUTION = SeedFate(Fate.NO_SOLUTION)
 
 
 def judge_completeness(
-    findings: Findings, provenance: Provenance, doubts: Sequence[Doubt] = ()
+    findings: Findings,
+    provenance: Provenance,
+    doubts: Sequence[Doubt] = (),
+    held: int = 0,
 ) -> Completeness:
-    """What the audit proves, the estimate for the rest, and what is in doubt."""
+    """What the audit proves, the estimate for the rest, and what is in doubt; so many
+    isolated solutions of lower rank are as they were given, ``held`` by a stress."""
     hits = findings.book.random_hits()
     hits[NO_SOLUTION] += len(findings.book.seeds.gaps)
     missed = missed_probability(list(hits.values()))
@@ -45,6 +49,8 @@ def judge_completeness(
         Scope.STARTS, None, reached=reached, starts=total, missed=missed
     )
     claims = (*_claims(findings, provenance, left), estimate)
+    if held:
+        claims = (*claims, SearchClaim.HELD.claim(Scope.ASSEMBLIES, None, count=held))
     return Completeness(claims, tuple(doubts), missed_at_most)
 
 

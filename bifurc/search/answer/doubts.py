@@ -44,6 +44,7 @@ from bifurc.search.solutions import solutions_on_rims
 from bifurc.search.strands import missing_crossings
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
+from bifurc.singular.prestress import second_order_at
 from bifurc.surfaces.chart_atlas import Covering
 from bifurc.system import relative_gaps
 
@@ -98,7 +99,9 @@ def doubts_of(
     double = [
         point.name
         for point in points
-        if point.kind is Kind.ISOLATED and point.point.rank == problem.n - 1
+        if point.kind is Kind.ISOLATED
+        and point.point.rank == problem.n - 1
+        and not is_held(problem, point.point.u)
     ]
     if double:
         yield SearchDoubt.DOUBLE_SOLUTIONS.doubt(points=double)
@@ -183,7 +186,10 @@ def doubts_of_findings(
     assemblies = list(findings.rigid.values())
     hidden = np.array([assembly.hidden for assembly in assemblies])
     is_known = is_known_assembly(hidden, problem.domain.scale)
-    hidden = hidden[~(is_known & _are_single(problem, assemblies))]
+    is_open = ~(is_known & _are_single(problem, assemblies))
+    for k in np.flatnonzero(is_open & is_known).tolist():
+        is_open[k] = not is_held(problem, assemblies[k].place)
+    hidden = hidden[is_open]
     if len(hidden):
         reach = hidden.max() / problem.domain.scale
         yield SearchDoubt.HIDDEN_ASSEMBLIES.doubt(amount=reach, count=len(hidden))
@@ -199,6 +205,14 @@ def doubts_of_findings(
         yield SearchDoubt.UNCHARTED.doubt(starts=off_charts)
     if findings.gaps_of_stops:
         yield SearchDoubt.SHORT_STOPS.doubt(amount=min(findings.gaps_of_stops))
+
+
+def is_held(problem: Problem, place: np.ndarray) -> bool:
+    """Whether a solution at a ``place`` (n,) at which F' is singular is there for
+    certain, and a stress holds it, so that no motion passes it."""
+    if not problem.is_given_at(place):
+        return False
+    return second_order_at(problem, place).holding is not None
 
 
 def _doubts_of_assumed_bounds(problem: Problem, findings: Findings) -> Iterator[Doubt]:

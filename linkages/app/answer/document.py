@@ -19,6 +19,7 @@ from linkages.app.answer.verdict import is_without_gaps
 from linkages.app.texts.configurations import numbers_at
 from linkages.labels import FormLabels
 from linkages.readout.dead_points import moving_dead_points
+from linkages.readout.rigidity import held_document
 from linkages.subject import subject_at
 from linkages.turns.translates import isolated_assemblies_of
 
@@ -67,7 +68,10 @@ def _place(atlas: Atlas, theta: NDArray[np.float64], key: str = "theta") -> Docu
 def _assembly(atlas: Atlas, theta: NDArray[np.float64]) -> list[float] | Document:
     """A rigid assembly: of a loop the joint angles alone."""
     place = _place(atlas, theta)
-    return place if len(place) > 1 else numbers_at(atlas, theta)
+    if len(place) == 1:
+        return numbers_at(atlas, theta)
+    readout = subject_at(atlas).readout
+    return place if readout is None else {**place, **held_document(readout, theta)}
 
 
 def _form(atlas: Atlas, index: int) -> Document:

@@ -284,7 +284,7 @@ def _point_records(atlas: Atlas, title: str) -> list[dict[str, str]]:
     for point in atlas.points:
         if point.kind.title != title:
             continue
-        remark = f": {point.note}" if point.note else ""
+        remark = f": {point.note}" if point.note else _how_held(atlas, point)
         rows.append(
             {
                 "name": point.name,
@@ -298,6 +298,16 @@ def _point_records(atlas: Atlas, title: str) -> list[dict[str, str]]:
             }
         )
     return rows
+
+
+def _how_held(atlas: Atlas, point: MeetingPoint) -> str:
+    """What holds an isolated assembly of a mechanism that is singular."""
+    readout = subject_at(atlas).readout
+    if readout is None or point.kind is not Kind.ISOLATED:
+        return ""
+    from linkages.app.texts.rigidity_text import how_held
+
+    return f": {how_held(readout, point.point.u)}"
 
 
 def _names_at(atlas: Atlas, point: MeetingPoint) -> list[str]:
@@ -325,10 +335,16 @@ def _near_misses(atlas: Atlas) -> str:
     return section_of("Near misses (no bifurcation)", rows, SHOWN)
 
 
-def _rigid_table(atlas: Atlas) -> tuple[tuple[str], list[tuple[str]]]:
-    """The head and the rows of the table of rigid assemblies."""
-    rows = [(show_configuration(atlas, theta),) for theta in atlas.rigid]
-    return (subject_at(atlas).heading(atlas),), rows
+def _rigid_table(atlas: Atlas) -> tuple[Sequence[str], list[Sequence[str]]]:
+    """The head and the rows of the table of rigid assemblies, with how they are held."""
+    subject = subject_at(atlas)
+    if subject.readout is None:
+        rows: list[Sequence[str]]
+        rows = [(show_configuration(atlas, theta),) for theta in atlas.rigid]
+        return (subject.heading(atlas),), rows
+    from linkages.app.texts.rigidity_text import assemblies_table
+
+    return assemblies_table(atlas, subject.readout)
 
 
 def _near_motion_records(atlas: Atlas) -> list[dict[str, str]]:

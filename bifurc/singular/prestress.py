@@ -1,0 +1,135 @@
+"""Flexes and stresses of a solution, and whether they show that it is isolated.
+
+At a solution of F = 0 a flex is a direction v with F' v = 0, and a stress a combination w
+of the equations with w F' = 0. How F bends along flexes, w F''(v, v), is a quadratic form
+for each stress. Where the form of one stress is positive for every flex, the solution is
+isolated: w F + c |F|^2 has a strict minimum there for a large c (prestress stability;
+Connelly and Whiteley 1996, SIAM J. Discrete Math. 9, for frameworks of bars). It is
+isolated as well where the forms have no common zero (second-order rigidity; Connelly
+1980, Adv. Math. 37), as the leading term of a curve through it would be one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bifurc.checks import check_finite, floats_of
+from bifurc.decisions import has_no_form, is_null, leaves_loose
+from bifurc.errors import ProblemError
+from bifurc.numerics.singular_values import factors_of
+from bifurc.singular.second_order import common_lines
+from bifurc.system import System, hessian_at, relative_jacobians
+
+MOST_CUTS = 200  # through the cone of stresses, each of a flex along which a form falls
+
+
+@dataclass(frozen=True, eq=False)
+class SecondOrder:
+    """What second order says of a solution: orthonormal ``flexes`` (k, n) and
+    ``stresses`` (s, m), and ``holding``, the stress (m,) whose form is positive for
+    every flex, where there is one, by a ``margin``: its smallest eigenvalue over the
+    size of the forms.
+
+    ``is_rigid``: whether this shows that the solution is isolated; None where second
+    order does not decide, as where flexes go on to it.
+    """
+
+    flexes: np.ndarray
+    stresses: np.ndarray
+    holding: np.ndarray | None
+    margin: float
+    is_rigid: bool | None
+
+    @property
+    def is_prestress_stable(self) -> bool:
+        """Whether a stress holds the solution against all flexes, if there are any."""
+        return self.holding is not None or not len(self.flexes)
+
+
+def second_order_at(problem: System, point: np.ndarray) -> SecondOrder:
+    """What second order says of a solution at ``point`` (n,).
+
+    Singular values below 1e-7 of the magnitude of F' count as zero. Without flexes the
+    solution is isolated by first order. Raises `ProblemError` for a point of another
+    shape or not finite.
+
+    >>> import numpy as np
+    >>> from bifurc import FunctionProblem, second_order_at
+    >>> circles = lambda u: [u[0] ** 2 + u[1] ** 2 - 1.0, (u[0] - 2) ** 2 + u[1] ** 2 - 1]
+    >>> touching = FunctionProblem(circles, [(-3, 3), (-3, 3)])
+    >>> second = second_order_at(touching, np.array([1.0, 0.0]))
+    >>> len(second.flexes), len(second.stresses), second.is_prestress_stable
+    (1, 1, True)
+    """
+    point = floats_of("point", point)
+    if point.shape != (problem.n,):
+        raise ProblemError("shape of the point", point.shape, f"({problem.n},)")
+    check_finite("point", point)
+    jacobian = relative_jacobians(problem, point[None])[0]
+    factors = factors_of(jacobian)
+    sigma = np.zeros(problem.n)
+    sigma[: len(factors.sigma)] = factors.sigma
+    rank = int(np.count_nonzero(~is_null(sigma)))
+    flexes, stresses = factors.right[rank:], factors.left[:, rank:].T
+    if not len(flexes):
+        return SecondOrder(flexes, stresses, None, 0.0, True)
+    hessian = hessian_at(problem, point) / problem.magnitude
+    forms = np.einsum("wm,mij,ai,bj->wab", stresses, hessian, flexes, flexes)
+    weights, margin = positive_combination(forms)
+    if weights is not None:
+        return SecondOrder(flexes, stresses, weights @ stresses, margin, True)
+    return SecondOrder(flexes, stresses, None, margin, _have_no_common_zero(forms))
+
+
+def positive_combination(forms: np.ndarray) -> tuple[np.ndarray | None, float]:
+    """Weights (s,) of the symmetric forms (s, k, k) whose sum is positive definite, and
+    its smallest eigenvalue, both over the size of the forms; None where no sum is."""
+    count, size = len(forms), float(np.abs(forms).max(initial=0.0))
+    if not np.isfinite(size) or has_no_form(size):
+        return None, 0.0
+    if count == 1:
+        return _sign_of_form(forms[0] / size)
+    return _by_cutting_planes(forms / size)
+
+
+def _sign_of_form(form: np.ndarray) -> tuple[np.ndarray | None, float]:
+    """The sign (1,) with which a symmetric form (k, k) is positive definite."""
+    values = np.linalg.eigvalsh(form)
+    sign = 1.0 if values[0] + values[-1] > 0.0 else -1.0
+    smallest = float(min(sign * values[0], sign * values[-1]))
+    return (None, 0.0) if leaves_loose(smallest) else (np.array([sign]), smallest)
+
+
+def _by_cutting_planes(forms: np.ndarray) -> tuple[np.ndarray | None, float]:
+    """Weights (s,) as of `positive_combination`. The smallest eigenvalue is concave in
+    them, and is maximised by linear programs over the directions along which the sum
+    was smallest so far."""
+    from scipy.optimize import linprog  # few searches need it
+
+    cuts = np.eye(forms.shape[1])
+    goal = np.append(np.zeros(len(forms)), -1.0)
+    bounds = [(-1.0, 1.0)] * len(forms) + [(None, None)]
+    for _ in range(MOST_CUTS):
+        along = np.einsum("wab,ca,cb->cw", forms, cuts, cuts)
+        rows = np.column_stack([-along, np.ones(len(cuts))])
+        program = linprog(goal, A_ub=rows, b_ub=np.zeros(len(cuts)), bounds=bounds)
+        if not program.success or leaves_loose(float(program.x[-1])):
+            break
+        weights = program.x[:-1]
+        values, vectors = np.linalg.eigh(np.einsum("w,wab->ab", weights, forms))
+        if values[0] > 0.5 * program.x[-1]:
+            return weights, float(values[0])
+        cuts = np.concatenate([cuts, vectors[:, :1].T])
+    return None, 0.0
+
+
+def _have_no_common_zero(forms: np.ndarray) -> bool | None:
+    """Whether quadratic forms (s, k, k) of flexes vanish together for none but 0: True
+    where that is known, else None."""
+    if forms.shape[1] != 2:
+        return None
+    rows = np.stack([forms[:, 0, 0], 2 * forms[:, 0, 1], forms[:, 1, 1]], axis=1)
+    lines = common_lines(rows)
+    return True if lines is not None and not len(lines) else None
