@@ -4,6 +4,7 @@ from .closure.closure import Closure as Closure
 from .entry import Linkage as Linkage
 from .entry import UnknownParameterError as UnknownParameterError
 from .file import LinkageFileError as LinkageFileError
+from .files.bars import framework as framework
 from .labels import FormLabels as FormLabels
 from .labels import NoLinkageError as NoLinkageError
 from .labels import Symmetry as Symmetry

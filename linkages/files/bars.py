@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -52,6 +52,39 @@ def read_bars(content: Content, name: str) -> Mechanism:
         origin=origin_of(content, near.origin),
         rounding=near.rounding,
     )
+
+
+def framework(
+    points: Mapping[Hashable, Sequence[float]],
+    bars: Iterable[tuple[Hashable, Hashable]],
+    fixed: Iterable[Hashable] | None = None,
+    name: str = "framework",
+) -> Mechanism:
+    """The planar mechanism of bars between points, by their labels, of which some are
+    ``fixed``: the ends of the first bar, where nothing is said.
+
+    Labels become names as texts, so that those of graphs and of PyRigi's frameworks do:
+    ``framework(F.realization(numerical=True), F.graph.edges)``. Raises `GeometryError`
+    as a file of points and bars does.
+
+    >>> import linkages
+    >>> square = {0: (0, 0), 1: (1, 0), 2: (1, 1), 3: (0, 1)}
+    >>> linkages.framework(square, [(0, 1), (1, 2), (2, 3), (3, 0)]).gruebler
+    1
+    """
+    pairs = [[str(end) for end in bar] for bar in bars]
+    ends = (
+        pairs[0] if fixed is None and pairs else [str(point) for point in fixed or ()]
+    )
+    content = {
+        "fixed": ends,
+        "bars": pairs,
+        "points": {
+            str(label): [float(number) for number in place]
+            for label, place in points.items()
+        },
+    }
+    return read_bars(content, name)
 
 
 class BarAssembly(NamedTuple):

@@ -11,7 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 from linkages.app.cli import main
-from linkages.files.bars import read_bars
+from linkages.files.bars import framework
 from linkages.mapping import map_linkage
 from linkages.pictures.picture import Part
 from linkages.pictures.plot_linkage import painter_of, place_of, plot_linkage
@@ -23,6 +23,7 @@ from linkages.readout.rigidity import (
     points_at,
     velocities,
 )
+from linkages.values import GeometryError
 from tests.linkages.mechanisms.spatial_mechanisms import platform
 
 PRISM = ["01", "02", "03", "12", "14", "25", "34", "35", "45"]
@@ -58,16 +59,6 @@ def octagon():
     return bars, polygon(8)
 
 
-def framework(bars, points):
-    bars = [tuple(str(end) for end in bar) for bar in bars]
-    content = {
-        "fixed": list(bars[0]),
-        "bars": [list(bar) for bar in bars[1:]],
-        "points": {name: list(place) for name, place in points.items()},
-    }
-    return read_bars(content, "framework")
-
-
 WHEEL = (
     ([(5, k) for k in range(5)] + [(k, (k + 1) % 5) for k in range(5)]),
     {
@@ -90,7 +81,7 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_flexes_and_stresses_of_frameworks_are_those_that_are_known(name):
     bars, points, flexes, stresses, words = CASES[name]
-    readout = Readout(framework(bars, points))
+    readout = Readout(framework(points, bars))
     hold = hold_at(readout, np.zeros(readout.closure.n))
     assert (hold.flexes, hold.stresses, hold.words) == (flexes, stresses, words)
 
@@ -98,7 +89,7 @@ def test_flexes_and_stresses_of_frameworks_are_those_that_are_known(name):
 @pytest.mark.parametrize("name", CASES)
 def test_stresses_are_in_balance_and_flexes_keep_bars_as_long_as_they_are(name):
     bars, points, *_ = CASES[name]
-    mechanism = framework(bars, points)
+    mechanism = framework(points, bars)
     readout = Readout(mechanism)
     hold = hold_at(readout, np.zeros(readout.closure.n))
     names = [joint.name for joint in mechanism.joints]
@@ -178,7 +169,7 @@ def test_rigid_assemblies_of_bars_are_listed_by_their_points(tmp_path):
 
 
 def test_flexes_are_drawn_as_arrows():
-    mechanism = framework(*CASES["prism with parallel legs"][:2])
+    mechanism = framework(PARALLEL, PRISM)
     atlas = map_linkage(mechanism)
     readout = Readout(mechanism)
     document = held_document(readout, np.zeros(readout.closure.n))
@@ -198,3 +189,16 @@ def test_rods_that_turn_about_themselves_are_no_stresses():
     readout = Readout(platform((0.0, 0.02, -0.03, 0.05, 0.01, -0.02)))
     hold = hold_at(readout, readout.structure.reference)
     assert (hold.flexes, hold.stresses) == (0, 0)
+
+
+@pytest.mark.parametrize(
+    ("points", "bars", "words"),
+    [
+        ({0: (0, 0), 1: (1, 0), 2: (0, 1, 1)}, [(0, 1), (1, 2), (2, 0)], "point 2"),
+        ({0: (0, 0), 1: (1, 0)}, [(0, 1), (1, 2)], "2"),
+        ({0: (0, 0), 1: (1, 0)}, [], "bars"),
+    ],
+)
+def test_a_framework_that_is_none_is_refused_by_name(points, bars, words):
+    with pytest.raises(GeometryError, match=words):
+        framework(points, bars)
