@@ -18,7 +18,7 @@ from linkages.files.figures import (
     read_figure,
     table_of_points,
 )
-from linkages.mechanisms.joint import Vector, unit_vector
+from linkages.mechanisms.joint import Joint, JointKind, unit_vector
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.values import check_number, checked_list, checked_number, require
 
@@ -40,7 +40,7 @@ def read_arcs(content: Content, name: str, unit: float) -> Mechanism:
     """
     assembly = assembled_arcs(content, unit)
     joints = joints_of_figure(
-        assembly.figure, assembly.places, assembly.are_apart, _axis_at
+        assembly.figure, assembly.places, assembly.hold_together, _joint_at
     )
     return Mechanism(joints, name)
 
@@ -52,9 +52,10 @@ class ArcAssembly(NamedTuple):
     figure: Arcs
     places: Places
 
-    def are_apart(self, points: Sequence[str]) -> bool:
-        """Whether points are in different directions from the centre."""
-        axes = [self.places[point] for point in points]
+    def hold_together(self, first: Sequence[str], second: Sequence[str]) -> bool:
+        """Whether points that two bodies have in common are in different directions from
+        the centre."""
+        axes = [self.places[point] for point in first if point in second]
         across = [np.cross(axes[0], axis) for axis in axes[1:]]
         return any(not is_one_direction(float(np.linalg.norm(x))) for x in across)
 
@@ -96,9 +97,10 @@ def assembled_arcs(content: Content, unit: float) -> ArcAssembly:
     return assembly
 
 
-def _axis_at(place: np.ndarray) -> tuple[Vector, Vector]:
+def _joint_at(name: str, bodies: tuple[str, ...], place: np.ndarray) -> Joint:
+    """The joint of bodies about the axis through a place (3,)."""
     x, y, z = place.tolist()
-    return (x, y, z), (x, y, z)
+    return Joint(name, JointKind.REVOLUTE, bodies, (x, y, z), (x, y, z))
 
 
 def _direction(what: str, row: object) -> np.ndarray:

@@ -1,4 +1,5 @@
-"""Planar mechanisms given as points and bars between them (`linkages.files.figures`)."""
+"""Mechanisms given as points and bars between them (`linkages.files.figures`), in a plane
+or in space."""
 
 from __future__ import annotations
 
@@ -17,12 +18,16 @@ from linkages.files.figures import (
     read_figure,
     table_of_points,
 )
+from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.mechanisms.origin import Coordinates, counted_from_near, origin_of
-from linkages.values import checked_list, checked_number, require
+from linkages.values import GeometryError, checked_list, checked_number, require
 
 Content: TypeAlias = Mapping[str, Any]
-Bars: TypeAlias = Figure[complex, complex]
+Bars: TypeAlias = Figure[np.ndarray, complex]
+
+PLANE, SPACE = 2, 3  # coordinates of a point
+FLAT = 1e-9  # singular value, over the largest distance, of points on one line
 
 POLISHING_STEPS = 12
 EPSILON = float(np.finfo(float).eps)
@@ -32,7 +37,8 @@ TINY = 1e-300  # length of a bar that has none
 
 
 def read_bars(content: Content, name: str) -> Mechanism:
-    """The mechanism of the points and bars of a file.
+    """The mechanism of the points and bars of a file: points with two coordinates are
+    revolute joints in a plane, those with three spherical ones.
 
     Where lengths are given that the points do not fit, the points are moved until they
     do (least squares). Raises `GeometryError` for anything wrong, and where bars of
@@ -40,18 +46,24 @@ def read_bars(content: Content, name: str) -> Mechanism:
     """
     assembly, near = assembled_bars(content)
     joints = joints_of_figure(
-        assembly.figure,
-        assembly.places,
-        assembly.are_apart,
-        lambda place: ((place.real, place.imag, 0.0), (0, 0, 1)),
+        assembly.figure, assembly.places, assembly.hold_together, _joint_at
     )
     return Mechanism(
         joints,
         name,
-        is_planar=True,
+        is_planar=assembly.is_planar,
         origin=origin_of(content, near.origin),
         rounding=near.rounding,
     )
+
+
+def _joint_at(name: str, bodies: tuple[str, ...], place: np.ndarray) -> Joint:
+    """The joint of bodies at a place (2,) or (3,)."""
+    if len(place) == PLANE:
+        point = (float(place[0]), float(place[1]), 0.0)
+        return Joint(name, JointKind.REVOLUTE, bodies, point, (0, 0, 1))
+    x, y, z = place.tolist()
+    return Joint(name, JointKind.SPHERICAL, bodies, (x, y, z))
 
 
 def framework(
@@ -60,8 +72,9 @@ def framework(
     fixed: Iterable[Hashable] | None = None,
     name: str = "framework",
 ) -> Mechanism:
-    """The planar mechanism of bars between points, by their labels, of which some are
-    ``fixed``: the ends of the first bar, where nothing is said.
+    """The mechanism of bars between points in a plane or in space, by their labels, of
+    which some are ``fixed``: the ends of the first bar, where nothing is said, and in
+    space the corners of the first triangle of bars.
 
     Labels become names as texts, so that those of graphs and of PyRigi's frameworks do:
     ``framework(F.realization(numerical=True), F.graph.edges)``. Raises `GeometryError`
@@ -73,11 +86,12 @@ def framework(
     1
     """
     pairs = [[str(end) for end in bar] for bar in bars]
-    ends = (
-        pairs[0] if fixed is None and pairs else [str(point) for point in fixed or ()]
-    )
+    held = [str(point) for point in fixed or ()]
+    if fixed is None and pairs:
+        is_spatial = all(len(place) == SPACE for place in points.values())
+        held = _first_triangle(pairs) if is_spatial else pairs[0]
     content = {
-        "fixed": ends,
+        "fixed": held,
         "bars": pairs,
         "points": {
             str(label): [float(number) for number in place]
@@ -87,35 +101,84 @@ def framework(
     return read_bars(content, name)
 
 
+def _first_triangle(bars: Sequence[Sequence[str]]) -> list[str]:
+    """Three points between which there are bars; raises `GeometryError`."""
+    joined = {frozenset(bar) for bar in bars}
+    for start, end in bars:
+        for third in dict.fromkeys(point for bar in bars for point in bar):
+            if {frozenset((start, third)), frozenset((end, third))} <= joined:
+                return [start, end, third]
+    allowed = "given, three points that hold the frame, as no three bars are a triangle"
+    raise GeometryError("fixed", "a missing argument", allowed)
+
+
 class BarAssembly(NamedTuple):
-    """A ``figure`` of bars with the ``places`` of all its points where bars have their
-    lengths."""
+    """A ``figure`` of bars with the ``places`` (d,) of all its points where bars have
+    their lengths."""
 
     figure: Bars
-    places: dict[str, complex]
+    places: dict[str, np.ndarray]
 
-    def are_apart(self, points: Sequence[str]) -> bool:
-        """Whether points are at different places."""
-        return len({self.places[point] for point in points}) > 1
+    @property
+    def is_planar(self) -> bool:
+        """Whether it lies in a plane, and not in space."""
+        return all(len(place) == PLANE for place in self.places.values())
+
+    def hold_together(self, first: Sequence[str], second: Sequence[str]) -> bool:
+        """Whether the points that two bodies have in common make them one: as many
+        directions lead from one to the others as it takes in the plane, or as there are
+        in one of the bodies."""
+        common = self._directions([point for point in first if point in second])
+        if self.is_planar:
+            return common > 0
+        return 0 < common in (PLANE, self._directions(first), self._directions(second))
+
+    def _directions(self, points: Sequence[str]) -> int:
+        """How many independent directions there are between points, in space up to two
+        of them."""
+        if not points:
+            return 0
+        places = np.array([self.places[point] for point in points])
+        apart = places - places[0]
+        size = float(np.abs(apart).max())
+        if size == 0.0:
+            return 0
+        return min(int(np.linalg.matrix_rank(apart / size, tol=FLAT)), PLANE)
 
 
 def assembled_bars(content: Content) -> tuple[BarAssembly, Coordinates]:
     """The bars of a file with the places of their points, and from where these are
     counted; raises `GeometryError` as `read_bars`."""
-    table = table_of_points(content, "[x, y]")
+    table = table_of_points(content, "[x, y] or [x, y, z]")
     near = counted_from_near(list(table.values()))
-    rows = zip(table, near.rows, strict=True)
-    points = {point: _complex(f"point {point}", row) for point, row in rows}
+    first = near.rows[0]
+    is_spatial = isinstance(first, list) and len(first) == SPACE
+    size = SPACE if is_spatial else PLANE
+    if is_spatial and content.get("points_on_bars"):
+        # such a bar would turn about itself, which is no motion of a framework
+        allowed = "left out: bars between points in space hold these alone"
+        raise GeometryError("points_on_bars", "a table", allowed)
+    points = {
+        point: _place(f"point {point}", row, size)
+        for point, row in zip(table, near.rows, strict=True)
+    }
     figure = read_figure(content, BARS, points)
     places = _assembled(figure)
     for bar in figure.pieces:
-        is_longer = places[bar.end] != places[bar.start]
+        is_longer = bool(np.any(places[bar.end] != places[bar.start]))
         require(is_longer, f"bar {bar.name}", "of length 0", "longer")
     return BarAssembly(figure, places), near
 
 
+def _place(what: str, row: object, size: int) -> np.ndarray:
+    """The place of a point, of so many numbers."""
+    count = "three" if size > PLANE else "two"
+    row = checked_list(what, row, f"a list of {count} numbers", (size,))
+    return np.array([checked_number(what, value) for value in row])
+
+
 def _complex(what: str, row: object) -> complex:
-    """Two numbers of a file: a place, or the ratio r of start + r (end - start)."""
+    """The ratio r of start + r (end - start), of two numbers."""
     row = checked_list(what, row, "a list of two numbers", (2,))
     return complex(*(checked_number(what, value) for value in row))
 
@@ -132,19 +195,21 @@ BARS = FigureKind("bar", "a", "length", "[re, im]", _length, _complex)
 # --- assembly -------------------------------------------------------------------------
 
 
-def _places(figure: Bars, points: Mapping[str, complex]) -> dict[str, complex]:
+def _places(figure: Bars, points: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """The places of all points, those on bars among them."""
     places = dict(points)
     for name, one in figure.on_pieces.items():
         start, end = places[one.start], places[one.end]
-        places[name] = start + one.numbers * (end - start)
+        along = one.numbers * complex(*(end - start))
+        places[name] = start + np.array([along.real, along.imag])
     return places
 
 
-def _assembled(figure: Bars) -> dict[str, complex]:
+def _assembled(figure: Bars) -> dict[str, np.ndarray]:
     """The places of all points where every bar has its length."""
     places = _places(figure, figure.points)
-    size = max(abs(place - next(iter(places.values()))) for place in places.values())
+    first = next(iter(places.values()))
+    size = max(float(np.linalg.norm(place - first)) for place in places.values())
     misfit = np.abs(_misfits(figure, places)).max(initial=0.0)
     if misfit == 0.0:
         return places
@@ -161,35 +226,35 @@ def _assembled(figure: Bars) -> dict[str, complex]:
     return places
 
 
-def _misfits(figure: Bars, places: Mapping[str, complex]) -> np.ndarray:
+def _misfits(figure: Bars, places: Mapping[str, np.ndarray]) -> np.ndarray:
     """How much longer than given the bars (k,) are that have a length."""
     # the lengths of bars without one are those that they have at first
     given = [bar for bar in figure.pieces if bar.measure is not None]
     return np.array(
         [
-            abs(places[bar.end] - places[bar.start]) - (bar.measure or 0.0)
+            np.hypot.reduce(places[bar.end] - places[bar.start]) - (bar.measure or 0.0)
             for bar in given
         ]
     )
 
 
-def _least_squares(figure: Bars) -> dict[str, complex]:
+def _least_squares(figure: Bars) -> dict[str, np.ndarray]:
     """The places of all points where the lengths of all bars are best fitted."""
     if not figure.free:
         return _places(figure, figure.points)
     from scipy.optimize import least_squares
 
     shape = _Shape(figure)
-    start = np.array([figure.points[name] for name in figure.free]).view(float)
+    start = np.concatenate([figure.points[name] for name in figure.free])
     exact = {"ftol": EPSILON, "xtol": EPSILON, "gtol": EPSILON}
     solution = least_squares(shape.gaps, start, shape.derivatives, **exact).x
-    moved = zip(figure.free, _polished(shape, solution).view(complex), strict=True)
-    points = figure.points | {name: complex(place) for name, place in moved}
+    rows = _polished(shape, solution).reshape(len(figure.free), -1)
+    points = figure.points | dict(zip(figure.free, rows, strict=True))
     return _places(figure, points)
 
 
 def _polished(shape: _Shape, solution: np.ndarray) -> np.ndarray:
-    """The places (2 k,) with the gaps of a ``solution`` or with smaller ones.
+    """The places (d k,) with the gaps of a ``solution`` or with smaller ones.
 
     Newton's method closes gaps to rounding where the assembly is regular. Where it is
     singular, as with bars that are just long enough, gaps of 1e-16 leave points 1e-8
@@ -202,7 +267,7 @@ def _polished(shape: _Shape, solution: np.ndarray) -> np.ndarray:
 
 
 def _singular_assembly(shape: _Shape, near: np.ndarray) -> np.ndarray | None:
-    """The assembly (2 k,) next to ``near`` in which the bars carry a stress without
+    """The assembly (d k,) next to ``near`` in which the bars carry a stress without
     load; None where there is none.
 
     Solves gaps = 0, J^T stress = 0, |stress| = 1 for places and stress: regular where
@@ -226,44 +291,52 @@ def _singular_assembly(shape: _Shape, near: np.ndarray) -> np.ndarray | None:
 class _Shape:
     """The lengths of all bars as functions of the places of the free points.
 
-    Every vector along a bar is ``constant`` (b,) + ``factors`` (b, k) @ places (k,), in
-    complex numbers.
+    Every vector along a bar is ``constant`` (b, d) + ``factors`` (b, d, d k) @ places
+    (d k,).
     """
 
     def __init__(self, figure: Bars):
-        at_rest = figure.points | dict.fromkeys(figure.free, 0j)
+        size = len(next(iter(figure.points.values())))
+        at_rest = figure.points | dict.fromkeys(figure.free, np.zeros(size))
         self.constant = _vectors(figure, at_rest)
         columns = []
         for name in figure.free:
-            moved = _vectors(figure, at_rest | {name: 1 + 0j})
-            columns.append(moved - self.constant)
-        self.factors = np.column_stack(columns)
-        now = np.abs(_vectors(figure, figure.points))
+            for axis in np.eye(size):
+                moved = _vectors(figure, at_rest | {name: axis})
+                columns.append(moved - self.constant)
+        self.factors = np.stack(columns, axis=-1)
+        now = np.hypot.reduce(_vectors(figure, figure.points), axis=1)
         given = [
             np.nan if bar.measure is None else bar.measure for bar in figure.pieces
         ]
         self.lengths = np.where(np.isnan(given), now, given)
 
     def _along(self, values: np.ndarray) -> np.ndarray:
-        along: np.ndarray = self.constant + self.factors @ values.view(complex)
+        along: np.ndarray = self.constant + self.factors @ values
         return along
 
     def gaps(self, values: np.ndarray) -> np.ndarray:
         """How much too long the bars (b,) are."""
-        gaps: np.ndarray = np.abs(self._along(values)) - self.lengths
+        gaps: np.ndarray = np.hypot.reduce(self._along(values), axis=1) - self.lengths
         return gaps
 
     def derivatives(self, values: np.ndarray) -> np.ndarray:
-        """Derivatives (b, 2 k) of `gaps`."""
+        """Derivatives (b, d k) of `gaps`."""
+        directions, _ = self._directions(values)
+        rates: np.ndarray = np.einsum("bd,bdk->bk", directions, self.factors)
+        return rates
+
+    def _directions(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Unit vectors (b, d) along the bars, and their lengths (b,)."""
         along = self._along(values)
-        directions = np.conj(along) / np.maximum(np.abs(along), TINY)
-        return _by_coordinates(directions[:, None] * self.factors)
+        lengths = np.maximum(np.hypot.reduce(along, axis=1), TINY)
+        return along / lengths[:, None], lengths
 
     def stressed(
         self, values: np.ndarray, stress: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """The values (b + 2 k + 1,) of the gaps, J^T stress and |stress|^2 - 1, and
-        their derivatives by the places (2 k,) and the ``stress`` (b,)."""
+        """The values (b + d k + 1,) of the gaps, J^T stress and |stress|^2 - 1, and
+        their derivatives by the places (d k,) and the ``stress`` (b,)."""
         slope = self.derivatives(values)
         residuals = [self.gaps(values), slope.T @ stress, [stress @ stress - 1.0]]
         bars, count = slope.shape
@@ -275,22 +348,17 @@ class _Shape:
         return np.concatenate(residuals), derivatives
 
     def _bending(self, values: np.ndarray, stress: np.ndarray) -> np.ndarray:
-        """The second derivatives (2 k, 2 k) of the lengths, weighted with a ``stress``
+        """The second derivatives (d k, d k) of the lengths, weighted with a ``stress``
         (b,): a length grows with the square of the motion across its bar."""
-        along = self._along(values)
-        lengths = np.maximum(np.abs(along), TINY)
-        rates = _by_coordinates((1j * np.conj(along) / lengths)[:, None] * self.factors)
-        bending: np.ndarray = rates.T @ ((stress / lengths)[:, None] * rates)
+        directions, lengths = self._directions(values)
+        along = np.einsum("bd,bdk->bk", directions, self.factors)
+        across = self.factors - directions[:, :, None] * along[:, None, :]
+        weights = stress / lengths
+        bending: np.ndarray = np.einsum("b,bdj,bdk->jk", weights, across, across)
         return bending
 
 
-def _by_coordinates(rates: np.ndarray) -> np.ndarray:
-    """The real parts (b, 2 k) of rates (b, k) by x + iy, as rates by all x and y."""
-    by_coordinates: np.ndarray = np.conj(rates).view(float)
-    return by_coordinates
-
-
-def _vectors(figure: Bars, points: Mapping[str, complex]) -> np.ndarray:
-    """The vectors (b,) along all bars, as complex numbers."""
+def _vectors(figure: Bars, points: Mapping[str, np.ndarray]) -> np.ndarray:
+    """The vectors (b, d) along all bars."""
     places = _places(figure, points)
     return np.array([places[bar.end] - places[bar.start] for bar in figure.pieces])

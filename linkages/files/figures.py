@@ -1,7 +1,8 @@
-"""Figures of points and pieces between them: bars in a plane, arcs on a sphere.
+"""Figures of points and pieces between them: bars in a plane or in space, arcs on a
+sphere.
 
 Every piece is a body, and so is the frame, which holds the fixed points. A point is a
-revolute joint of all bodies that it lies on.
+joint of all bodies that it lies on.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 
 from bifurc.equations.expression import ExpressionError, parse_expression
 from bifurc.equations.program import Program
-from linkages.mechanisms.joint import Joint, JointKind, Vector
+from linkages.mechanisms.joint import Joint
 from linkages.values import (
     SOME,
     GeometryError,
@@ -27,7 +28,7 @@ from linkages.values import (
 )
 
 FRAME = "frame"
-Place = TypeVar("Place")  # of a point: a complex number or a direction (3,)
+Place = TypeVar("Place")  # of a point: coordinates, or a direction (3,)
 Numbers = TypeVar("Numbers")  # of a point on a piece
 
 
@@ -242,16 +243,16 @@ def check_joined_names(noun: str, ends: Iterable[tuple[str, str]]) -> None:
 def joints_of_figure(
     figure: Figure[Place, Any],
     places: Mapping[str, Place],
-    are_apart: Callable[[Sequence[str]], bool],
-    axis_at: Callable[[Place], tuple[Vector, Vector]],
+    hold_together: Callable[[Sequence[str], Sequence[str]], bool],
+    joint_at: Callable[[str, tuple[str, ...], Place], Joint],
 ) -> tuple[Joint, ...]:
-    """A revolute joint at every point on two bodies or more.
+    """A joint at every point on two bodies or more.
 
-    ``are_apart`` says whether points hold two bodies together, ``axis_at`` gives a
-    point and the direction of the axis at a place. Raises `GeometryError` for a point
+    ``hold_together`` says whether the points of two bodies make these one, ``joint_at``
+    gives the joint of a name between bodies at a place. Raises `GeometryError` for a point
     on no body, and where no points are fixed and a body hangs on one joint.
     """
-    bodies = bodies_of_figure(figure, are_apart)
+    bodies = bodies_of_figure(figure, hold_together)
     kind = figure.kind
     on_body = {point for points in bodies.values() for point in points}
     for name, one in figure.on_pieces.items():
@@ -265,7 +266,7 @@ def joints_of_figure(
         require(name in on_body, f"point {name}", value, allowed)
         here = tuple(body for body, points in bodies.items() if name in points)
         if len(here) > 1:
-            joints.append(Joint(name, JointKind.REVOLUTE, here, *axis_at(place)))
+            joints.append(joint_at(name, here, place))
     counts = Counter(body for joint in joints for body in joint.bodies)
     for body, count in counts.items():
         allowed = (
@@ -278,7 +279,8 @@ def joints_of_figure(
 
 
 def bodies_of_figure(
-    figure: Figure[Any, Any], are_apart: Callable[[Sequence[str]], bool]
+    figure: Figure[Any, Any],
+    hold_together: Callable[[Sequence[str], Sequence[str]], bool],
 ) -> dict[str, list[str]]:
     """The points on every body, the frame first.
 
@@ -291,7 +293,7 @@ def bodies_of_figure(
     _add_points_on(bodies, figure)
     bodies |= {piece.name: list(piece.ends) for piece in figure.pieces}
     _add_points_on(bodies, figure)
-    while (pair := _held_together(bodies, are_apart)) is not None:
+    while (pair := _held_together(bodies, hold_together)) is not None:
         first, second = pair
         others = bodies.pop(second)
         bodies[first] += [point for point in others if point not in bodies[first]]
@@ -300,7 +302,8 @@ def bodies_of_figure(
 
 
 def _held_together(
-    bodies: dict[str, list[str]], are_apart: Callable[[Sequence[str]], bool]
+    bodies: dict[str, list[str]],
+    hold_together: Callable[[Sequence[str], Sequence[str]], bool],
 ) -> tuple[str, str] | None:
     """Two bodies that points hold together; None where there are none.
 
@@ -309,7 +312,7 @@ def _held_together(
     """
     ranked = sorted(bodies, key=lambda name: (name != FRAME, -len(bodies[name])))
     for first, second in combinations(ranked, 2):
-        if are_apart([point for point in bodies[first] if point in bodies[second]]):
+        if hold_together(bodies[first], bodies[second]):
             return first, second
     return None
 

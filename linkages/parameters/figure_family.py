@@ -134,11 +134,18 @@ class _Place(NamedTuple):
     y: Number
 
     def beside(self, other: _Place, factor: _Place) -> _Place:
-        """This point and a complex ``factor`` of the way to the ``other`` one."""
-        dx, dy = other.x - self.x, other.y - self.y
+        """This point and a complex ``factor`` of the way to the ``other`` one.
+
+        Coordinates are multiplied before they are subtracted: the difference of two
+        doubles is rounded, before a factor of more digits comes to it.
+        """
         return _Place(
-            self.x + (factor.x * dx - factor.y * dy),
-            self.y + (factor.x * dy + factor.y * dx),
+            self.x
+            + (factor.x * other.x - factor.x * self.x)
+            - (factor.y * other.y - factor.y * self.y),
+            self.y
+            + (factor.x * other.y - factor.x * self.y)
+            + (factor.y * other.x - factor.y * self.x),
         )
 
 
@@ -153,8 +160,8 @@ class BarFamily(FigureFamily):
     length of its bar, where C is on it."""
 
     def __init__(self, mechanism: Mechanism, assembly: BarAssembly):
-        self.places = assembly.places
-        bodies = bodies_of_figure(assembly.figure, assembly.are_apart)
+        self.places = {name: complex(*at) for name, at in assembly.places.items()}
+        bodies = bodies_of_figure(assembly.figure, assembly.hold_together)
         super().__init__(mechanism, assembly.figure, bodies)
         for body, points in bodies.items():
             known = self._places_on(body, self.defaults)
@@ -263,7 +270,7 @@ class ArcFamily(FigureFamily):
 
     def __init__(self, mechanism: Mechanism, assembly: ArcAssembly):
         self.assembly = assembly
-        bodies = bodies_of_figure(assembly.figure, assembly.are_apart)
+        bodies = bodies_of_figure(assembly.figure, assembly.hold_together)
         super().__init__(mechanism, assembly.figure, bodies)
 
     def _parameters(self) -> Iterator[Parameter]:

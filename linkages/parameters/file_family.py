@@ -47,7 +47,7 @@ def mechanism_family(path: Path | str, mechanism: Mechanism) -> MechanismFamily:
 
     is_toml = format_of(Path(path)) in (None, TOML)
     content = read_content(Path(path)) if is_toml else {}
-    if "joints" not in content and "bars" in content:
+    if "joints" not in content and "bars" in content and mechanism.is_planar:
         return BarFamily(mechanism, assembled_bars(content)[0])
     if "joints" not in content and "arcs" in content:
         return ArcFamily(mechanism, assembled_arcs(content, angle_unit(content)))

@@ -63,7 +63,7 @@ def hold_at(readout: Readout, point: np.ndarray) -> Hold:
     structure, mechanism = readout.structure, readout.mechanism
     is_flat = normal_of_plane(mechanism) is not None or is_on_sphere(mechanism)
     freedoms = mechanism.count_of_freedoms(3) if is_flat else mechanism.gruebler
-    freedoms -= len(structure.idle_turns)
+    freedoms -= len(structure.idle_turns) + len(structure.rods)
     if structure.holds_flaps:
         freedoms -= structure.hanging.freedoms
     return Hold(point, max(len(order.flexes) - freedoms, 0), order)
@@ -81,13 +81,14 @@ def held_document(readout: Readout, point: np.ndarray) -> dict[str, Any]:
         "is_rigid": hold.order.is_rigid,
     }
     mechanism = readout.mechanism
-    if not has_points(mechanism):
+    size = dimension_of_points(mechanism)
+    if not size:
         return held
     names = [joint.name for joint in mechanism.joints]
     (places,) = points_at(readout, point[None]) + np.array(mechanism.origin)
-    held["points"] = _by_name(names, places[:, :2])
+    held["points"] = _by_name(names, places[:, :size])
     held["velocities"] = [
-        _by_name(names, rates[:, :2]) for rates in velocities(readout, hold)
+        _by_name(names, rates[:, :size]) for rates in velocities(readout, hold)
     ]
     stresses = bar_stresses(readout, hold)
     if stresses is not None:
@@ -104,11 +105,13 @@ def _by_name(names: Sequence[str], values: np.ndarray) -> dict[str, Any]:
 # --- points ---------------------------------------------------------------------------
 
 
-def has_points(mechanism: Mechanism) -> bool:
-    """Whether all joints are points of a plane, as of bars."""
-    return mechanism.is_planar and all(
-        joint.kind is JointKind.REVOLUTE for joint in mechanism.joints
-    )
+def dimension_of_points(mechanism: Mechanism) -> int:
+    """How many coordinates the joints have, where all are points of a plane or of space,
+    as of bars; else 0."""
+    kinds = {joint.kind for joint in mechanism.joints}
+    if mechanism.is_planar and kinds == {JointKind.REVOLUTE}:
+        return 2
+    return 3 if kinds == {JointKind.SPHERICAL} else 0
 
 
 def moving_points(mechanism: Mechanism) -> list[str]:
@@ -157,7 +160,7 @@ class BarStresses:
 
 
 def bar_stresses(readout: Readout, hold: Hold) -> BarStresses | None:
-    """The stresses of a framework of bars between points of a plane; None of another
+    """The stresses of a framework of bars between points; None of another
     mechanism."""
     ends = _ends_of_bars(readout.mechanism)
     if ends is None:
@@ -205,13 +208,14 @@ def _is_same(readout: Readout, point: np.ndarray, other: np.ndarray) -> bool:
 def _balance(
     readout: Readout, point: np.ndarray, first: np.ndarray, last: np.ndarray
 ) -> np.ndarray:
-    """The forces (2 p, b) on the p points that move of bars, between the joints numbered
+    """The forces (d p, b) on the p points that move of bars, between the joints numbered
     ``first`` and ``last`` (b,), with densities of 1, at a configuration (n,)."""
-    places = points_at(readout, point[None])[0, :, :2]
+    size = dimension_of_points(readout.mechanism)
+    places = points_at(readout, point[None])[0, :, :size]
     along = places[first] - places[last]
     joints = readout.mechanism.joints
     moves = np.array([not _is_fixed(readout.mechanism, joint) for joint in joints])
-    balance = np.zeros((len(joints), 2, len(first)))
+    balance = np.zeros((len(joints), size, len(first)))
     bars = np.arange(len(first))
     balance[first, :, bars] += along
     balance[last, :, bars] -= along
@@ -221,7 +225,7 @@ def _balance(
 
 def _ends_of_bars(mechanism: Mechanism) -> dict[str, tuple[int, int]] | None:
     """The two joints, by number, of every bar; None where there is something else."""
-    if not has_points(mechanism):
+    if not dimension_of_points(mechanism):
         return None
     ends: dict[str, list[int]] = {}
     for number, joint in enumerate(mechanism.joints):

@@ -12,7 +12,7 @@ from linkages.app.texts.configurations import show_configuration
 from linkages.app.texts.numbers import in_lengths
 from linkages.readout.readout import Readout
 from linkages.readout.rigidity import (
-    has_points,
+    dimension_of_points,
     hold_at,
     moving_points,
     points_at,
@@ -27,9 +27,11 @@ def assemblies_table(
     joints, and, where one has flexes or stresses, how many, and what holds it."""
     heads: tuple[str, ...] = (subject_at(atlas).heading(atlas),)
     rows: list[Sequence[str]] = [(show_configuration(atlas, u),) for u in atlas.rigid]
-    if has_points(readout.mechanism):
+    size = dimension_of_points(readout.mechanism)
+    if size:
         names = moving_points(readout.mechanism)
-        heads = tuple(f"{name} (x, y)" for name in names)
+        axes = ", ".join("xyz"[:size])
+        heads = tuple(f"{name} ({axes})" for name in names)
         rows = [_places(readout, u) for u in atlas.rigid]
     holds = [hold_at(readout, u) for u in atlas.rigid]
     if not any(hold.flexes or hold.stresses for hold in holds):
@@ -41,12 +43,12 @@ def assemblies_table(
 
 def _places(readout: Readout, u: np.ndarray) -> list[str]:
     """Where the points that move are at a configuration (n,)."""
-    unit = readout.structure.unit
+    unit, size = readout.structure.unit, dimension_of_points(readout.mechanism)
     mechanism = readout.mechanism
     moving = set(moving_points(mechanism))
     places = points_at(readout, u[None])[0] + np.array(mechanism.origin)
     return [
-        ", ".join(in_lengths(float(value), unit) for value in place[:2])
+        ", ".join(in_lengths(float(value), unit) for value in place[:size])
         for joint, place in zip(mechanism.joints, places, strict=True)
         if joint.name in moving
     ]

@@ -195,6 +195,7 @@ def test_rods_that_turn_about_themselves_are_no_stresses():
     ("points", "bars", "words"),
     [
         ({0: (0, 0), 1: (1, 0), 2: (0, 1, 1)}, [(0, 1), (1, 2), (2, 0)], "point 2"),
+        ({k: (k, 0, k * k) for k in range(3)}, [(0, 1), (1, 2)], "triangle"),
         ({0: (0, 0), 1: (1, 0)}, [(0, 1), (1, 2)], "2"),
         ({0: (0, 0), 1: (1, 0)}, [], "bars"),
     ],
@@ -202,3 +203,89 @@ def test_rods_that_turn_about_themselves_are_no_stresses():
 def test_a_framework_that_is_none_is_refused_by_name(points, bars, words):
     with pytest.raises(GeometryError, match=words):
         framework(points, bars)
+
+
+# --- in space -------------------------------------------------------------------------
+
+OCTAHEDRON = {
+    "A": (1, 0, 0), "B": (0, 1, 0), "C": (0, 0, 1),
+    "D": (-1, 0, 0), "E": (0, -1, 0), "F": (0, 0, -1),
+}  # fmt: skip
+OF_OCTAHEDRON = ["AB", "BC", "CA", "AE", "AF", "BD", "BF", "CD", "CE", "DE", "EF", "FD"]
+
+
+def test_an_octahedron_of_bars_is_rigid_as_drawn_and_has_other_assemblies_that_move():
+    mechanism = framework(OCTAHEDRON, OF_OCTAHEDRON)
+    atlas = map_linkage(mechanism)
+    # folded flat onto itself a pair of opposite corners coincides, and turns freely
+    assert len(atlas.rigid) == 2 and len(atlas.forms) == 6
+    readout = Readout(mechanism)
+    document = held_document(readout, atlas.rigid[0])
+    assert (document["flexes"], document["stresses"]) == (0, 0)
+    lengths = {
+        np.linalg.norm(np.subtract(document["points"][a], document["points"][b]))
+        for a, b in OF_OCTAHEDRON
+    }
+    assert [*lengths] == pytest.approx([np.sqrt(2.0)] * len(lengths))
+
+
+def test_random_frameworks_in_space_have_the_flexes_and_stresses_of_their_rigidity_matrix():
+    rng = np.random.default_rng(3)
+    singular = 0
+    for _ in range(60):
+        n = int(rng.integers(4, 8))
+        points = rng.choice(27, n, replace=False)
+        places = np.stack(np.unravel_index(points, (3, 3, 3)), axis=1).astype(float)
+        if np.linalg.matrix_rank(places[1:3] - places[0]) < 2:
+            continue
+        bars = [(0, 1), (0, 2), (1, 2)]
+        for end in range(3, n):
+            bars += [(int(k), end) for k in rng.choice(end, 3, replace=False)]
+        matrix = np.zeros((len(bars), n, 3))
+        for row, (first, last) in zip(matrix, bars, strict=True):
+            row[first], row[last] = np.subtract(*places[[first, last]]), 0.0
+            row[last] = -row[first]
+        rank = np.linalg.matrix_rank(matrix.reshape(len(bars), -1))
+        readout = Readout(framework(dict(enumerate(places)), bars))
+        hold = hold_at(readout, readout.structure.reference)
+        assert (hold.flexes, hold.stresses) == (3 * n - 6 - rank, len(bars) - rank)
+        assert bar_stresses(readout, hold).densities.shape[0] == hold.stresses
+        singular += hold.flexes > 0
+    assert singular > 3
+
+
+TRIPOD = """
+fixed = ["A", "B", "C"]
+bars = [["A", "T", 3], ["B", "T", 3], ["C", "T", 3], ["A", "S"], ["B", "S"], ["C", "S"]]
+[points]
+A = [2, 0, 0]
+B = [-1, "sqrt(3)", 0]
+C = [-1, "-sqrt(3)", 0]
+T = [0.1, 0, 2]
+S = [-1, 0, 1]
+"""
+
+
+def test_bars_of_a_file_in_space_take_lengths(tmp_path):
+    path = tmp_path / "tripod.toml"
+    path.write_text(TRIPOD)
+    done = CliRunner().invoke(main, ["map", str(path), "--json"])
+    assemblies = json.loads(done.stdout)["rigid_assemblies"]
+    assert len(assemblies) == 4
+    tips = np.array([one["points"]["T"] for one in assemblies])
+    assert tips[:, :2] == pytest.approx(0.0, abs=1e-12)
+    assert np.abs(tips[:, 2]) == pytest.approx(np.sqrt(5.0))
+    text = CliRunner().invoke(main, ["map", str(path)]).stdout
+    assert "T (x, y, z)" in text
+
+
+def test_points_on_bars_in_space_are_refused(tmp_path):
+    path = tmp_path / "tripod.toml"
+    path.write_text(f'{TRIPOD}[points_on_bars]\nM = ["A", "T", 0.5]\n')
+    done = CliRunner().invoke(main, ["map", str(path)])
+    assert done.exit_code == 2 and "points_on_bars" in done.stderr
+
+
+def test_coordinates_of_another_number_are_refused_by_the_point():
+    with pytest.raises(GeometryError, match=r"point 1: .*three numbers"):
+        framework({0: (0, 0, 0), 1: (1, 0)}, [(0, 1)], fixed=[0])
