@@ -1,6 +1,8 @@
 """Problems whose solutions are surfaces of known size and shape."""
 
 from collections.abc import Callable
+from itertools import product
+from math import prod
 
 import numpy as np
 
@@ -25,30 +27,15 @@ class Level(NumericalProblem):
         return np.stack(self.gradient(*points.T), axis=1)[:, None]
 
 
-class Union(NumericalProblem):
-    """The union, in a cube, of sets: each given by functions (p, k) of x, y, z (k,)
-    whose common zeros it is."""
+def union(*sets: Callable, size: float = 2.0) -> Problem:
+    """The union, in a cube, of sets: each given by functions of x, y, z whose common
+    zeros it is."""
 
-    def __init__(self, *sets: Callable, size: float = 2.0):
-        bounds = np.full((3, 2), [-size, size])
-        self.domain = Domain(("x", "y", "z"), ("",) * 3, np.full(3, np.inf), bounds)
-        self.sets = sets
+    def products(u: np.ndarray) -> np.ndarray:
+        values = [functions(*u) for functions in sets]
+        return np.array([prod(one) for one in product(*values)])
 
-    def residuals(self, points: np.ndarray) -> np.ndarray:
-        count = len(points)
-        out = np.ones((count, 1))
-        for functions in self.sets:
-            values = functions(*points.T).T
-            products = out[:, :, None] * values[:, None]
-            out = products.reshape(count, products.shape[1] * products.shape[2])
-        return out
-
-    def jacobians(self, points: np.ndarray) -> np.ndarray:
-        columns = []
-        for step in np.eye(3):
-            shifted = self.residuals(points + 1e-100j * step)
-            columns.append(shifted.imag / 1e-100)
-        return np.stack(columns, axis=2)
+    return FunctionProblem(products, [[-size, size]] * 3, names=("x", "y", "z"))
 
 
 SPHERE = Level(
