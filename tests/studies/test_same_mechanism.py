@@ -19,6 +19,7 @@ from studies.same_mechanism import (
     fact_misses,
     main,
 )
+from tests.samples import one_in
 
 FEW = SearchSettings(starts=40, charts=0, certify=False)
 # slides that leave their limits, a spherical vertex, several bodies on one axis
@@ -135,7 +136,7 @@ def held_mechanisms():
 HELD = dict(held_mechanisms())
 
 
-@pytest.mark.parametrize("name", HELD)
+@pytest.mark.parametrize("name", one_in(2, HELD))
 def test_values_that_are_held_are_the_same_in_every_way(name):
     settings = replace(FEW, starts=150)
     runs = list(compare_ways(name, Mechanism(HELD[name]), 1, settings))
@@ -156,7 +157,7 @@ def test_universal_joints_are_what_they_are_in_every_way(way):
     assert fact_misses(KnownMechanism(WAYS[way](mechanism), 1, 1)) == ()
 
 
-@pytest.mark.parametrize("name", known_mechanisms())
+@pytest.mark.parametrize("name", one_in(4, known_mechanisms()))
 def test_a_known_mechanism_is_closed_and_as_mobile_as_is_known(name):
     assert fact_misses(known_mechanisms()[name]) == ()
 
