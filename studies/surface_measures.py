@@ -109,7 +109,7 @@ def _crossings(function: Function, brackets: np.ndarray, axis: int) -> np.ndarra
     indices = np.arange(before.shape[1])
 
     def points_at(t: np.ndarray, index: np.ndarray) -> np.ndarray:
-        points = before[:, index]
+        points: np.ndarray = before[:, index]
         points[axis] = t
         return points
 

@@ -53,6 +53,8 @@ def test_maps_agree_from_another_start_and_in_every_way(name):
     assert [run.lines for run in runs] == [()] * 8
 
 
+# the ways by SAMPLE, and the cusp by test_literature.py, in every run
+@pytest.mark.exhaustive
 def test_a_cusp_that_doubles_hardly_place_is_there_in_every_way_or_in_doubt():
     # with the last bits of some processors it is open in one way of eight
     mechanism = known_mechanisms()[CUSP].mechanism
