@@ -46,34 +46,29 @@ CONE = Level(
 )
 
 
-def torus(tube: float) -> Level:
+def level(function: Callable, size: float) -> Problem:
+    """The same, with derivatives of the recorded function."""
+    return union(lambda *u: [function(*u)], size=size)
+
+
+def torus(tube: float) -> Problem:
     """The torus about the z-axis with radii 1 and ``tube``."""
-
-    def function(x, y, z):
-        return ((np.hypot(x, y) - 1) ** 2 + z * z - tube**2) / 2
-
-    def gradient(x, y, z):
-        r = np.hypot(x, y)
-        return (r - 1) * x / r, (r - 1) * y / r, z
-
-    return Level(function, gradient, 2.0)
+    return level(
+        lambda x, y, z: ((np.sqrt(x * x + y * y) - 1) ** 2 + z * z - tube**2) / 2,
+        2.0,
+    )
 
 
-def two_spheres(distance: float) -> Level:
+def two_spheres(distance: float) -> Problem:
     """A sphere of radius 0.5 about (-distance, 0, 0) and one of radius 0.6 about
     (distance, 0, 0)."""
 
-    def factors(x, y, z):
+    def product(x, y, z):
         left = (x + distance) ** 2 + y * y + z * z - 0.25
         right = (x - distance) ** 2 + y * y + z * z - 0.36
-        return left, right
+        return left * right
 
-    def gradient(x, y, z):
-        left, right = factors(x, y, z)
-        along_x = 2 * (x + distance) * right + 2 * (x - distance) * left
-        return along_x, 2 * y * (left + right), 2 * z * (left + right)
-
-    return Level(lambda *u: np.prod(factors(*u), axis=0), gradient, 2.0)
+    return level(product, 2.0)
 
 
 def spheres(center: np.ndarray, radius: float, other: np.ndarray, other_radius: float):
