@@ -202,7 +202,7 @@ def test_the_locus_of_folds_of_pp2_is_four_lines_without_a_fold() -> None:
     det = sympy.Matrix([prey, hunters]).jacobian([u1, u2]).det()
     bounds = [(0, 1.5), (-0.5, 3), (-1, 2), (0, 6)]
     problem = bifurc.SymbolicProblem([prey, hunters, det], unknowns, bounds)
-    settings = bifurc.SearchSettings(starts=10, certify=False, boxes=0)
+    settings = bifurc.SearchSettings(starts=10, certify=False)
     atlas = bifurc.explore(problem, parameter=p2, settings=settings)
     assert atlas.diagram.folds == ()
     lines = []
