@@ -94,7 +94,7 @@ def test_seven_joints_at_random_move_in_closed_curves_without_bifurcation():
 )
 def test_mobility_two_is_a_surface_and_not_a_heap_of_forms(loop):
     problem = Closure(loop)
-    atlas = explore(problem, settings=SearchSettings(starts=30, charts=300))
+    atlas = explore(problem, settings=SearchSettings(starts=30, charts=60))
     assert not atlas.forms
     assert not len(atlas.rigid)
     assert atlas.surfaces
@@ -110,7 +110,8 @@ def test_joints_that_spin_on_coincident_axes_make_a_surface():
         nothing = (0.0,) * spare
         lengths, twists = bennett.lengths + nothing, bennett.twists + nothing
         loop = Loop(lengths, twists, (0.0,) * (4 + spare))
-        atlas = curves_of(loop, settings=SearchSettings(starts=20))
+        settings = SearchSettings(starts=20, charts=60)
+        atlas = curves_of(loop, settings=settings)
         assert atlas.surfaces
         assert not atlas.forms
         assert not any(p.kind is Kind.ISOLATED for p in atlas.points)
