@@ -19,6 +19,7 @@ from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.optimize.elementwise import find_root
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
@@ -26,7 +27,6 @@ from studies.curve_bank import Curve
 
 SHARPNESS = 8  # power of the normal in the weights
 STEP = 1e-30  # of complex differences
-HALVINGS = 50
 OFF_ZEROS = 0.1234  # by which a grid of periods is shifted, over a cube
 Function = Callable[[np.ndarray], list[Any]]
 
@@ -80,8 +80,8 @@ def _area_along(
         is_first = k == others[0]
         starts[k] = places[:, None] if is_first else places
     rows = np.moveaxis(starts, 1, 0)
-    crossed = [_crossings(function, row, axis, bounds[axis]) for row in rows]
-    crossings = np.concatenate(crossed, axis=1)
+    brackets = [_brackets(function, row, axis, bounds[axis]) for row in rows]
+    crossings = _crossings(function, np.concatenate(brackets, axis=1), axis)
     normals = np.abs(_gradients(function, crossings))
     normals /= np.linalg.norm(normals, axis=0)
     weights = normals[axis] ** (SHARPNESS - 1) / (normals**SHARPNESS).sum(axis=0)
@@ -89,25 +89,36 @@ def _area_along(
     return float(weights.sum()) * cell
 
 
-def _crossings(
+def _brackets(
     function: Function, starts: np.ndarray, axis: int, ends: np.ndarray
 ) -> np.ndarray:
-    """Points (3, k) at which lines from ``starts`` (3, l) along one unknown, between its
-    ``ends`` (2,), cross the surface."""
+    """Pairs (2, k, 3) of points before and behind the surface, on lines from ``starts``
+    (3, l) along one unknown, between its ``ends`` (2,)."""
     samples = starts.shape[1] + 1
     t = np.linspace(ends[0], ends[1], samples)
     points = np.repeat(starts[:, :, None], samples, axis=2)
     points[axis] = t
     signs = np.signbit(np.broadcast_to(function(points)[0], points.shape[1:]))
     line, begin = np.nonzero(signs[:, 1:] != signs[:, :-1])
-    crossings = starts[:, line]
-    low, high, sign = t[begin], t[begin + 1], signs[line, begin]
-    for _ in range(HALVINGS):
-        crossings[axis] = 0.5 * (low + high)
-        is_before = np.signbit(function(crossings)[0]) == sign
-        low = np.where(is_before, crossings[axis], low)
-        high = np.where(is_before, high, crossings[axis])
-    return crossings
+    return np.array([points[:, line, begin].T, points[:, line, begin + 1].T])
+
+
+def _crossings(function: Function, brackets: np.ndarray, axis: int) -> np.ndarray:
+    """Points (3, k) of the surface between pairs (2, k, 3) along one unknown."""
+    before, behind = brackets.transpose(0, 2, 1)
+    indices = np.arange(before.shape[1])
+
+    def points_at(t: np.ndarray, index: np.ndarray) -> np.ndarray:
+        points: np.ndarray = before[:, index]
+        points[axis] = t
+        return points
+
+    roots = find_root(
+        lambda t, index: function(points_at(t, index))[0],
+        (before[axis], behind[axis]),
+        args=(indices,),
+    )
+    return points_at(roots.x, indices)
 
 
 def _gradients(function: Function, points: np.ndarray) -> np.ndarray:

@@ -16,6 +16,7 @@ from linkages.catalogue import catalogue, entry
 from linkages.closure.closure import Closure
 from linkages.values import GeometryError
 from tests.maps import curves_of
+from tests.samples import one_in
 
 NAMES = [
     "special-double-subtractive-goldberg",
@@ -171,7 +172,7 @@ def members(name, count):
     return found
 
 
-@pytest.mark.parametrize("name", FAMILIES)
+@pytest.mark.parametrize("name", one_in(3, FAMILIES))
 def test_random_members_are_traced_whole_with_closure_and_the_same_from_two_seeds(name):
     for loop in members(name, 2):
         problem = Closure(loop)

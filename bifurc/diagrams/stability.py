@@ -36,6 +36,7 @@ RESIDUAL = 1e-12  # over F' along a form: how well F = 0 holds there
 LARGEST_ERROR = 1e-6  # of the sizes: a double curve is known to half of the digits
 PROBE = 1e-6  # of the sizes: how far off a form entries of F' are compared
 PROBES = 2  # directions in which they are
+ENTRIES = 100_000  # of F' at so many places at once
 ENTRY_ERROR = 8.0 * np.finfo(float).eps  # of an entry of F'
 SMALLEST = np.finfo(float).tiny
 SEED = 1
@@ -214,14 +215,13 @@ def _crossings(spectrum: Spectrum, views: Sequence[_View]) -> list[HopfPlace]:
     is_asked = np.diff(row.neutral) == 0
     if spectrum.problem.domain.is_large:
         is_asked &= np.abs(np.diff(row.numbers)) > is_cut
+    asked = np.flatnonzero(is_asked)
+    numbers = np.union1d(asked, asked + 1)
+    sets = spectrum.moving(row.places[numbers], row.neutral[numbers])
+    known = dict(zip(numbers.tolist(), sets, strict=True))
     crossings: list[HopfPlace] = []
-    known: dict[int, MovingSet] = {}
-    for k in np.flatnonzero(is_asked).tolist():
-        for number in (k, k + 1):
-            if number not in known:
-                s, count = float(row.places[number]), int(row.neutral[number])
-                known[number] = spectrum.moving(s, count)
-        found = _between_sets(spectrum, known.pop(k), known[k + 1])
+    for k in asked.tolist():
+        found = _between_sets(spectrum, known[k], known[k + 1])
         # real ones cross at folds and singular points
         crossings += [one for one in found if one.frequency > 0.0 or not is_cut[k]]
     return crossings
@@ -248,8 +248,9 @@ def _between_sets(
     if width > NARROW * spectrum.branch.length:
         if not np.any(moved.has_crossed) and not moved.is_open:
             return []
-        count = int(np.count_nonzero(low.neutral))
-        middle = spectrum.moving(low.s + UNEVEN * width, count)
+        count = np.count_nonzero(low.neutral)
+        at = np.array([low.s + UNEVEN * width])
+        (middle,) = spectrum.moving(at, np.array([count]))
         before = _between_sets(spectrum, low, middle)
         return [*before, *_between_sets(spectrum, middle, high)]
     places = []
@@ -299,7 +300,7 @@ def _partners(distances: np.ndarray) -> np.ndarray:
     """Which of the others (q,) each of some things is, so that the ``distances`` (q, q)
     are small together."""
     partners: np.ndarray = distances.argmin(axis=1)
-    if len(np.unique(partners)) < len(partners):
+    if len(set(partners.tolist())) < len(partners):
         from scipy.optimize import linear_sum_assignment  # it takes long to import
 
         partners = linear_sum_assignment(distances)[1]
@@ -435,11 +436,27 @@ class Spectrum:
         unstable = (eigenvalues.values.real > 0.0) & ~on_axis
         return Counts(unstable.sum(axis=1), on_axis.sum(axis=1))
 
-    def moving(self, s: float, neutral: int) -> MovingSet:
-        """The eigenvalues at an arclength and how fast they move, as far as that is
-        seen next to it; so many as are ``neutral`` are those next to the axis."""
-        step = RATE * self.branch.length
-        former, here, later = self.eigenvalues(s + step * np.array([-1.0, 0.0, 1.0]))
+    def moving(self, s: np.ndarray, neutral: np.ndarray) -> list[MovingSet]:
+        """The eigenvalues at arclengths (k,) and how fast they move, as far as that is
+        seen next to them; so many (k,) as are ``neutral`` are those next to the axis."""
+        sets: list[MovingSet] = []
+        at_once = max(1, ENTRIES // self.problem.n**2)
+        for first in range(0, len(s), at_once):
+            places = s[first : first + at_once]
+            beside = self._step * np.array([-1.0, 0.0, 1.0])
+            values = self.eigenvalues((places[:, None] + beside).ravel())
+            triples = values.reshape(len(places), 3, -1)
+            counts = neutral[first : first + at_once]
+            sets += map(self._moving_set, places, counts, triples)
+        return sets
+
+    @property
+    def _step(self) -> float:
+        return RATE * self.branch.length
+
+    def _moving_set(self, s: float, neutral: int, triple: np.ndarray) -> MovingSet:
+        """The set at an arclength, of eigenvalues (3, q) before it, there and after."""
+        former, here, later = triple
         is_neutral = np.zeros(len(here), dtype=bool)
         if neutral:
             values, errors = self.with_errors(np.array([s]))
@@ -448,7 +465,9 @@ class Spectrum:
             is_neutral[np.argsort(parts)[:neutral]] = True
         before = here - former[_partners(np.abs(here[:, None] - former))]
         after = later[_partners(np.abs(here[:, None] - later))] - here
-        return MovingSet(s, here, before / step, after / step, is_neutral)
+        return MovingSet(
+            float(s), here, before / self._step, after / self._step, is_neutral
+        )
 
     def pair_sums(self, s: np.ndarray) -> np.ndarray:
         """The sums of any two eigenvalues over their sizes (k, pairs): their product is

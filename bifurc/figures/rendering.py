@@ -28,6 +28,7 @@ WHOLE = 1e-6  # of a pixel, by which rounding may miss a whole number of them
 QUICK_COMPRESSION = 2  # of PNG: two thirds of the time of 6, a tenth more bytes
 
 
+LONGEST = 200  # letters of a text, which no figure is wide enough for
 NO_DATE: dict[str, Any] = {"CreationDate": None}  # of PDF
 
 
@@ -41,7 +42,9 @@ class Rendering(NamedTuple):
 def contents_of(
     figure: Figure, resolution: float, formats: Sequence[str]
 ) -> dict[str, bytes]:
-    """The bytes of files of a figure in these formats."""
+    """The bytes of files of a figure in these formats; of a long text its beginning is
+    shown."""
+    _cut_long_texts(figure)
     contents: dict[str, bytes] = {}
     if {"png", "svg"} & set(formats):
         contents.update(render(figure, resolution)._asdict())
@@ -50,6 +53,13 @@ def contents_of(
         figure.savefig(stream, format="pdf", metadata=NO_DATE)
         contents["pdf"] = stream.getvalue()
     return {ending: contents[ending] for ending in formats}
+
+
+def _cut_long_texts(figure: Figure) -> None:
+    for text in figure.findobj(Text):
+        words = text.get_text()
+        if len(words) > LONGEST:
+            text.set_text(f"{words[: LONGEST - 1]}…")
 
 
 def render(figure: Figure, resolution: float) -> Rendering:

@@ -79,17 +79,22 @@ def _leads_somewhere(path: Path, target: str) -> bool:
     parts = urlsplit(target)
     if parts.scheme or parts.netloc:
         return True
-    goal = path
-    if parts.path:
-        goal = (path.parent / unquote(parts.path)).resolve()
-    if goal.is_dir():
-        goal = goal / "index.html"
-    if not goal.exists():
+    goal = _goal(path.parent, unquote(parts.path)) if parts.path else path
+    if goal is None:
         return False
     anchor = unquote(parts.fragment)
     if not anchor or goal.suffix != ".html":
         return True
     return anchor in _page(goal).anchors
+
+
+@cache
+def _goal(folder: Path, name: str) -> Path | None:
+    """The file that a link on the pages of a folder leads to, if it is there."""
+    goal = (folder / name).resolve()
+    if goal.is_dir():
+        goal = goal / "index.html"
+    return goal if goal.exists() else None
 
 
 def fetched_from_afar(site: Path) -> list[DeadLink]:

@@ -1,6 +1,8 @@
 """Problems whose solutions are surfaces of known size and shape."""
 
 from collections.abc import Callable
+from itertools import product
+from math import prod
 
 import numpy as np
 
@@ -25,30 +27,15 @@ class Level(NumericalProblem):
         return np.stack(self.gradient(*points.T), axis=1)[:, None]
 
 
-class Union(NumericalProblem):
-    """The union, in a cube, of sets: each given by functions (p, k) of x, y, z (k,)
-    whose common zeros it is."""
+def union(*sets: Callable, size: float = 2.0) -> Problem:
+    """The union, in a cube, of sets: each given by functions of x, y, z whose common
+    zeros it is."""
 
-    def __init__(self, *sets: Callable, size: float = 2.0):
-        bounds = np.full((3, 2), [-size, size])
-        self.domain = Domain(("x", "y", "z"), ("",) * 3, np.full(3, np.inf), bounds)
-        self.sets = sets
+    def products(u: np.ndarray) -> np.ndarray:
+        values = [functions(*u) for functions in sets]
+        return np.array([prod(one) for one in product(*values)])
 
-    def residuals(self, points: np.ndarray) -> np.ndarray:
-        count = len(points)
-        out = np.ones((count, 1))
-        for functions in self.sets:
-            values = functions(*points.T).T
-            products = out[:, :, None] * values[:, None]
-            out = products.reshape(count, products.shape[1] * products.shape[2])
-        return out
-
-    def jacobians(self, points: np.ndarray) -> np.ndarray:
-        columns = []
-        for step in np.eye(3):
-            shifted = self.residuals(points + 1e-100j * step)
-            columns.append(shifted.imag / 1e-100)
-        return np.stack(columns, axis=2)
+    return FunctionProblem(products, [[-size, size]] * 3, names=("x", "y", "z"))
 
 
 SPHERE = Level(
@@ -59,34 +46,29 @@ CONE = Level(
 )
 
 
-def torus(tube: float) -> Level:
+def level(function: Callable, size: float) -> Problem:
+    """The same, with derivatives of the recorded function."""
+    return union(lambda *u: [function(*u)], size=size)
+
+
+def torus(tube: float) -> Problem:
     """The torus about the z-axis with radii 1 and ``tube``."""
-
-    def function(x, y, z):
-        return ((np.hypot(x, y) - 1) ** 2 + z * z - tube**2) / 2
-
-    def gradient(x, y, z):
-        r = np.hypot(x, y)
-        return (r - 1) * x / r, (r - 1) * y / r, z
-
-    return Level(function, gradient, 2.0)
+    return level(
+        lambda x, y, z: ((np.sqrt(x * x + y * y) - 1) ** 2 + z * z - tube**2) / 2,
+        2.0,
+    )
 
 
-def two_spheres(distance: float) -> Level:
+def two_spheres(distance: float) -> Problem:
     """A sphere of radius 0.5 about (-distance, 0, 0) and one of radius 0.6 about
     (distance, 0, 0)."""
 
-    def factors(x, y, z):
+    def product(x, y, z):
         left = (x + distance) ** 2 + y * y + z * z - 0.25
         right = (x - distance) ** 2 + y * y + z * z - 0.36
-        return left, right
+        return left * right
 
-    def gradient(x, y, z):
-        left, right = factors(x, y, z)
-        along_x = 2 * (x + distance) * right + 2 * (x - distance) * left
-        return along_x, 2 * y * (left + right), 2 * z * (left + right)
-
-    return Level(lambda *u: np.prod(factors(*u), axis=0), gradient, 2.0)
+    return level(product, 2.0)
 
 
 def spheres(center: np.ndarray, radius: float, other: np.ndarray, other_radius: float):

@@ -62,7 +62,7 @@ def closure_entries():
     return entries
 
 
-def _traced(loop, start, step=0.06, limit=3000):
+def _traced(loop, start, step=0.12, limit=3000):
     scale = np.repeat([1.0, 1.0 / loop.characteristic_length], 3)[:, None]
 
     def tangent(theta, along):

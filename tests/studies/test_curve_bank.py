@@ -13,6 +13,7 @@ from studies.curve_bank import (
     load_curves,
     run_curve,
 )
+from tests.samples import one_in
 
 CURVES = {curve.name: curve for curve in load_curves()}
 SAMPLE = [
@@ -66,8 +67,9 @@ def test_every_curve_has_a_source_and_a_name_of_its_own():
         assert np.all(curve.bounds[:, 0] < curve.bounds[:, 1])
 
 
-@pytest.mark.parametrize(("name", "change"), SAMPLE)
-def test_a_curve_of_the_bank_comes_out_right_in_any_units(name, change):
+@pytest.mark.parametrize("case", one_in(3, SAMPLE, " ".join))
+def test_a_curve_of_the_bank_comes_out_right_in_any_units(case):
+    name, change = case
     curve = CURVES[name]
     (chosen,) = [c for c in changes_of(curve) if c.name == change]
     run = run_curve(curve, chosen, seed=0, budget=60.0)
@@ -98,7 +100,7 @@ def test_a_flat_rank_drop_is_found_or_said_to_be_missing(name):
     assert len(atlas.rank_drops) == 1 or is_missed
 
 
-@pytest.mark.parametrize("name", ["A4", "A3, isolated", "D6", "E7"])
+@pytest.mark.parametrize("name", one_in(2, ["A4", "A3, isolated", "E7", "D6"]))
 def test_the_milnor_number_is_the_index_of_the_type(name):
     curve = CURVES[name]
     (point,) = explore(next(changes_of(curve)).problem(curve)).points

@@ -69,8 +69,8 @@ MEASURED = [
     "band of a sphere",
     "three parallel planes",
     "Schwarz P, nodal",
-    "gyroid, nodal",
-    "I-WP, nodal",
+    pytest.param("gyroid, nodal", marks=pytest.mark.exhaustive),
+    pytest.param("I-WP, nodal", marks=pytest.mark.exhaustive),
 ]
 
 

@@ -18,7 +18,7 @@ from bifurc.figures.plotting import (
     plot_transition_map,
 )
 from bifurc.figures.rc import drawing_style
-from bifurc.figures.rendering import render
+from bifurc.figures.rendering import LONGEST, contents_of, render
 
 PLOTS = [plot_transition_map, plot_joint_angles, plot_singular_values, plot_form_graph]
 
@@ -62,3 +62,11 @@ def coarse(image: np.ndarray) -> np.ndarray:
     rows, columns = (20 * (size // 20) for size in image.shape[:2])
     blocks = image[:rows, :columns].reshape(rows // 20, 20, columns // 20, 20, 3)
     return blocks.mean(axis=(1, 3))
+
+
+def test_of_a_long_text_the_beginning_is_shown():
+    figure = Figure()
+    texts = figure.supxlabel("x" * 10_000), figure.suptitle("y" * LONGEST)
+    contents_of(figure, RESOLUTION, ["svg"])
+    shown = [text.get_text() for text in texts]
+    assert shown == ["x" * (LONGEST - 1) + "…", "y" * LONGEST]

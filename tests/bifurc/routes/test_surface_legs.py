@@ -12,21 +12,21 @@ from bifurc.routes.route import find_route
 from bifurc.search.explore import explore
 from bifurc.seeds import Seeds
 from bifurc.settings import SearchSettings
-from tests.bifurc.known_surfaces import Union
+from tests.bifurc.known_surfaces import union
 from tests.bifurc.routes.walks import assert_is_walk, dimensions_of, forms_of
 
-PLANE_AND_LINES = Union(
+PLANE_AND_LINES = union(
     lambda x, y, z: np.array([z]),
     lambda x, y, z: np.array([x, y]),
     lambda x, y, z: np.array([x - 1, y - 0.5]),
     lambda x, y, z: np.array([x + 1, y + 1 - z]),
 )
-SPHERE_AND_AXIS = Union(
+SPHERE_AND_AXIS = union(
     lambda x, y, z: np.array([x * x + y * y + z * z - 1]),
     lambda x, y, z: np.array([x, y]),
 )
-PLANES = Union(lambda x, y, z: np.array([z]), lambda x, y, z: np.array([y]))
-CONE = Union(lambda x, y, z: np.array([z * z - x * x - y * y]))
+PLANES = union(lambda x, y, z: np.array([z]), lambda x, y, z: np.array([y]))
+CONE = union(lambda x, y, z: np.array([z * z - x * x - y * y]))
 
 
 def search(

@@ -14,7 +14,7 @@ from bifurc.search.canonical_order import (
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from bifurc.surfaces.covering import cover_surface
-from tests.bifurc.known_surfaces import Level
+from tests.bifurc.known_surfaces import level
 
 NO_PERIODS = np.full(2, np.inf)
 
@@ -109,11 +109,7 @@ def test_values_but_for_rounding_equal_keep_their_order():
 def one_sphere(middle, begin):
     """A sphere on the x axis as a surface, charts laid out from the point at ``begin``
     (rad) from its far end."""
-    problem = Level(
-        lambda x, y, z: (x - middle) ** 2 + y * y + z * z - 0.25,
-        lambda x, y, z: (2 * (x - middle), 2 * y, 2 * z),
-        2.0,
-    )
+    problem = level(lambda x, y, z: (x - middle) ** 2 + y * y + z * z - 0.25, 2.0)
     far = middle + 0.5 * np.cos(begin)
     start = np.array([[far, 0.5 * np.sin(begin), 0.0]])
     charts = cover_surface(problem, start, radius=0.5)

@@ -14,7 +14,7 @@ from bifurc.surfaces.disk import tangent_plane_at
 from tests.bifurc.known_surfaces import (
     CONE,
     SPHERE,
-    Level,
+    level,
     seeds,
     spheres,
     torus,
@@ -42,13 +42,9 @@ def test_area_and_euler_characteristic_of_a_closed_surface_are_found(
 
 @pytest.mark.parametrize("neck", [0.03])
 def test_a_neck_joins_two_halves_to_one_surface(neck: float) -> None:
-    problem = Level(
-        lambda x, y, z: x * x + y * y - z * z - neck**2,
-        lambda x, y, z: (2 * x, 2 * y, -2 * z),
-        1.0,
-    )
-    problem.domain = replace(
-        problem.domain, bounds=np.array([[-2, 2], [-2, 2], [-1, 1]])
+    problem = FunctionProblem(
+        lambda u: np.array([u[0] ** 2 + u[1] ** 2 - u[2] ** 2 - neck**2]),
+        [[-2, 2], [-2, 2], [-1, 1]],
     )
     charts = cover_surface(problem, np.array([[0.5, 0.0, np.sqrt(0.25 - neck**2)]]))
     assert charts.complete
@@ -103,11 +99,7 @@ def test_a_surface_that_touches_a_bound_is_not_cut_there() -> None:
 
 
 def test_a_surface_that_leaves_the_bounds_has_a_border_and_its_area_inside() -> None:
-    problem = Level(
-        lambda x, y, z: z - 0.5 * x,
-        lambda x, y, z: (-0.5 + 0 * x, 0 * y, 1 + 0 * z),
-        1.0,
-    )
+    problem = level(lambda x, y, z: z - 0.5 * x, 1.0)
     charts = cover_surface(problem, seeds(problem, 1))
     assert charts.complete
     assert charts.border > 0

@@ -6,7 +6,7 @@ import pytest
 from bifurc.surfaces.chart_atlas import ChartAtlas
 from bifurc.surfaces.covering import cover_surface
 from bifurc.surfaces.geodesic import SurfacePathError, path_length, shortest_path
-from tests.bifurc.known_surfaces import SPHERE, Union
+from tests.bifurc.known_surfaces import SPHERE, union
 
 
 def chords(path: np.ndarray) -> np.ndarray:
@@ -29,7 +29,7 @@ def test_a_path_on_the_sphere_is_a_great_circle(sphere_charts: ChartAtlas) -> No
 def test_around_the_waist_of_a_hyperboloid_the_way_is_a_circle() -> None:
     # on so strong a saddle pulling without a measured step would swing from side to
     # side
-    problem = Union(
+    problem = union(
         lambda x, y, z: np.array([4 * x * x + 4 * y * y - 4 * z * z - 1]), size=0.7
     )
     start, goal = np.array([0.5, 0.0, 0.0]), np.array([-0.5, 0.0, 0.0])

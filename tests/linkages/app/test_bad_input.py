@@ -621,8 +621,10 @@ def test_standard_output_on_a_full_disk_ends_with_one_line():
 
 
 @contextmanager
-def full_disk():
-    """Files of this process may grow to 4 kB and no further."""
+def full_disk(monkeypatch):
+    """Files of this process may grow to 4 kB and no further; it leaves no half of the
+    byte code of a module."""
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
     before, most = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (4096, most))
     try:
@@ -631,8 +633,8 @@ def full_disk():
         resource.setrlimit(resource.RLIMIT_FSIZE, (before, most))
 
 
-def test_a_full_disk_keeps_what_is_on_the_screen(tmp_path):
-    with full_disk():
+def test_a_full_disk_keeps_what_is_on_the_screen(tmp_path, monkeypatch):
+    with full_disk(monkeypatch):
         result = bifurc("map", "kite", "--out", tmp_path)
     assert result.exit_code == ExitCode.BAD_INPUT
     assert "The linkage moves with mobility 1" in result.stdout
@@ -650,11 +652,13 @@ def test_a_full_disk_keeps_what_is_on_the_screen(tmp_path):
         (("figure", "004-6", "--out"), "figures"),
     ],
 )
-def test_a_full_disk_names_the_option_and_leaves_older_files(arguments, name, tmp_path):
+def test_a_full_disk_names_the_option_and_leaves_older_files(
+    arguments, name, tmp_path, monkeypatch
+):
     out = tmp_path / name
     if out.suffix:
         out.write_text("old", encoding="utf-8")
-    with full_disk():
+    with full_disk(monkeypatch):
         result = bifurc(*arguments, out)
     assert result.exit_code == ExitCode.BAD_INPUT
     assert len(messages(result.stderr)) == 1, result.stderr

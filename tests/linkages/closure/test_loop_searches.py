@@ -15,6 +15,7 @@ from linkages.closure.closure import Closure
 from linkages.families.four_bar import four_bar, kite
 from linkages.loop import Loop
 from tests.maps import curves_of, map_of
+from tests.samples import one_in
 
 
 def test_an_isolated_real_point_of_a_curve_is_no_form():
@@ -46,7 +47,7 @@ def test_a_loop_that_cannot_be_closed_has_nothing_but_a_large_gap(loop):
     assert atlas.closure_gap > 0.1
 
 
-@pytest.mark.parametrize("relative", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("relative", one_in(2, [1e-3, 1e-6, 1e-9]))
 @pytest.mark.parametrize(
     "name", ["bennett", "goldberg-5r", "special-double-subtractive-goldberg"]
 )
@@ -93,7 +94,7 @@ def test_seven_joints_at_random_move_in_closed_curves_without_bifurcation():
 )
 def test_mobility_two_is_a_surface_and_not_a_heap_of_forms(loop):
     problem = Closure(loop)
-    atlas = explore(problem, settings=SearchSettings(starts=30, charts=300))
+    atlas = explore(problem, settings=SearchSettings(starts=30, charts=60))
     assert not atlas.forms
     assert not len(atlas.rigid)
     assert atlas.surfaces
@@ -109,7 +110,8 @@ def test_joints_that_spin_on_coincident_axes_make_a_surface():
         nothing = (0.0,) * spare
         lengths, twists = bennett.lengths + nothing, bennett.twists + nothing
         loop = Loop(lengths, twists, (0.0,) * (4 + spare))
-        atlas = curves_of(loop, settings=SearchSettings(starts=20))
+        settings = SearchSettings(starts=20, charts=60)
+        atlas = curves_of(loop, settings=settings)
         assert atlas.surfaces
         assert not atlas.forms
         assert not any(p.kind is Kind.ISOLATED for p in atlas.points)

@@ -20,6 +20,7 @@ from linkages.families.goldberg_6r import syncopated_serial_goldberg
 from linkages.families.mavroidis_roth import dietmaier
 from linkages.loop import Loop
 from linkages.values import GeometryError
+from tests.samples import one_in
 
 ENTRIES = [entry for entry in catalogue().values() if entry.facts.get("mobility") == 1]
 MEMBERS = 6
@@ -48,8 +49,9 @@ def closure(loop: Loop, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def project(loop: Loop, theta: np.ndarray, steps: int = 40) -> np.ndarray:
     """Configurations that closed, from the starts ``theta`` (k, n), by damped
     Gauss-Newton."""
+    theta, moving = theta.copy(), np.arange(len(theta))
     for _ in range(steps):
-        residual, jacobian = closure(loop, theta)
+        residual, jacobian = closure(loop, theta[moving])
         damping = 0.1 * np.minimum(1, np.sum(residual**2, axis=1)) + 1e-14
         normal = np.einsum("kij,kil->kjl", jacobian, jacobian) + damping[
             :, None, None
@@ -57,8 +59,9 @@ def project(loop: Loop, theta: np.ndarray, steps: int = 40) -> np.ndarray:
         step = np.linalg.solve(
             normal, -np.einsum("kij,ki->kj", jacobian, residual)[..., None]
         )[..., 0]
-        theta = theta + np.clip(step, -1, 1)
-        if np.abs(step).max() < ROUNDING:
+        theta[moving] += np.clip(step, -1, 1)
+        moving = moving[np.abs(step).max(axis=1) > ROUNDING]
+        if not len(moving):
             break
     return theta[np.abs(closure(loop, theta)[0]).max(axis=1) < 1e-11]
 
@@ -83,7 +86,7 @@ def closed_and_moving(
     return len(found) > 0, any(moves(loop, theta) for theta in found)
 
 
-@pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.name)
+@pytest.mark.parametrize("entry", one_in(3, ENTRIES, lambda entry: entry.name))
 def test_random_members_move(entry: Entry):
     rng = np.random.default_rng(7)
     accepted = moving = closed = 0

@@ -22,6 +22,7 @@ from linkages.structure.structure import Structure
 from studies.miura import SECTOR, miura
 from tests.linkages.mechanisms.test_maps import counts
 from tests.maps import map_of
+from tests.samples import one_in
 
 
 def read(tmp_path, content, name="pattern.fold"):
@@ -401,7 +402,7 @@ def flat_vertex(letters, **keys):
 
 # Maekawa: mountains and valleys differ by two; the creases beside the smallest sector
 # differ (Bern and Hayes 1996)
-@pytest.mark.parametrize("letters", list(map("".join, product("MV", repeat=4))))
+@pytest.mark.parametrize("letters", one_in(2, map("".join, product("MV", repeat=4))))
 def test_a_vertex_folds_as_assigned_where_theorems_say_so(letters, tmp_path):
     is_foldable = abs(letters.count("M") - 2) == 1 and letters[0] != letters[1]
     mechanism = read(tmp_path, flat_vertex(letters))

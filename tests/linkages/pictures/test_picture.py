@@ -141,13 +141,12 @@ def test_joints_in_space_show_their_axes_and_no_ground():
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("name", LINKAGES)
 def test_the_picture_fits_a_column_and_a_page(name, size):
-    with matplotlib.rc_context({"figure.figsize": size}):
+    with matplotlib.rc_context({"figure.figsize": SIZES[size]}):
         figure = plot_linkage(map_of(name))
-    figure.draw_without_rendering()
-    box = figure.get_tightbbox()
-    width, height = size
-    assert min(box.x0, box.y0, width - box.x1, height - box.y1) > -1e-9
     assert overlapping_texts(figure) == []
+    box = figure.get_tightbbox()
+    width, height = SIZES[size]
+    assert min(box.x0, box.y0, width - box.x1, height - box.y1) > -1e-9
 
 
 def test_a_linkage_is_drawn_into_axes_at_a_place_of_a_form(slider_crank):

@@ -26,6 +26,7 @@ from linkages.source_figures.table import Kind, figure_named, source_figures
 from linkages.source_figures.tori_figure import Torus, companion_torus
 from linkages.source_figures.transitions_figure import tour_of
 from tests.linkages.test_figures_in_print import overlapping_texts
+from tests.samples import one_in
 
 TURN = 2 * np.pi
 # The quickest figure of each kind, and of each chart.
@@ -72,7 +73,7 @@ def test_a_translator_of_150_degrees_is_drawn_on_its_short_stroke_alone():
         assert highest < 180
 
 
-@pytest.mark.parametrize("name", DRAWN)
+@pytest.mark.parametrize("name", one_in(3, DRAWN))
 def test_a_figure_is_drawn_and_written(name):
     figure = draw_source_figure(figure_named(name))
     assert overlapping_texts(figure) == []

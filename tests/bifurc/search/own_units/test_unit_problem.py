@@ -18,6 +18,7 @@ from bifurc.seeds import Audit
 from bifurc.system import Curvature, jacobian_at
 from bifurc.systems.equation_file import read_equations
 from bifurc.units import Units
+from tests.samples import one_in
 
 BOX = [(-2.0, 2.0), (-2.0, 2.0)]
 
@@ -142,7 +143,7 @@ def test_a_curve_without_bounds_is_one_form_and_says_that_it_goes_on() -> None:
 
 
 @pytest.mark.parametrize("is_recorded", [True, False])
-@pytest.mark.parametrize("radius", [1e-6, 1e-2, 1.0, 1e6])
+@pytest.mark.parametrize("radius", one_in(3, [1e-6, 1e-2, 1.0, 1e6]))
 def test_a_circle_without_bounds_is_found_whatever_its_size(radius, is_recorded):
     problem = bifurc.FunctionProblem(
         circle(radius),
@@ -501,7 +502,7 @@ NEAR_CURVES = {
 }
 
 
-@pytest.mark.parametrize("apart", [3e-6, 1e-6, 1e-8, 1e-10])
+@pytest.mark.parametrize("apart", one_in(2, [3e-6, 1e-6, 1e-8, 1e-10]))
 @pytest.mark.parametrize("name", NEAR_CURVES)
 def test_curves_next_to_each_other_are_never_one_without_a_word(name, apart) -> None:
     bounds = [*BOX, (-2.5, 2.6)] if name == "lines in a sum" else BOX

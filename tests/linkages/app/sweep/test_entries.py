@@ -57,22 +57,32 @@ class Untouched(Executor):
         raise AssertionError("a finished member is mapped again")
 
 
-@pytest.fixture
-def finished(tmp_path, monkeypatch):
-    """The dataset of a sweep all of whose members stand in the journal."""
+@contextmanager
+def no_workers(workers, scheduler):
+    yield Pool(Untouched(), window=1)
 
-    @contextmanager
-    def no_workers(workers, scheduler):
-        yield Pool(Untouched(), window=1)
 
-    monkeypatch.setattr("linkages.app.sweep.run.open_pool", no_workers)
-    out = tmp_path / "a.zarr"
+@pytest.fixture(scope="module")
+def finished_once(tmp_path_factory):
+    """The folder of a dataset all of whose members stand in the journal."""
+    folder = tmp_path_factory.mktemp("finished")
+    out = folder / "a.zarr"
     lines = [{"sweep": PLAN.as_dict()}]
     lines += [{"member": index, **RECORD} for index in range(PLAN.size)]
     text = "".join(json.dumps(line) + "\n" for line in lines)
     journal_path(out).write_text(text)
-    run_sweep(PLAN, out)
-    return out
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("linkages.app.sweep.run.open_pool", no_workers)
+        run_sweep(PLAN, out)
+    return folder
+
+
+@pytest.fixture
+def finished(finished_once, tmp_path, monkeypatch):
+    """A copy of that dataset; nothing can be mapped."""
+    monkeypatch.setattr("linkages.app.sweep.run.open_pool", no_workers)
+    shutil.copytree(finished_once, tmp_path, dirs_exist_ok=True)
+    return tmp_path / "a.zarr"
 
 
 @pytest.mark.parametrize("what", DAMAGED)
