@@ -19,7 +19,6 @@ from linkages.app.answer.verdict import is_without_gaps
 from linkages.app.texts.configurations import numbers_at
 from linkages.labels import FormLabels
 from linkages.readout.dead_points import moving_dead_points
-from linkages.readout.rigidity import held_document
 from linkages.subject import subject_at
 from linkages.turns.translates import isolated_assemblies_of
 
@@ -71,7 +70,12 @@ def _assembly(atlas: Atlas, theta: NDArray[np.float64]) -> list[float] | Documen
     if len(place) == 1:
         return numbers_at(atlas, theta)
     readout = subject_at(atlas).readout
-    return place if readout is None else {**place, **held_document(readout, theta)}
+    if readout is None:
+        return place
+    # it imports networkx, which a loop does not need
+    from linkages.readout.rigidity import held_document
+
+    return {**place, **held_document(readout, theta)}
 
 
 def _form(atlas: Atlas, index: int) -> Document:
