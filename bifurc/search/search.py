@@ -32,6 +32,7 @@ from bifurc.search.components import (
     cover_components,
     crossings_beside_curves,
     parts_through,
+    recognise_products,
     singular_curve_through,
     singular_points_of,
 )
@@ -225,10 +226,12 @@ class Search:
         """Cover the surfaces with charts, and locate singular points on them."""
         findings, deadline = self.findings, self.run.deadline
         components = findings.components
+        seeds, tracing = findings.book.seeds.points, self.settings.tracing
+        recognise_products(components, self.problem, seeds, tracing, deadline)
         refused = cover_components(
             components,
             self.problem,
-            findings.book.seeds.points,
+            seeds,
             self.settings.charts,
             deadline,
         )
