@@ -115,8 +115,8 @@ class Surface:
     """A component of ``dimension`` 2 or more: solutions (k, n) seen on it, and
     ``charts`` that cover it.
 
-    Without charts it may be several components of that dimension: whether they are
-    connected is not known. Where the charts of a surface are unfinished, it holds the
+    Without charts or factors it may be several components of that dimension: whether
+    they are connected is not known, but for what walks between samples show. Where the charts of a surface are unfinished, it holds the
     solutions from which a walk over it arrives at the charts; others may belong to it
     as well. ``note`` says what is known of its singular points besides those in the
     atlas. With ``factors`` it is their product: it is connected, and all of it is known

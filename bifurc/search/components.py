@@ -36,6 +36,7 @@ from bifurc.singular.locate import LocatedPoint, locate_singular_point
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.crossing_sheets import is_on_singular_curve, sign_changes
 from bifurc.surfaces.geodesic import entrances
+from bifurc.surfaces.joined import joined_parts
 from bifurc.surfaces.products import products_among
 from bifurc.surfaces.walk import reached_charts
 from bifurc.system import relative_jacobians, relative_residuals
@@ -52,6 +53,7 @@ WHOLE = (Outcome.CLOSED, Outcome.LEFT_REGION)
 # Share of the time that is left in which charts are made; they are measured in the rest.
 GROWING = 0.35
 RECOGNISING = 0.2  # the same, to find products
+JOINING = 0.1  # and to see which samples are joined
 RADIUS = 0.7  # of the largest charts, over the problem's scale
 # Singular value, over the median on the surface, below which a singular point is looked
 # for.
@@ -210,6 +212,8 @@ def cover_components(
         regular = components.deflated or problem
         chart[beside] = reached_charts(regular, covering, samples[beside], deadline)
         components.part_of = np.where(chart >= 0, covering.part[chart], -1)
+        if not covering.is_finished:
+            _join_to_charts(components, regular, samples, deadline)
         return []
     is_known = bool(components.are_on_products(2).any())
     return [] if deadline.passed or is_known else components.seeds.pop(2)
@@ -242,6 +246,39 @@ def _covered(
         seconds=seconds,
         metric=_metric_of(problem),
     )
+
+
+def _join_to_charts(
+    components: Components, problem: Problem, samples: np.ndarray, deadline: Deadline
+) -> None:
+    """Count ``samples`` (k, n) beside charts that ran out to those parts of them on
+    which others lie that they are joined to."""
+    part_of = components.part_of
+    beside = np.flatnonzero((part_of < 0) & ~components.are_on_products(2))
+    if not len(beside):
+        return
+    joined = joined_parts(problem, samples, 2, deadline.share(JOINING))
+    for number in beside[joined[beside] >= 0].tolist():
+        known = part_of[(joined == joined[number]) & (part_of >= 0)]
+        if len(known):
+            part_of[number] = np.bincount(known).argmax()
+
+
+def join_samples(
+    components: Components, problem: Problem, points: np.ndarray, deadline: Deadline
+) -> None:
+    """See which of the seeds ``points`` (k, n) are joined on components that have no
+    charts."""
+    for dimension in components.seeds:
+        is_charted = dimension == 2 and components.has_surfaces
+        if is_charted or problem.domain.is_large or deadline.passed:
+            continue
+        samples = components.samples(points, dimension)
+        left = np.flatnonzero(~components.are_on_products(dimension))
+        parts = np.full(len(samples), -1)
+        share = deadline.share(JOINING)
+        parts[left] = joined_parts(problem, samples[left], dimension, share)
+        components.joined[dimension] = parts
 
 
 def _metric_of(problem: Problem) -> np.ndarray:

@@ -30,6 +30,14 @@ UNEXAMINED = "its singular points, and where forms meet it, are not looked for"
 UNEXAMINED_ELSE = "others, and where forms meet it, are not looked for"
 
 
+MOST_PARTS = 12  # of sampled components of a dimension that are listed apart
+JOINED = "walks over it join all starts on it"
+APART = "no walk led from it to others of its dimension: some of them may be one"
+MANY_PARTS = (
+    "walks join the starts on it in {count} parts: it may be so many components"
+)
+
+
 @dataclass(frozen=True, eq=False)
 class TracedBranch:
     """A branch with what was seen along it.
@@ -187,6 +195,8 @@ class Components:
     with which surfaces are corrected to along which F' has a lower rank; seeds of
     dimension 2 lie on such surfaces then. Components that are ``products``, by
     dimension, are known without charts: all parts that lie on one of them are one.
+    Seeds of components without charts are in parts that are ``joined``, by dimension:
+    their numbers (k,), -1 where that is not known.
     """
 
     seeds: dict[int, list[int]] = field(default_factory=dict)
@@ -196,6 +206,7 @@ class Components:
     notes: PartNotes = field(default_factory=PartNotes)
     deflated: Problem | None = None
     products: dict[int, Products] = field(default_factory=dict)
+    joined: dict[int, np.ndarray] = field(default_factory=dict)
 
     @property
     def has_surfaces(self) -> bool:
@@ -250,11 +261,33 @@ class Components:
             if dimension == 2 and self.charts is not None:
                 surfaces += self._charted_surfaces(samples, parts)
                 is_left &= (self.part_of < 0) & (not self.charts.is_finished)
-            samples = samples[is_left]
-            if len(samples):
-                note = self._note_of(-1) if dimension == 2 else ""
-                surfaces.append(Surface(dimension, samples, note=note))
+            surfaces += self._sampled_surfaces(samples, dimension, is_left)
         return tuple(surfaces)
+
+    def _sampled_surfaces(
+        self, samples: np.ndarray, dimension: int, is_left: np.ndarray
+    ) -> list[Surface]:
+        """What those of the samples (k, n) show that are left, on nothing that is known:
+        a surface for each part in which they are joined, unless there are many."""
+        note = self._note_of(-1) if dimension == 2 else ""
+        unknown = np.full(len(samples), -1)
+        parts = self.joined.get(dimension, unknown)[is_left]
+        samples = samples[is_left]
+        if not len(samples):
+            return []
+        count = int(parts.max()) + 1
+        if not 1 < count <= MOST_PARTS:
+            remark = MANY_PARTS.format(count=count) if count > 1 else JOINED * count
+            words = "; ".join(filter(None, [note, remark]))
+            return [Surface(dimension, samples, note=words)]
+        # singular samples may lie between parts: the largest has them
+        largest = int(np.argmax(np.bincount(parts[parts >= 0])))
+        parts = np.where(parts < 0, largest, parts)
+        words = "; ".join(filter(None, [note, APART]))
+        return [
+            Surface(dimension, samples[parts == part], note=words)
+            for part in range(count)
+        ]
 
     def _charted_parts(self) -> list[_ChartedPart]:
         """The parts of the charts, the one with most charts first."""

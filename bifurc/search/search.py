@@ -31,6 +31,7 @@ from bifurc.search.components import (
     components_of_seeds,
     cover_components,
     crossings_beside_curves,
+    join_samples,
     parts_through,
     recognise_products,
     singular_curve_through,
@@ -236,6 +237,7 @@ class Search:
             deadline,
         )
         findings.book.reopen(refused)
+        join_samples(components, self.problem, seeds, deadline)
         yield []
         for point in singular_points_of(self.problem, components, deadline):
             if self.run.is_over:
