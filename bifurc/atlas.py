@@ -116,11 +116,12 @@ class Surface:
     ``charts`` that cover it.
 
     Without charts or factors it may be several components of that dimension: whether
-    they are connected is not known, but for what walks between samples show. Where the charts of a surface are unfinished, it holds the
-    solutions from which a walk over it arrives at the charts; others may belong to it
-    as well. ``note`` says what is known of its singular points besides those in the
-    atlas. With ``factors`` it is their product: it is connected, and all of it is known
-    by what each of them is.
+    they are connected is not known, but for what walks between samples show. Where the
+    charts of a surface are unfinished, it holds the solutions from which a walk over it
+    arrives at the charts; others may belong to it as well. ``note`` says what is known
+    of its singular points besides those in the atlas, and of what it is joined to. With
+    ``factors`` it is their product: it is connected, and all of it is known by what
+    each of them is.
     """
 
     dimension: int

@@ -7,6 +7,8 @@ proof that they are not.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from bifurc.decisions import is_same_point, may_be_null
@@ -102,26 +104,41 @@ class _Walk:
         solutions."""
         domain = self.problem.domain
         at, planes = self.points[walkers].copy(), self.planes[walkers].copy()
-        length = np.full(len(walkers), self.longest)
+        moving = _Moving(at, planes, np.full(len(walkers), self.longest))
         have_arrived = np.zeros(len(walkers), dtype=bool)
         for _ in range(STEPS):
             offset = domain.difference(self.points[goals], at)
             have_arrived |= is_same_point(np.linalg.norm(offset, axis=1), domain.scale)
             along = np.einsum("kij,klj,kl->ki", planes, planes, offset)
-            distance = np.linalg.norm(along, axis=1)
-            has_missed = distance < ABOVE * self.longest
-            has_stopped = length < SHORTEST * domain.scale
+            has_missed = np.linalg.norm(along, axis=1) < ABOVE * self.longest
+            has_stopped = moving.length < SHORTEST * domain.scale
             going = np.flatnonzero(~have_arrived & ~has_missed & ~has_stopped)
             if not len(going) or deadline.passed:
                 break
-            share = np.minimum(1.0, length[going] / distance[going])
-            steps = along[going] * share[:, None]
-            ends, new_planes, is_taken = stepped(
-                self.problem, at[going], planes[going], steps
-            )
-            taken = going[is_taken]
-            at[taken], planes[taken] = ends[is_taken], new_planes[is_taken]
-            longer = np.minimum(LONGER * length[going], self.longest)
-            shorter = SHORTER * np.minimum(length[going], distance[going])
-            length[going] = np.where(is_taken, longer, shorter)
+            moving.step(self.problem, going, along[going], self.longest)
         return have_arrived
+
+
+class _Moving(NamedTuple):
+    """Walkers ``at`` solutions (w, n), with bases (w, n, d) of their tangent spaces, the
+    ``planes``, and the longest step ``length`` (w,) that each tries next."""
+
+    at: np.ndarray
+    planes: np.ndarray
+    length: np.ndarray
+
+    def step(
+        self, problem: Problem, going: np.ndarray, along: np.ndarray, longest: float
+    ) -> None:
+        """One step of the walkers that are ``going``, by their numbers (g,), ``along``
+        vectors (g, n) in their tangent spaces, or a shorter length where that fails."""
+        distance = np.linalg.norm(along, axis=1)
+        share = np.minimum(1.0, self.length[going] / distance)
+        steps = along * share[:, None]
+        at, planes = self.at[going], self.planes[going]
+        ends, new_planes, is_taken = stepped(problem, at, planes, steps)
+        taken = going[is_taken]
+        self.at[taken], self.planes[taken] = ends[is_taken], new_planes[is_taken]
+        longer = np.minimum(LONGER * self.length[going], longest)
+        shorter = SHORTER * np.minimum(self.length[going], distance)
+        self.length[going] = np.where(is_taken, longer, shorter)
