@@ -205,6 +205,8 @@ def cover_components(
         is_double = components.deflated is not None and covering.complete
         if is_double and _are_several(problem, covering):
             covering = replace(covering, outcome=Covering.UNDECIDED)
+        # where a walk is cut off, it is not known on which part samples are
+        components.part_of = np.full(len(samples), -1)
         components.charts = covering
         chart = covering.chart_at(samples)
         # also beside charts that are complete: where surfaces cross they leave slivers

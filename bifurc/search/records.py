@@ -33,9 +33,8 @@ UNEXAMINED_ELSE = "others, and where forms meet it, are not looked for"
 MOST_PARTS = 12  # of sampled components of a dimension that are listed apart
 JOINED = "walks over it join all starts on it"
 APART = "no walk led from it to others of its dimension: some of them may be one"
-MANY_PARTS = (
-    "walks join the starts on it in {count} parts: it may be so many components"
-)
+IN_PARTS = "walks join {least} starts on it, and all of them in {count} parts"
+FEW_STARTS = 4  # with fewer a part is not taken for a component of its own
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,6 +171,16 @@ class PartNotes:
         return list(filter(None, words))
 
 
+def _remark_on_parts(sizes: np.ndarray) -> str:
+    """Whether walks join the starts on a component, which are in parts of these sizes
+    (k,); nothing where there were no walks."""
+    if not len(sizes):
+        return ""
+    if len(sizes) == 1:
+        return JOINED
+    return IN_PARTS.format(count=len(sizes), least=int(sizes.max()))
+
+
 class _ChartedPart(NamedTuple):
     """A part of the charts, by its ``number``, and which of the products it lies on, by
     its index."""
@@ -275,18 +284,18 @@ class Components:
         samples = samples[is_left]
         if not len(samples):
             return []
-        count = int(parts.max()) + 1
-        if not 1 < count <= MOST_PARTS:
-            remark = MANY_PARTS.format(count=count) if count > 1 else JOINED * count
-            words = "; ".join(filter(None, [note, remark]))
+        known = parts[parts >= 0]
+        numbers, sizes = np.unique(known, return_counts=True)
+        large = numbers[sizes >= FEW_STARTS]
+        if not 1 < len(large) <= MOST_PARTS:
+            words = "; ".join(filter(None, [note, _remark_on_parts(sizes)]))
             return [Surface(dimension, samples, note=words)]
-        # singular samples may lie between parts: the largest has them
-        largest = int(np.argmax(np.bincount(parts[parts >= 0])))
-        parts = np.where(parts < 0, largest, parts)
+        # singular samples may lie between parts, and a few are no part of their own
+        largest = numbers[np.argmax(sizes)]
+        parts = np.where(np.isin(parts, large), parts, largest)
         words = "; ".join(filter(None, [note, APART]))
         return [
-            Surface(dimension, samples[parts == part], note=words)
-            for part in range(count)
+            Surface(dimension, samples[parts == part], note=words) for part in large
         ]
 
     def _charted_parts(self) -> list[_ChartedPart]:

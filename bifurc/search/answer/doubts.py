@@ -131,9 +131,7 @@ def _doubts_of_covering(surfaces: Sequence[Surface]) -> Iterator[Doubt]:
         yield SearchDoubt.CHARTS_RAN_OUT.doubt(starts=starts)
     for surface in surfaces:
         charts = surface.charts
-        if surface.factors or charts is None:
-            continue
-        if charts.outcome in COVERING_DOUBTS:
+        if charts is not None and charts.outcome in COVERING_DOUBTS:
             yield COVERING_DOUBTS[charts.outcome].doubt(surface.name)
 
 
