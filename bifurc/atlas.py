@@ -18,6 +18,7 @@ from bifurc.errors import ProblemError, RouteError
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas
+from bifurc.surfaces.factor import Factor, describe_product, product_of
 from bifurc.tables import count_of, html_paragraph, html_table
 
 # Values that JSON can hold, nested to any depth, by their names.
@@ -114,11 +115,13 @@ class Surface:
     """A component of ``dimension`` 2 or more: solutions (k, n) seen on it, and
     ``charts`` that cover it.
 
-    Without charts it may be several components of that dimension: whether they are
-    connected is not known. Where the charts of a surface are unfinished, it holds the
-    solutions from which a walk over it arrives at the charts; others may belong to it
-    as well. ``note`` says what is known of its singular points besides those in the
-    atlas.
+    Without charts or factors it may be several components of that dimension: whether
+    they are connected is not known, but for what walks between samples show. Where the
+    charts of a surface are unfinished, it holds the solutions from which a walk over it
+    arrives at the charts; others may belong to it as well. ``note`` says what is known
+    of its singular points besides those in the atlas, and of what it is joined to. With
+    ``factors`` it is their product: it is connected, and all of it is known by what
+    each of them is.
     """
 
     dimension: int
@@ -126,6 +129,7 @@ class Surface:
     name: str = ""
     charts: ChartAtlas | None = None
     note: str = ""
+    factors: tuple[Factor, ...] = ()
 
     @property
     def complete(self) -> bool:
@@ -134,17 +138,26 @@ class Surface:
 
     @property
     def is_short_of_charts(self) -> bool:
-        """Whether charts ran out before all of it was covered."""
-        return self.charts is not None and self.charts.is_short_of_charts
+        """Whether charts ran out before all of it was covered, and nothing else says what
+        it is."""
+        if self.charts is None or self.factors:
+            return False
+        return self.charts.is_short_of_charts
 
     def __repr__(self) -> str:
-        words = [f"dimension {self.dimension}", _covering(self), self.note]
+        words = [f"dimension {self.dimension}", product_of(self.factors)]
+        words += [_covering(self), self.note]
         return f"<Surface {self.name!r}: {', '.join(filter(None, words))}>"
 
 
 def samples_beyond_charts(surfaces: Sequence[Surface]) -> int:
-    """How many of the solutions seen on surfaces of dimension 2 lie in no chart."""
-    of_dimension = [surface for surface in surfaces if surface.dimension == 2]
+    """How many of the solutions seen on surfaces of dimension 2 that are no products lie
+    in no chart."""
+    of_dimension = [
+        surface
+        for surface in surfaces
+        if surface.dimension == 2 and not surface.factors
+    ]
     charted = [one.charts for one in of_dimension if one.charts is not None]
     if not of_dimension:
         return 0
@@ -316,7 +329,7 @@ class Atlas:
         unit = _common_unit(self)
         forms = [_form_row(form) for form in self.forms]
         points = [_point_row(self, point) for point in self.points]
-        surfaces = [_surface_row(surface) for surface in self.surfaces]
+        surfaces = [_surface_row(self, surface) for surface in self.surfaces]
         misses = [_miss_row(self, event) for event in self.near_misses]
         rigid = [[_configuration(point)] for point in self.rigid]
         tables = [
@@ -468,8 +481,10 @@ def _point_row(atlas: Atlas, point: MeetingPoint) -> list[str]:
     return [point.name, point.kind.value, members, rank, error, place, point.note]
 
 
-def _surface_row(surface: Surface) -> list[str]:
-    return [surface.name, str(surface.dimension), _covering(surface), surface.note]
+def _surface_row(atlas: Atlas, surface: Surface) -> list[str]:
+    product = describe_product(surface.factors, atlas.names)
+    remark = "; ".join(filter(None, [product, surface.note]))
+    return [surface.name, str(surface.dimension), _covering(surface), remark]
 
 
 def _miss_row(atlas: Atlas, event: Event) -> list[str]:

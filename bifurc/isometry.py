@@ -16,6 +16,7 @@ import numpy as np
 from bifurc.atlas import Atlas, Event, Form, MeetingPoint, NearMotion, Surface
 from bifurc.branch import Branch
 from bifurc.errors import ProblemError
+from bifurc.surfaces.factor import Factor
 from bifurc.torus import whole_turns, wrap
 
 
@@ -212,7 +213,17 @@ def _surface(surface: Surface, unknowns: Unknowns) -> Surface:
             vertices=unknowns.points(charts.vertices),
             periods=unknowns.periods,
         )
-    return replace(surface, samples=unknowns.points(surface.samples), charts=charts)
+    factors = tuple(_factor(factor, unknowns) for factor in surface.factors)
+    samples = unknowns.points(surface.samples)
+    return replace(surface, samples=samples, charts=charts, factors=factors)
+
+
+def _factor(factor: Factor, unknowns: Unknowns) -> Factor:
+    size = factor.size
+    if size is not None:
+        size *= unknowns.size**factor.dimension
+    numbers = sorted(unknowns.index(number) for number in factor.unknowns)
+    return factor._replace(unknowns=tuple(numbers), size=size)
 
 
 def _near_motion(near: NearMotion, unknowns: Unknowns) -> NearMotion:

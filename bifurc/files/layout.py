@@ -22,10 +22,11 @@ from bifurc.diagrams.diagram import (
     Stability,
     Stretch,
 )
-from bifurc.files.json_values import mapping_from_text, to_text
+from bifurc.files.json_values import from_text, mapping_from_text, to_text
 from bifurc.files.table import JOINT, NOT_KNOWN, Column, Frame, Row, Table
 from bifurc.singular.point import Invariants, Kind, SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
+from bifurc.surfaces.factor import Factor
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -82,6 +83,11 @@ def _covering_name(surface: Surface) -> str:
     return "" if surface.charts is None else surface.charts.outcome.name
 
 
+def _factors_text(surface: Surface) -> str:
+    factors = [factor._asdict() for factor in surface.factors]
+    return to_text(factors) if factors else ""
+
+
 def _outcome_name(near: NearMotion) -> str:
     return "" if near.branch is None else near.branch.outcome.name
 
@@ -110,6 +116,7 @@ VALUES: dict[str, Callable[[Any], Any]] = {
     "pass_arclength": lambda point: [s for _, s in point.passes],
     "null_vector": lambda point: point.point.null_space.T,
     "covering": _covering_name,
+    "surface_factors": _factors_text,
     "rigid_assembly": lambda assembly: assembly,
     "diagram_remark": lambda remark: remark,
 }
@@ -303,7 +310,13 @@ def _surface(row: Row, periods: np.ndarray) -> Surface:
         _check_charts(row)
         outcome = Covering[row["covering"]]
         charts = make(ChartAtlas, row, "charts", periods=periods, outcome=outcome)
-    return make(Surface, row, charts=charts)
+    return make(Surface, row, charts=charts, factors=_factors(row["surface_factors"]))
+
+
+def _factors(text: str) -> tuple[Factor, ...]:
+    """What a surface is the product of, from `_factors_text`."""
+    factors = cast(list[dict[str, Any]], from_text(text)) if text else []
+    return tuple(Factor(**values) for values in factors)
 
 
 def _check_charts(row: Row) -> None:

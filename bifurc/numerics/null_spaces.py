@@ -75,8 +75,9 @@ def null_spaces(problem: System, points: np.ndarray) -> tuple[np.ndarray, np.nda
 
 
 def tangent_planes(problem: System, points: np.ndarray, near: np.ndarray) -> np.ndarray:
-    """Orthonormal bases (k, n, 2) of the tangent planes of surfaces at solutions (k,
-    n), turned as little as possible against the bases ``near`` (k, n, 2) or (n, 2).
+    """Orthonormal bases (k, n, d) of the tangent spaces of components of dimension d at
+    solutions (k, n), turned as little as possible against the bases ``near`` (k, n, d)
+    or (n, d).
 
     Where the null space is larger, at singular points, the part of it that is nearest
     to ``near`` is taken.
@@ -87,11 +88,12 @@ def tangent_planes(problem: System, points: np.ndarray, near: np.ndarray) -> np.
 def planes_next_to(
     sigma: np.ndarray, right: np.ndarray, near: np.ndarray
 ) -> np.ndarray:
-    """`tangent_planes` (k, n, 2) from the singular values (k, n) and right singular
+    """`tangent_planes` (k, n, d) from the singular values (k, n) and right singular
     vectors (k, n, n)."""
+    dimension = near.shape[-1]
     zeros = np.count_nonzero(is_null(sigma), axis=1)
-    nullity = np.maximum(zeros, 2)
-    most = int(nullity.max(initial=2))
+    nullity = np.maximum(zeros, dimension)
+    most = int(nullity.max(initial=dimension))
     numbers = np.arange(most, 0, -1)  # of the singular values, counted from the last
     belongs = numbers <= nullity[:, None]  # (k, most)
     rows = right[:, -most:] * belongs[:, :, None]

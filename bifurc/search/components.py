@@ -36,6 +36,8 @@ from bifurc.singular.locate import LocatedPoint, locate_singular_point
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.crossing_sheets import is_on_singular_curve, sign_changes
 from bifurc.surfaces.geodesic import entrances
+from bifurc.surfaces.joined import joined_parts
+from bifurc.surfaces.products import products_among
 from bifurc.surfaces.walk import reached_charts
 from bifurc.system import relative_jacobians, relative_residuals
 
@@ -50,6 +52,8 @@ WHOLE = (Outcome.CLOSED, Outcome.LEFT_REGION)
 
 # Share of the time that is left in which charts are made; they are measured in the rest.
 GROWING = 0.35
+RECOGNISING = 0.2  # the same, to find products
+JOINING = 0.1  # and to see which samples are joined
 RADIUS = 0.7  # of the largest charts, over the problem's scale
 # Singular value, over the median on the surface, below which a singular point is looked
 # for.
@@ -158,6 +162,25 @@ def components_of_seeds(
     return components
 
 
+def recognise_products(
+    components: Components,
+    problem: Problem,
+    points: np.ndarray,
+    tracing: TraceSettings,
+    deadline: Deadline,
+) -> None:
+    """Find which of the components on which seeds ``points`` (k, n) lie are products."""
+    for dimension in components.seeds:
+        is_double = dimension == 2 and components.deflated is not None
+        if is_double or problem.domain.is_large or deadline.passed:
+            continue
+        samples = components.samples(points, dimension)
+        share = deadline.share(RECOGNISING)
+        products = products_among(problem, samples, dimension, tracing, share)
+        if products.components:
+            components.products[dimension] = products
+
+
 def cover_components(
     components: Components,
     problem: Problem,
@@ -175,6 +198,38 @@ def cover_components(
     samples = components.samples(points, 2)
     if not len(samples) or charts <= 0 or deadline.passed:
         return []
+    covering = _covered(components, problem, samples, charts, deadline)
+    if covering is None:
+        return []
+    if len(covering):
+        is_double = components.deflated is not None and covering.complete
+        if is_double and _are_several(problem, covering):
+            covering = replace(covering, outcome=Covering.UNDECIDED)
+        # where a walk is cut off, it is not known on which part samples are
+        components.part_of = np.full(len(samples), -1)
+        components.charts = covering
+        chart = covering.chart_at(samples)
+        # also beside charts that are complete: where surfaces cross they leave slivers
+        beside = chart < 0
+        regular = components.deflated or problem
+        chart[beside] = reached_charts(regular, covering, samples[beside], deadline)
+        components.part_of = np.where(chart >= 0, covering.part[chart], -1)
+        if not covering.is_finished:
+            _join_to_charts(components, regular, samples, deadline)
+        return []
+    is_known = bool(components.are_on_products(2).any())
+    return [] if deadline.passed or is_known else components.seeds.pop(2)
+
+
+def _covered(
+    components: Components,
+    problem: Problem,
+    samples: np.ndarray,
+    charts: int,
+    deadline: Deadline,
+) -> ChartAtlas | None:
+    """Charts over the surfaces on which the ``samples`` (k, n) lie, products last: there
+    they show nothing that is not known. None where there is no time."""
     # what assembles the charts at the end is imported before: an import is not cut off
     import scipy.sparse.csgraph
     import scipy.spatial  # noqa: F401
@@ -183,26 +238,49 @@ def cover_components(
 
     seconds = GROWING * deadline.left
     if not seconds:
-        return []
-    metric = _metric_of(problem)
-    outer = problem
-    if components.deflated is not None:
-        problem = components.deflated
-    covering = cover_surface(
-        problem, samples, radius=RADIUS, charts=charts, seconds=seconds, metric=metric
+        return None
+    others_first = np.argsort(components.are_on_products(2), kind="stable")
+    return cover_surface(
+        components.deflated or problem,
+        samples[others_first],
+        radius=RADIUS,
+        charts=charts,
+        seconds=seconds,
+        metric=_metric_of(problem),
     )
-    if len(covering):
-        is_double = components.deflated is not None and covering.complete
-        if is_double and _are_several(outer, covering):
-            covering = replace(covering, outcome=Covering.UNDECIDED)
-        components.charts = covering
-        chart = covering.chart_at(samples)
-        # also beside charts that are complete: where surfaces cross they leave slivers
-        beside = chart < 0
-        chart[beside] = reached_charts(problem, covering, samples[beside], deadline)
-        components.part_of = np.where(chart >= 0, covering.part[chart], -1)
-        return []
-    return [] if deadline.passed else components.seeds.pop(2)
+
+
+def _join_to_charts(
+    components: Components, problem: Problem, samples: np.ndarray, deadline: Deadline
+) -> None:
+    """Count ``samples`` (k, n) beside charts that ran out to those parts of them on
+    which others lie that they are joined to."""
+    part_of = components.part_of
+    beside = np.flatnonzero((part_of < 0) & ~components.are_on_products(2))
+    if not len(beside):
+        return
+    joined = joined_parts(problem, samples, 2, deadline.share(JOINING))
+    for number in beside[joined[beside] >= 0].tolist():
+        known = part_of[(joined == joined[number]) & (part_of >= 0)]
+        if len(known):
+            part_of[number] = np.bincount(known).argmax()
+
+
+def join_samples(
+    components: Components, problem: Problem, points: np.ndarray, deadline: Deadline
+) -> None:
+    """See which of the seeds ``points`` (k, n) are joined on components that have no
+    charts."""
+    for dimension in components.seeds:
+        is_charted = dimension == 2 and components.has_surfaces
+        if is_charted or problem.domain.is_large or deadline.passed:
+            continue
+        samples = components.samples(points, dimension)
+        left = np.flatnonzero(~components.are_on_products(dimension))
+        parts = np.full(len(samples), -1)
+        share = deadline.share(JOINING)
+        parts[left] = joined_parts(problem, samples[left], dimension, share)
+        components.joined[dimension] = parts
 
 
 def _metric_of(problem: Problem) -> np.ndarray:

@@ -17,6 +17,7 @@ from bifurc.problem import Problem
 from bifurc.search.seed_book import Fate, SeedFate
 from bifurc.singular.point import SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
+from bifurc.surfaces.products import Products
 from bifurc.tables import count_of
 
 NO_DOUBT = (False, False, 0.0)
@@ -27,6 +28,13 @@ ON_CURVES = (
 UNEXAMINED = "its singular points, and where forms meet it, are not looked for"
 # the same where curves of singular points were reached by chance
 UNEXAMINED_ELSE = "others, and where forms meet it, are not looked for"
+
+
+MOST_PARTS = 12  # of sampled components of a dimension that are listed apart
+JOINED = "walks over it join all starts on it"
+APART = "no walk led from it to others of its dimension: some of them may be one"
+IN_PARTS = "walks join {least} starts on it, and all of them in {count} parts"
+FEW_STARTS = 4  # with fewer a part is not taken for a component of its own
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +171,25 @@ class PartNotes:
         return list(filter(None, words))
 
 
+def _remark_on_parts(sizes: np.ndarray) -> str:
+    """Whether walks join the starts on a component, which are in parts of these sizes
+    (k,); nothing where there were no walks."""
+    if not len(sizes):
+        return ""
+    if len(sizes) == 1:
+        return JOINED
+    return IN_PARTS.format(count=len(sizes), least=int(sizes.max()))
+
+
+class _ChartedPart(NamedTuple):
+    """A part of the charts, by its ``number``, and which of the products it lies on, by
+    its index."""
+
+    number: int
+    charts: ChartAtlas
+    product: int | None
+
+
 @dataclass
 class Components:
     """Numbers of the seeds on components of dimension 2 and more, by dimension, and
@@ -175,7 +202,10 @@ class Components:
     ``part_of`` (k,) is the part that each seed of dimension 2 belongs to, -1 where none
     is known. The ``notes`` say what is known of the parts. ``deflated`` is the problem
     with which surfaces are corrected to along which F' has a lower rank; seeds of
-    dimension 2 lie on such surfaces then.
+    dimension 2 lie on such surfaces then. Components that are ``products``, by
+    dimension, are known without charts: all parts that lie on one of them are one.
+    Seeds of components without charts are in parts that are ``joined``, by dimension:
+    their numbers (k,), -1 where that is not known.
     """
 
     seeds: dict[int, list[int]] = field(default_factory=dict)
@@ -184,6 +214,8 @@ class Components:
     part_of: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
     notes: PartNotes = field(default_factory=PartNotes)
     deflated: Problem | None = None
+    products: dict[int, Products] = field(default_factory=dict)
+    joined: dict[int, np.ndarray] = field(default_factory=dict)
 
     @property
     def has_surfaces(self) -> bool:
@@ -216,33 +248,102 @@ class Components:
         any, although all surfaces on which charts fit are covered."""
         if self.charts is None or not self.charts.is_finished:
             return 0
-        return int(np.count_nonzero(self.part_of < 0))
+        return int(np.count_nonzero((self.part_of < 0) & ~self.are_on_products(2)))
+
+    def are_on_products(self, dimension: int) -> np.ndarray:
+        """Which seeds (k,) of a dimension lie on products."""
+        if dimension not in self.products:
+            return np.zeros(len(self.seeds.get(dimension, [])), dtype=bool)
+        return self.products[dimension].of_sample >= 0
 
     def surfaces(self, points: np.ndarray) -> tuple[Surface, ...]:
-        """Connected surfaces as far as there are charts, then what none of them is
-        known to hold, by dimension; seeds `off_charts` show no surface."""
+        """Products, other connected surfaces as far as there are charts, then what none
+        of them is known to hold, by dimension; seeds `off_charts` show no surface."""
         surfaces: list[Surface] = []
         if self.on_shaky:
             surfaces.append(Surface(2, points[self.on_shaky], note=SHAKY))
         for dimension in sorted(self.seeds):
             samples = self.samples(points, dimension)
+            is_left = ~self.are_on_products(dimension)
+            parts = self._charted_parts() if dimension == 2 else []
+            surfaces += self._product_surfaces(samples, dimension, parts)
             if dimension == 2 and self.charts is not None:
-                surfaces += self._charted_surfaces(self.charts, samples)
-                samples = samples[(self.part_of < 0) & (not self.charts.is_finished)]
-            if len(samples):
-                note = self._note_of(-1) if dimension == 2 else ""
-                surfaces.append(Surface(dimension, samples, note=note))
+                surfaces += self._charted_surfaces(samples, parts)
+                is_left &= (self.part_of < 0) & (not self.charts.is_finished)
+            surfaces += self._sampled_surfaces(samples, dimension, is_left)
         return tuple(surfaces)
 
-    def _charted_surfaces(
-        self, charts: ChartAtlas, samples: np.ndarray
+    def _sampled_surfaces(
+        self, samples: np.ndarray, dimension: int, is_left: np.ndarray
     ) -> list[Surface]:
-        """The surfaces that charts cover, with those of the samples (k, n) on them."""
+        """What those of the samples (k, n) show that are left, on nothing that is known:
+        a surface for each part in which they are joined, unless there are many."""
+        note = self._note_of(-1) if dimension == 2 else ""
+        unknown = np.full(len(samples), -1)
+        parts = self.joined.get(dimension, unknown)[is_left]
+        samples = samples[is_left]
+        if not len(samples):
+            return []
+        known = parts[parts >= 0]
+        numbers, sizes = np.unique(known, return_counts=True)
+        large = numbers[sizes >= FEW_STARTS]
+        if not 1 < len(large) <= MOST_PARTS:
+            words = "; ".join(filter(None, [note, _remark_on_parts(sizes)]))
+            return [Surface(dimension, samples, note=words)]
+        # singular samples may lie between parts, and a few are no part of their own
+        largest = numbers[np.argmax(sizes)]
+        parts = np.where(np.isin(parts, large), parts, largest)
+        words = "; ".join(filter(None, [note, APART]))
+        return [
+            Surface(dimension, samples[parts == part], note=words) for part in large
+        ]
+
+    def _charted_parts(self) -> list[_ChartedPart]:
+        """The parts of the charts, the one with most charts first."""
+        products = self.products[2].components if 2 in self.products else []
+        parts = () if self.charts is None else self.charts.parts()
+        charted = []
+        for number, part in enumerate(parts):
+            place = part.centers[:1]
+            on = (k for k, product in enumerate(products) if product.holds(place)[0])
+            charted.append(_ChartedPart(number, part, next(on, None)))
+        return charted
+
+    def _product_surfaces(
+        self, samples: np.ndarray, dimension: int, parts: Sequence[_ChartedPart]
+    ) -> list[Surface]:
+        """The products of a dimension, with those of the samples (k, n) on them, and the
+        charts that cover most of them."""
+        if dimension not in self.products:
+            return []
+        components, of_sample = self.products[dimension]
         surfaces = []
-        for k, part in enumerate(charts.parts()):
+        for number, product in enumerate(components):
+            on_it = samples[of_sample == number]
+            own = [part for part in parts if part.product == number]
+            notes = dict.fromkeys(self._note_of(part.number) for part in own)
+            surface = Surface(
+                dimension,
+                on_it if len(on_it) else product.point[None],
+                charts=own[0].charts if own else None,
+                note="; ".join(filter(None, notes)),
+                factors=product.factors,
+            )
+            surfaces.append(surface)
+        return surfaces
+
+    def _charted_surfaces(
+        self, samples: np.ndarray, parts: Sequence[_ChartedPart]
+    ) -> list[Surface]:
+        """The surfaces that charts cover, with those of the samples (k, n) on them, but
+        for products."""
+        surfaces = []
+        for k, charts, product in parts:
+            if product is not None:
+                continue
             on_part = samples[self.part_of == k]
             if not len(on_part):
-                on_part = part.centers[:1]
-            surface = Surface(2, on_part, charts=part, note=self._note_of(k))
+                on_part = charts.centers[:1]
+            surface = Surface(2, on_part, charts=charts, note=self._note_of(k))
             surfaces.append(surface)
         return surfaces

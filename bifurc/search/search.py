@@ -31,7 +31,9 @@ from bifurc.search.components import (
     components_of_seeds,
     cover_components,
     crossings_beside_curves,
+    join_samples,
     parts_through,
+    recognise_products,
     singular_curve_through,
     singular_points_of,
 )
@@ -225,14 +227,17 @@ class Search:
         """Cover the surfaces with charts, and locate singular points on them."""
         findings, deadline = self.findings, self.run.deadline
         components = findings.components
+        seeds, tracing = findings.book.seeds.points, self.settings.tracing
+        recognise_products(components, self.problem, seeds, tracing, deadline)
         refused = cover_components(
             components,
             self.problem,
-            findings.book.seeds.points,
+            seeds,
             self.settings.charts,
             deadline,
         )
         findings.book.reopen(refused)
+        join_samples(components, self.problem, seeds, deadline)
         yield []
         for point in singular_points_of(self.problem, components, deadline):
             if self.run.is_over:

@@ -1,5 +1,7 @@
-"""One surface of solutions: covered by charts, measured, walked over.
+"""One surface of solutions, or a component of more dimensions: covered by charts,
+measured, walked over, taken for a product.
 
-A problem and a solution about which solutions form a surface go in; charts that cover
-the surface come out, and shortest ways over them.
+A problem and solutions about which others form a surface go in; charts that cover the
+surface come out, shortest ways over them, the factors of products, and which of the
+solutions are joined.
 """

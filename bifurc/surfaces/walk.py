@@ -115,18 +115,27 @@ class _Walk:
         share = np.minimum(1.0, longest / (distance + 1e-300))
         step = direction * share[:, None]
 
-        ends, gaps = correct_normal(self.problem, at + step, planes)
-        new_planes = tangent_planes(self.problem, ends, planes)
-        is_flat = cosines_between_planes(planes, new_planes)[:, -1] > SMOOTH
-        is_near = _is_near(ends - at - step, step)
-        is_inside = self.problem.domain.are_inside(ends)
-        is_taken = (gaps < SOLVED) & is_inside & is_flat & is_near
+        ends, new_planes, is_taken = stepped(self.problem, at, planes, step)
         self.at[walkers[is_taken]] = ends[is_taken]
         self.planes[walkers[is_taken]] = new_planes[is_taken]
         longer = np.minimum(LONGER * self.length[walkers], self.longest)
         self.length[walkers] = np.where(is_taken, longer, SHORTER * longest)
         is_above_goal = distance < ABOVE_GOAL * self.charts.radii[goal]
         self.length[walkers[is_above_goal]] = 0.0
+
+
+def stepped(
+    problem: Problem, at: np.ndarray, planes: np.ndarray, steps: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The ends (k, n) of ``steps`` (k, n) in the tangent spaces ``planes`` (k, n, d) of
+    solutions ``at`` (k, n), corrected, with the tangent spaces there, and which of them
+    (k,) stay on the sheet and inside the region."""
+    ends, gaps = correct_normal(problem, at + steps, planes)
+    new_planes = tangent_planes(problem, ends, planes)
+    is_flat = cosines_between_planes(planes, new_planes)[:, -1] > SMOOTH
+    is_near = _is_near(ends - at - steps, steps)
+    is_inside = problem.domain.are_inside(ends)
+    return ends, new_planes, (gaps < SOLVED) & is_inside & is_flat & is_near
 
 
 def _is_near(heights: np.ndarray, steps: np.ndarray) -> np.ndarray:

@@ -7,11 +7,12 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from bifurc.atlas import Atlas, Form, MeetingPoint
+from bifurc.atlas import Atlas, Form, MeetingPoint, Surface
 from bifurc.completeness import completeness_document
 from bifurc.files.layout import records_of
 from bifurc.release import installed_version
 from bifurc.singular.point import Invariants, Kind
+from bifurc.surfaces.factor import values_of
 from bifurc.systems.verdict import verdict_of
 
 Json: TypeAlias = Any  # a value that JSON can hold
@@ -22,7 +23,7 @@ def make_document(atlas: Atlas) -> dict[str, Json]:
     key holds."""
     provenance = atlas.provenance
     of_forms = [_of_form(atlas, form) for form in atlas.forms]
-    of_surfaces = [{"complete": surface.complete} for surface in atlas.surfaces]
+    of_surfaces = [_of_surface(atlas, surface) for surface in atlas.surfaces]
     of_points = [_of_point(atlas, point) for point in atlas.points]
     return {
         "name": str(atlas.subject.get("name", "")),
@@ -72,6 +73,11 @@ def _of_form(atlas: Atlas, form: Form) -> dict[str, Json]:
         "certificate": None if certificate is None else certificate.status.value,
         "rims": list(form.labels.get("rims", ())),
     }
+
+
+def _of_surface(atlas: Atlas, surface: Surface) -> dict[str, Json]:
+    factors = values_of(surface.factors, atlas.names)
+    return {"complete": surface.complete, "factors": factors}
 
 
 def _of_point(atlas: Atlas, point: MeetingPoint) -> dict[str, Json]:

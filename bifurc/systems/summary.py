@@ -12,6 +12,7 @@ from bifurc.atlas import Atlas, Form, MeetingPoint
 from bifurc.branch import Branch, Outcome
 from bifurc.diagrams.diagram import Diagram
 from bifurc.singular.point import Kind
+from bifurc.surfaces.factor import describe_product
 from bifurc.systems.verdict import verdict_of
 from bifurc.tables import distinct_heads, section
 
@@ -133,7 +134,9 @@ def _surfaces(atlas: Atlas) -> str:
         count, area = NONE, NONE
         if charts is not None:
             count, area = str(len(charts)), charts.area_words
-        rows.append((surface.name, str(surface.dimension), count, area, surface.note))
+        product = describe_product(surface.factors, atlas.names)
+        remark = "; ".join(filter(None, [product, surface.note]))
+        rows.append((surface.name, str(surface.dimension), count, area, remark))
     heads = ("name", "dimension", "charts", "area", "remark")
     return section("Surfaces", heads, rows, SHOWN)
 

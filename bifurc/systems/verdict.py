@@ -6,6 +6,7 @@ from bifurc.atlas import Atlas, samples_beyond_charts
 from bifurc.completeness import Level
 from bifurc.decisions import closes_to_rounding
 from bifurc.singular.point import Kind
+from bifurc.surfaces.factor import words_of_products
 from bifurc.tables import count_of
 
 
@@ -70,4 +71,6 @@ def _counts(atlas: Atlas) -> str:
     words = f"{forms} in {components}, {bifurcations}"
     if atlas.surfaces:
         words += f", {count_of(len(atlas.surfaces), 'surface')}"
+        products = words_of_products([surface.factors for surface in atlas.surfaces])
+        words += products and f", {products}"
     return words

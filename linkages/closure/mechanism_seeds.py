@@ -12,7 +12,7 @@ import numpy as np
 from bifurc.branch import Branch
 from bifurc.decisions import is_start_solved
 from bifurc.equations.system import ScaledTape
-from bifurc.limits import Deadline, current_deadline, until
+from bifurc.limits import Deadline, current_deadline, made_in_time, until
 from bifurc.problem import Problem
 from bifurc.seeding import random_seeds, start_region
 from bifurc.seeds import Audit, Seeds
@@ -24,7 +24,9 @@ from linkages.structure.structure import Structure
 from linkages.turns import whole_turns
 from linkages.turns.whole_turns import TurnedEnds
 
-DRAWING, BRINGING = 0.25, 0.1  # of the time that is left, for random starts
+# Of the time that is left, for random starts, to bring them within limits, and for each
+# source: what random starts reach is not to be lost over it.
+DRAWING, BRINGING, JUDGING = 0.25, 0.1, 0.3
 MOST_BEYOND = 60  # solutions beyond the limits that are brought back to them
 
 
@@ -72,7 +74,7 @@ def mechanism_seeds(
     with until(share):
         drawn = _drawn(problem, rng, count, share)
     lattice = problem.lattice
-    judge = _judge(problem, rng, count)
+    judge = _judge(problem, rng, count, deadline)
     starts = problem.reference[None]
     if judge is not None:
         starts = np.concatenate([starts, judge.starts])
@@ -96,11 +98,14 @@ def mechanism_seeds(
 
 
 def _judge(
-    problem: ClosureSystem, rng: np.random.Generator, count: int
+    problem: ClosureSystem, rng: np.random.Generator, count: int, deadline: Deadline
 ) -> Source | None:
-    """The first of the sources that applies to the mechanism; None where none does."""
+    """The first of the sources that applies to the mechanism, and is made in a share of
+    the time before a ``deadline``; None where none is."""
     for for_subject in SOURCES:
-        source = for_subject(problem, problem.structure, rng, count)
+        make = partial(for_subject, problem, problem.structure, rng, count)
+        with until(deadline.share(JUDGING)):
+            source = made_in_time(make)
         if source is not None:
             return source
     return None

@@ -15,6 +15,7 @@ from bifurc.completeness import completeness_document
 from bifurc.decisions import is_tied
 from bifurc.release import installed_version
 from bifurc.singular.point import Kind
+from bifurc.surfaces.factor import values_of
 from linkages.app.answer.verdict import is_without_gaps
 from linkages.app.texts.configurations import numbers_at
 from linkages.labels import FormLabels
@@ -132,6 +133,7 @@ def _surface(atlas: Atlas, index: int) -> Document:
         "component": atlas.components + index,
         "certificate": None,
         "note": surface.note,
+        "factors": values_of(surface.factors, atlas.names),
     }
 
 

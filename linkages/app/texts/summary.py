@@ -14,6 +14,7 @@ from bifurc.atlas import Atlas, MeetingPoint, Surface
 from bifurc.branch import Branch, Outcome
 from bifurc.completeness import Completeness, Level, Scope
 from bifurc.singular.point import Kind
+from bifurc.surfaces.factor import describe_product
 from bifurc.tables import count_of, section, section_of
 from linkages.app.answer.verdict import judge
 from linkages.app.texts.configurations import (
@@ -266,16 +267,19 @@ def _surfaces(atlas: Atlas) -> str:
     if set(atlas.units) != {"rad"}:
         unit = f"squares of {arclength_unit(atlas).name}"
     heads = ("name", "dimension", "charts", f"area ({unit})", "covering", "remark")
-    return section("Surfaces", heads, [_surface_row(s) for s in atlas.surfaces])
+    return section("Surfaces", heads, [_surface_row(atlas, s) for s in atlas.surfaces])
 
 
-def _surface_row(surface: Surface) -> tuple[str, ...]:
+def _surface_row(atlas: Atlas, surface: Surface) -> tuple[str, ...]:
     name, dimension = surface.name, str(surface.dimension)
     charts = surface.charts
+    product = describe_product(surface.factors, atlas.names)
+    remark = "; ".join(filter(None, [product, surface.note]))
     if charts is None:
-        return (name, dimension, "-", "-", "none: only sampled", surface.note)
+        covering = "not needed" if product else "none: only sampled"
+        return (name, dimension, "-", "-", covering, remark)
     count, area = str(len(charts)), charts.area_words
-    return (name, dimension, count, area, charts.outcome.value, surface.note)
+    return (name, dimension, count, area, charts.outcome.value, remark)
 
 
 def _point_records(atlas: Atlas, title: str) -> list[dict[str, str]]:

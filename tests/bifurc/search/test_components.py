@@ -161,6 +161,10 @@ def test_charts_that_do_not_fit_together_are_a_doubt(
 def test_seeds_that_come_to_no_chart_are_no_surface_but_a_doubt(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    def nothing(*_: object) -> None:
+        """No product is recognised."""
+
+    monkeypatch.setattr("bifurc.search.search.recognise_products", nothing)
     monkeypatch.setattr("bifurc.surfaces.walk.WALKS", 0)
     atlas = explore(cylinder_and_plane(), seed=0)
     assert all(surface.complete for surface in atlas.surfaces)

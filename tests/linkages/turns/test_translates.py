@@ -117,13 +117,35 @@ def loop_of_screws(pitches, seed):
     return Mechanism(tuple(joints))
 
 
+def assemblies_of_opposite_screws(seed):
+    """How many there are with equal and opposite pitches next to each other: both turn
+    by one angle, and the last link, of fixed length, closes the loop."""
+    joints = loop_of_screws((0.3, -0.3, 0, 0), seed).joints
+    places = np.array([complex(*joint.point[:2]) for joint in joints])
+    one, two, three, last = np.roll(places, -1) - places
+    open_loop = np.array([last, one, two])  # of the turn z: last + one z + two z^2
+    polynomial = np.convolve(open_loop, np.conj(open_loop[::-1]))
+    polynomial[2] -= abs(three) ** 2
+    roots = np.roots(polynomial[::-1])
+    return np.count_nonzero(np.abs(np.abs(roots) - 1) < 1e-6)
+
+
 # equal advances cancel: the body between the revolute joints moves along a circle, and
-# a circle meets another one twice; or three turns that add up to none leave a triangle
-@pytest.mark.parametrize("pitches", [(0.3, 0.3, 0, 0), (0.3, 0.3, 0.3, 0)])
+# a circle meets another one twice; of screws across, one turn is as much a rational
+# function of the other of degree one; or three turns that add up to none leave a triangle
+@pytest.mark.parametrize(
+    "pitches", [(0.3, 0.3, 0, 0), (0.3, 0, 0.3, 0), (0.3, 0.3, 0.3, 0)]
+)
 @pytest.mark.parametrize("seed", [0, 1, 5])
 def test_assemblies_beside_near_motions_are_listed_once(pitches, seed):
     atlas = map_of(loop_of_screws(pitches, seed))
     assert len(atlas.rigid) == 2
+
+
+@pytest.mark.parametrize("seed", [0, 1, 5])
+def test_assemblies_of_opposite_screws_are_those_of_a_polynomial(seed):
+    atlas = map_of(loop_of_screws((0.3, -0.3, 0, 0), seed))
+    assert len(atlas.rigid) == assemblies_of_opposite_screws(seed)
 
 
 def lattice(shifts, high):
