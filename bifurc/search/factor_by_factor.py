@@ -540,7 +540,7 @@ class _Union:
             Scope.MOTIONS,
             levels[worst],
             factors=sum(len(part.numbers) for part in self.parts) + self.left,
-            least="; ".join(claim.text for claim in known[worst].claims),
+            weakest="; ".join(claim.text for claim in known[worst].claims),
         )
 
     def _doubts(

@@ -30,7 +30,7 @@ from linkages.dyads.plan import Plan, make_plan
 from linkages.dyads.space import SpaceGeometry
 from linkages.statements import LinkageClaim, random_assemblies
 from linkages.structure.plane import normal_of_plane
-from linkages.structure.structure import Structure
+from linkages.structure.structure import Structure, Unknown
 
 SLICES = 36  # of a driver's period, or of its limits
 MOST_DRIVERS = 4
@@ -120,32 +120,38 @@ class DyadSlices:
         return f"on which {', or '.join(parts)}"
 
 
+def built_at_once(
+    problem: Problem, structure: Structure, rng: np.random.Generator, count: int
+) -> DyadSlices | None:
+    """All assemblies of the mechanism of a ``structure`` that nothing moves; None where
+    dyads and larger groups in a plane do not build it."""
+    geometry = _geometry(structure)
+    if geometry is None or follows_many_turns(structure):
+        return None
+    plan = make_plan(structure.mechanism, (), with_groups=True)
+    try:
+        return None if plan is None else _built(Builder(structure, geometry, plan))
+    except TooManyError:
+        return None
+
+
 def for_subject(
     problem: Problem, structure: Structure, rng: np.random.Generator, count: int
 ) -> DyadSlices | None:
     """Slices of the mechanism of a ``structure`` at evenly spaced values, the first one
     drawn, of a few of its variables; None where dyads do not build it, or build too
     many configurations."""
+    geometry = _geometry(structure)
+    if geometry is None or follows_many_turns(structure):
+        return None
+    if make_plan(structure.mechanism, ()) is not None:
+        return None
     try:
-        return _slice_by_dyads(structure, rng)
+        slices = _slices_of_dyads(structure, geometry, rng)
+        if not slices and isinstance(geometry, PlaneGeometry):
+            slices = _slices_of_groups(structure, geometry, rng)
     except TooManyError:
         return None
-
-
-def _slice_by_dyads(
-    structure: Structure, rng: np.random.Generator
-) -> DyadSlices | None:
-    geometry = _geometry(structure)
-    if geometry is None or _follows_many_turns(structure):
-        return None
-    still = make_plan(structure.mechanism, (), with_groups=True)
-    if still is not None:
-        built = _built_at_once(Builder(structure, geometry, still))
-        if built is not None or not still.has_groups:
-            return built
-    slices = _slices_of_dyads(structure, geometry, rng)
-    if not slices and isinstance(geometry, PlaneGeometry):
-        slices = _slices_of_groups(structure, geometry, rng)
     return _joined(structure, slices) if slices else None
 
 
@@ -165,7 +171,7 @@ def _joined(structure: Structure, slices: Mapping[int, _Slice]) -> DyadSlices:
     )
 
 
-def _built_at_once(builder: Builder) -> DyadSlices | None:
+def _built(builder: Builder) -> DyadSlices | None:
     """The assemblies of what nothing moves; None where it is not known that they are
     all."""
     try:
@@ -200,7 +206,7 @@ def _geometry(structure: Structure) -> Geometry | None:
     return SpaceGeometry(structure.unit)
 
 
-def _follows_many_turns(structure: Structure) -> bool:
+def follows_many_turns(structure: Structure) -> bool:
     """Whether something follows an angle that may turn by more than a full turn within
     its limits: it is elsewhere after each."""
     columns = list(structure.column_of.values())
@@ -277,19 +283,26 @@ def _that_move(
     return ()
 
 
-def _slice(builder: Builder, number: int, rng: np.random.Generator) -> _Slice | None:
-    """That of an unknown, by number; None where it is not known that it has all
-    configurations."""
-    structure = builder.structure
-    unknown = structure.unknowns[number]
+def slice_places(
+    unknown: Unknown, rng: np.random.Generator, count: int = SLICES
+) -> tuple[np.ndarray, float]:
+    """The values (k,) of an unknown at which so many slices are, and how far apart they
+    are."""
     low, high = unknown.low, unknown.high
     if np.isfinite(unknown.period):
         low, high = 0.0, unknown.period
     elif unknown.is_angle:
-        # what is a turn away is the same for dyads
+        # what is a turn away is the same
         high = min(high, low + TURN)
-    step = (high - low) / SLICES
-    places = low + step * (np.arange(SLICES) + rng.uniform())
+    step = (high - low) / count
+    return low + step * (np.arange(count) + rng.uniform()), step
+
+
+def _slice(builder: Builder, number: int, rng: np.random.Generator) -> _Slice | None:
+    """That of an unknown, by number; None where it is not known that it has all
+    configurations."""
+    structure = builder.structure
+    places, step = slice_places(structure.unknowns[number], rng)
     try:
         points = _points_at(builder, number, places)
         count = builder.generic_count()
@@ -328,13 +341,13 @@ def _points_at(
             point = builder.unknowns(poses)
             if driver is not None:
                 point[driver] = place
-            points += _within_limits(builder.structure, point)
+            points += within_limits(builder.structure, point)
             if len(points) > MOST_POINTS:
                 raise TooManyError
     return np.array(points).reshape(-1, len(builder.structure.unknowns))
 
 
-def _within_limits(structure: Structure, point: np.ndarray) -> list[np.ndarray]:
+def within_limits(structure: Structure, point: np.ndarray) -> list[np.ndarray]:
     """The configurations (n,) within the limits that are ``point`` (n,) but for whole
     turns of limited angles, somewhat more of them than are wanted at most."""
     turning, turns = [], []

@@ -14,7 +14,7 @@ from linkages.dyads.group import (
     all_assemblies,
     generic_solutions,
 )
-from linkages.dyads.slices import for_subject
+from linkages.dyads.slices import built_at_once, for_subject
 from linkages.files.bars import read_bars
 from linkages.mapping import map_linkage
 from linkages.structure.structure import Structure
@@ -186,7 +186,8 @@ def random_framework(rng, points):
 
 def built(mechanism):
     structure = Structure(mechanism)
-    return for_subject(None, structure, np.random.default_rng(0), 0)
+    given = None, structure, np.random.default_rng(0), 0
+    return built_at_once(*given) or for_subject(*given)
 
 
 def test_the_answer_says_how_many_of_the_complex_assemblies_are_real():

@@ -13,11 +13,12 @@ from bifurc.system import relative_gaps
 from linkages.closure.closure import Closure
 from linkages.dyads import slices as slices_module
 from linkages.dyads.geometry import Pivot, PlaneGeometry
-from linkages.dyads.slices import SLICES, for_subject
+from linkages.dyads.slices import SLICES, built_at_once, for_subject
 from linkages.files.arcs import read_arcs
 from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
+from linkages.modules import slices as modules_module
 from linkages.statements import LinkageClaim
 from linkages.structure.structure import Structure
 from tests.linkages.mechanisms.known_mechanisms import (
@@ -80,7 +81,8 @@ def sliced(mechanism):
 
 def sliced_structure(structure):
     problem = Closure(structure.mechanism)
-    return for_subject(problem, structure, np.random.default_rng(0), 0)
+    given = problem, structure, np.random.default_rng(0), 0
+    return built_at_once(*given) or for_subject(*given)
 
 
 @pytest.mark.parametrize("name", BUILT)
@@ -163,6 +165,7 @@ def test_eight_bars_of_larger_groups_have_the_forms_of_many_random_starts(
     assert found.completeness.level is Level.CERTIFIED
     assert sliced(mechanism).counts == EIGHT_BARS[seed]
     monkeypatch.setattr(slices_module, "_slices_of_groups", lambda *_: {})
+    monkeypatch.setattr(modules_module, "MOST_UNKNOWNS", 0)
     settings = SearchSettings(starts=4000, certify=False)
     dense = map_linkage(mechanism, settings=settings)
     assert dense.completeness.level is Level.ESTIMATED
