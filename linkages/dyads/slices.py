@@ -20,17 +20,19 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.completeness import Claim, Level, Scope
+from bifurc.decisions import is_singular_path_end
 from bifurc.problem import Problem
 from bifurc.seeds import Audit
 from linkages.dyads.build import Builder, Geometry, TooManyError
+from linkages.dyads.generic import UnfollowedError
 from linkages.dyads.geometry import DegenerateDyadError, PlaneGeometry
-from linkages.dyads.group import UnfollowedError
 from linkages.dyads.pinned import GenericCount, are_held_by_pins
 from linkages.dyads.plan import Plan, make_plan
 from linkages.dyads.space import SpaceGeometry
 from linkages.statements import LinkageClaim, random_assemblies
+from linkages.structure.placement import Placement
 from linkages.structure.plane import normal_of_plane
-from linkages.structure.structure import Structure, Unknown
+from linkages.structure.structure import Structure
 
 SLICES = 36  # of a driver's period, or of its limits
 MOST_DRIVERS = 4
@@ -129,8 +131,10 @@ def built_at_once(
     if geometry is None or follows_many_turns(structure):
         return None
     plan = make_plan(structure.mechanism, (), with_groups=True)
+    if plan is None or (plan.has_groups and not stands(problem, structure)):
+        return None
     try:
-        return None if plan is None else _built(Builder(structure, geometry, plan))
+        return _built(Builder(structure, geometry, plan))
     except TooManyError:
         return None
 
@@ -148,7 +152,7 @@ def for_subject(
         return None
     try:
         slices = _slices_of_dyads(structure, geometry, rng)
-        if not slices and isinstance(geometry, PlaneGeometry):
+        if not slices and geometry.has_pins:
             slices = _slices_of_groups(structure, geometry, rng)
     except TooManyError:
         return None
@@ -193,8 +197,8 @@ def _built(builder: Builder) -> DyadSlices | None:
 
 
 def _geometry(structure: Structure) -> Geometry | None:
-    """That of the plane in which all moves, else that of turns in space; None where
-    other joints move, too."""
+    """That of the plane in which all moves, else that of turns in space, or on a
+    sphere; None where other joints move, too."""
     mechanism = structure.mechanism
     normal = normal_of_plane(mechanism)
     if normal is not None:
@@ -203,7 +207,23 @@ def _geometry(structure: Structure) -> Geometry | None:
     is_free = any(pair.center is not None for pair in mechanism.pairs)
     if is_free or any(not one.is_turn or one.advance for one in motions):
         return None
-    return SpaceGeometry(structure.unit)
+    given = [one.motion for one in mechanism.variables if one.locked != 0.0]
+    placement = Placement.of_chain(given, structure.unit)
+    is_on_sphere = placement.is_spherical and all(one.is_turn for one in given)
+    return SpaceGeometry(structure.unit, placement.origin if is_on_sphere else None)
+
+
+def stands(problem: Problem, structure: Structure) -> bool:
+    """Whether nothing moves about the closed configuration next to the reference, not
+    even to first order: else paths would end there at a singular one."""
+    points, _ = problem.project(structure.reference[None])
+    (matrix,) = problem.jacobians(points)
+    sizes = np.linalg.norm(matrix, axis=1, keepdims=True)
+    rows = matrix / np.where(sizes > 0.0, sizes, 1.0)
+    values = np.linalg.svd(rows, compute_uv=False)
+    if len(values) < problem.n:
+        return False
+    return not is_singular_path_end(float(values[-1] / values[0]))
 
 
 def follows_many_turns(structure: Structure) -> bool:
@@ -241,14 +261,14 @@ def _slices_of_dyads(
 
 
 def _slices_of_groups(
-    structure: Structure, geometry: PlaneGeometry, rng: np.random.Generator
+    structure: Structure, geometry: Geometry, rng: np.random.Generator
 ) -> dict[int, _Slice]:
     """The slices of a few unknowns, by number, from which larger groups build the
     mechanism, and of which one moves on every motion; none where that is not known."""
     plans: dict[int, Plan] = {}
     for number, unknown in enumerate(structure.unknowns[:MOST_TRIED]):
         plan = make_plan(structure.mechanism, (unknown.variable,), with_groups=True)
-        if plan is not None and are_held_by_pins(plan):
+        if plan is not None and are_held_by_pins(plan, geometry.is_spherical):
             plans[number] = plan
     slices: dict[int, _Slice] = {}
     while drivers := _that_move(structure, geometry, plans):
@@ -265,7 +285,7 @@ def _slices_of_groups(
 
 
 def _that_move(
-    structure: Structure, geometry: PlaneGeometry, plans: Mapping[int, Plan]
+    structure: Structure, geometry: Geometry, plans: Mapping[int, Plan]
 ) -> tuple[int, ...]:
     """The unknowns, of those with ``plans`` with the least groups, of which one moves
     on every motion: where they stand still, dyads build all. None where there are not
@@ -283,26 +303,19 @@ def _that_move(
     return ()
 
 
-def slice_places(
-    unknown: Unknown, rng: np.random.Generator, count: int = SLICES
-) -> tuple[np.ndarray, float]:
-    """The values (k,) of an unknown at which so many slices are, and how far apart they
-    are."""
-    low, high = unknown.low, unknown.high
-    if np.isfinite(unknown.period):
-        low, high = 0.0, unknown.period
-    elif unknown.is_angle:
-        # what is a turn away is the same
-        high = min(high, low + TURN)
-    step = (high - low) / count
-    return low + step * (np.arange(count) + rng.uniform()), step
-
-
 def _slice(builder: Builder, number: int, rng: np.random.Generator) -> _Slice | None:
     """That of an unknown, by number; None where it is not known that it has all
     configurations."""
     structure = builder.structure
-    places, step = slice_places(structure.unknowns[number], rng)
+    unknown = structure.unknowns[number]
+    low, high = unknown.low, unknown.high
+    if np.isfinite(unknown.period):
+        low, high = 0.0, unknown.period
+    elif unknown.is_angle:
+        # what is a turn away is the same for dyads
+        high = min(high, low + TURN)
+    step = (high - low) / SLICES
+    places = low + step * (np.arange(SLICES) + rng.uniform())
     try:
         points = _points_at(builder, number, places)
         count = builder.generic_count()

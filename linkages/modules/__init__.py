@@ -1,7 +1,6 @@
-"""Modules of a mechanism: all configurations at given values of some unknowns.
+"""Mechanisms of any joints that nothing moves: all of their assemblies.
 
 A structure goes in; its closures come out as a family of polynomial equations in which
-the geometry is a parameter. A generic member has a number of complex solutions that
-monodromy finds and a trace test counts, and paths lead from these to all isolated
-configurations of the given mechanism.
+the geometry is a parameter. Paths lead from the solutions of a generic member to all
+isolated configurations of the given mechanism.
 """

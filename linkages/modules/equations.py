@@ -15,18 +15,21 @@ tangent of its half, and a rotation is that of a quaternion of any length.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain
-from typing import Any, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 
 from bifurc.equations.recorded import RecordedNumber
 from bifurc.paths.family import Family
+from bifurc.paths.monodromy import Projection
 from linkages.decisions import meets_in_one_point
+from linkages.dyads.generic import RealFamily
 from linkages.mechanisms.joint import Motion
+from linkages.mechanisms.mechanism import Variable
 from linkages.structure.cycles import Step
 from linkages.structure.placement import Placement
 from linkages.structure.structure import Closure, ClosureKind, Structure
@@ -40,6 +43,13 @@ X_AXIS, Y_AXIS, ORIGIN = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
 OF_SINES = -0.5j  # the sine of x is this times exp(i x) - exp(-i x)
 FREEDOMS = {ClosureKind.CYCLE: 6, ClosureKind.POINT: 3, ClosureKind.ROD: 1}
 OF_PLANE = {ClosureKind.CYCLE: 3, ClosureKind.POINT: 2, ClosureKind.ROD: 1}
+# Complex ones of a generic member that are looked for. Types with more of them are at
+# hand, or are not followed.
+MOST_SOLUTIONS = 48
+# Imaginary parts of the numbers of generic members that are tried, one after the other.
+# Along a chain of displacements products of numbers that are far from real become large;
+# from numbers that are nearly real paths pass near singular members.
+IMAGINARY = (0.5, 0.4, 0.6, 0.3)
 OF_SPHERE = {ClosureKind.CYCLE: 3, ClosureKind.POINT: 2, ClosureKind.ROD: 1}
 
 
@@ -73,17 +83,17 @@ class Places:
         return len(self.vectors) - 1
 
 
-class ClosureFamily:
-    """The closures of a ``structure`` while the unknowns ``held``, by number, are
-    given.
+class ClosureFamily(RealFamily):
+    """The closures of a ``structure``.
 
     Raises `ValueError` where they are more or fewer than the other unknowns, and for
     what is no polynomial: helical joints, ratios of coupled turns other than 1 and -1.
     """
 
-    def __init__(self, structure: Structure, held: Sequence[int] = ()):
+    most: ClassVar[int] = MOST_SOLUTIONS
+
+    def __init__(self, structure: Structure):
         self.structure = structure
-        self.held = tuple(held)
         self.placement = self._placement()
         self._require_square()
         _require_polynomials(structure)
@@ -117,7 +127,7 @@ class ClosureFamily:
     def _require_square(self) -> None:
         """Raises `ValueError` where the closures determine more or fewer unknowns than
         there are."""
-        unknowns = len(self.free) - 3 * len(self.structure.embedded)
+        unknowns = len(self.structure.unknowns) - 3 * len(self.structure.embedded)
         equations = sum(map(self.freedoms, self.structure.closures))
         if unknowns != equations:
             raise ValueError("it moves, or more holds it than has to")
@@ -125,50 +135,42 @@ class ClosureFamily:
     # --- unknowns ---------------------------------------------------------------------
 
     @cached_property
-    def free(self) -> list[int]:
-        """The unknowns, by number, that are not held."""
-        count = len(self.structure.unknowns)
-        return [number for number in range(count) if number not in self.held]
-
-    @cached_property
-    def columns(self) -> dict[int, slice]:
-        """The coordinates of every free unknown x: exp(i x) and exp(-i x) of an
-        angle."""
-        columns, first = {}, 0
-        for number in self.free:
-            size = 2 if self.structure.unknowns[number].is_angle else 1
-            columns[number] = slice(first, first + size)
+    def columns(self) -> list[slice]:
+        """The coordinates of every unknown x: exp(i x) and exp(-i x) of an angle."""
+        columns, first = [], 0
+        for unknown in self.structure.unknowns:
+            size = 2 if unknown.is_angle else 1
+            columns.append(slice(first, first + size))
             first += size
         return columns
 
     @property
     def n(self) -> int:
         """The number of coordinates."""
-        return max((one.stop for one in self.columns.values()), default=0)
+        return sum(2 if one.is_angle else 1 for one in self.structure.unknowns)
 
     def conjugates(self, coordinates: np.ndarray) -> np.ndarray:
         """The coordinates (k, c) of the complex conjugate configurations."""
         order = np.arange(self.n)
-        for number, place in self.columns.items():
-            if self.structure.unknowns[number].is_angle:
+        for unknown, place in zip(self.structure.unknowns, self.columns, strict=True):
+            if unknown.is_angle:
                 order[place] = order[place][::-1]
         conjugates: np.ndarray = coordinates[:, order].conj()
         return conjugates
 
     def points(self, coordinates: np.ndarray) -> np.ndarray:
         """The unknowns (k, n) of the structure at coordinates (k, c) of real
-        configurations; those that are held are 0."""
+        configurations."""
         points = np.zeros((len(coordinates), len(self.structure.unknowns)))
-        for number, place in self.columns.items():
-            own = coordinates[:, place.start]
-            is_angle = self.structure.unknowns[number].is_angle
-            points[:, number] = np.angle(own) if is_angle else own.real
+        for number, unknown in enumerate(self.structure.unknowns):
+            own = coordinates[:, self.columns[number].start]
+            points[:, number] = np.angle(own) if unknown.is_angle else own.real
         return points
 
     # --- parameters -------------------------------------------------------------------
 
     def _parameters(self) -> Parameters:
-        """Those of the structure, with 0 in the place of what is held."""
+        """Those of the structure."""
         structure, placement = self.structure, self.placement
         parameters = Parameters()
         self._number_geometry()
@@ -179,24 +181,22 @@ class ClosureFamily:
             parameters.add("point", k, point[: 2 if placement.is_planar else 3])
         for pair, free in structure.point_pairs.items():
             parameters.add("shift", pair, (free.directions @ placement.axes.T).ravel())
-        self._add_held(parameters)
+        for number, variable in enumerate(structure.mechanism.variables):
+            if variable.locked:
+                parameters.add("locked", number, self._locked(variable))
         for k, closure in enumerate(structure.closures):
             if closure.rod is not None and closure.rod.leg is not None:
                 parameters.add("leg", k, [closure.rod.length / structure.unit])
             parameters.add("target", k, self._given_target(closure))
         return parameters
 
-    def _add_held(self, parameters: Parameters) -> None:
-        """Add what is locked, and what is held."""
-        structure = self.structure
-        for number, variable in enumerate(structure.mechanism.variables):
-            if variable.locked:
-                is_turn = variable.motion.is_turn
-                value = variable.locked / (1.0 if is_turn else structure.unit)
-                parameters.add("locked", number, _held(value, is_turn))
-        for number in self.held:
-            is_angle = structure.unknowns[number].is_angle
-            parameters.add("held", number, _held(0.0, is_angle))
+    def _locked(self, variable: Variable) -> list[float]:
+        """The parameters of what is locked: cosine and sine of half an angle, or a
+        length."""
+        value = variable.locked or 0.0
+        if variable.motion.is_turn:
+            return [np.cos(0.5 * value), np.sin(0.5 * value)]
+        return [value / self.structure.unit]
 
     def _given_target(self, closure: Closure) -> Sequence[float]:
         """Where the chain of a closure has to lead."""
@@ -287,14 +287,15 @@ class ClosureFamily:
         are_fixed[self.parameters.blocks["of sines", 0]] = True
         return are_fixed
 
-    def member(self, values: Mapping[int, float]) -> np.ndarray:
-        """The parameters (q,) of the structure with the held unknowns, by number, at
-        these values."""
-        member = np.array(self.parameters.given, dtype=complex)
-        for number, value in values.items():
-            is_angle = self.structure.unknowns[number].is_angle
-            member[self.parameters.blocks["held", number]] = _held(value, is_angle)
-        return member
+    @property
+    def given(self) -> np.ndarray:
+        """The parameters (q,) of the structure."""
+        return np.array(self.parameters.given, dtype=complex)
+
+    @cached_property
+    def projection(self) -> Projection:
+        """The targets vary, and one unknown is looked at."""
+        return Projection(self.are_targets, tuple(self.columns))
 
     # --- equations --------------------------------------------------------------------
 
@@ -315,22 +316,17 @@ class ClosureFamily:
             if isinstance(one, RecordedNumber) and one.writer.value(one.slot) is None
         ]
 
-    def generic_parameters(
-        self, rng: np.random.Generator, imaginary: float
-    ) -> np.ndarray:
-        """Random parameters (q,) with imaginary parts of about this size."""
-        drawn = _generic(rng, len(self.parameters.given), imaginary)
-        return np.where(self.are_fixed, np.array(self.parameters.given), drawn)
-
     def generic_member(
-        self, rng: np.random.Generator, imaginary: float
+        self, rng: np.random.Generator, attempt: int
     ) -> tuple[np.ndarray, np.ndarray]:
         """A random solution (n,), and the parameters (q,) of the member that it is of,
-        all with imaginary parts of about this size."""
-        p = self.generic_parameters(rng, imaginary)
+        all with imaginary parts of about the size that belongs to the ``attempt``."""
+        imaginary = IMAGINARY[attempt]
+        p = _generic(rng, len(self.parameters.given), imaginary)
+        p = np.where(self.are_fixed, self.given, p)
         x = _generic(rng, self.n, imaginary)
-        for number, place in self.columns.items():
-            if self.structure.unknowns[number].is_angle:
+        for unknown, place in zip(self.structure.unknowns, self.columns, strict=True):
+            if unknown.is_angle:
                 x[place] = np.exp(np.array([1j, -1j]) * x[place.start])
         for columns in self.structure.embedded.values():
             frame = _rotation(_generic(rng, 4, imaginary))
@@ -348,11 +344,6 @@ def _generic(rng: np.random.Generator, count: int, imaginary: float) -> np.ndarr
         size=count
     )
     return numbers
-
-
-def _held(value: float, is_angle: bool) -> list[float]:
-    """The parameters of what is held: cosine and sine of half an angle, or a length."""
-    return [np.cos(0.5 * value), np.sin(0.5 * value)] if is_angle else [value]
 
 
 def _mirror_of(direction: np.ndarray) -> np.ndarray:
@@ -460,15 +451,11 @@ class _Chains:
         is_turn = structure.mechanism.variables[variable].motion.is_turn
         share = structure.share(variable)
         if share is None:
-            return self._held("locked", variable, is_turn)
-        if share.column in self.family.held:
-            value = self._held("held", share.column, is_turn)
-        else:
-            own = self.x[self.family.columns[share.column]]
-            value = self._cosine_and_sine(own) if is_turn else own[0]
+            return self._locked(variable, is_turn)
+        own = self.x[self.family.columns[share.column]]
         if not is_turn:
-            return share.rate * value + share.offset
-        cosine, sine = value
+            return share.rate * own[0] + share.offset
+        cosine, sine = self._cosine_and_sine(own)
         sine = share.rate * sine
         if share.offset == 0.0:
             return cosine, sine
@@ -481,8 +468,8 @@ class _Chains:
         (factor,) = self._block("of sines", 0)
         return 0.5 * (first + second), factor * (first - second)
 
-    def _held(self, name: str, number: int, is_turn: bool) -> Any:
-        block = self._block(name, number)
+    def _locked(self, variable: int, is_turn: bool) -> Any:
+        block = self._block("locked", variable)
         if not is_turn:
             return block[0]
         c, s = block
@@ -614,8 +601,9 @@ class _Chains:
     def own_gaps(self) -> list[Number]:
         """By how much the coordinates are none of angles and rotations."""
         gaps = []
-        for number, place in self.family.columns.items():
-            if self.structure.unknowns[number].is_angle:
+        unknowns, places = self.structure.unknowns, self.family.columns
+        for unknown, place in zip(unknowns, places, strict=True):
+            if unknown.is_angle:
                 first, second = self.x[place]
                 gaps.append(first * second - 1.0)
         for columns in self.structure.embedded.values():

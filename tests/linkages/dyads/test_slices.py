@@ -18,7 +18,6 @@ from linkages.files.arcs import read_arcs
 from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Joint
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.modules import slices as modules_module
 from linkages.statements import LinkageClaim
 from linkages.structure.structure import Structure
 from tests.linkages.mechanisms.known_mechanisms import (
@@ -165,7 +164,6 @@ def test_eight_bars_of_larger_groups_have_the_forms_of_many_random_starts(
     assert found.completeness.level is Level.CERTIFIED
     assert sliced(mechanism).counts == EIGHT_BARS[seed]
     monkeypatch.setattr(slices_module, "_slices_of_groups", lambda *_: {})
-    monkeypatch.setattr(modules_module, "MOST_UNKNOWNS", 0)
     settings = SearchSettings(starts=4000, certify=False)
     dense = map_linkage(mechanism, settings=settings)
     assert dense.completeness.level is Level.ESTIMATED

@@ -10,10 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from linkages.dyads.generic import SHIPPED, RealFamily, find_generic, name_of
+from linkages.dyads.group import Group, Pattern
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.modules import solve
-from linkages.modules.solve import Module
+from linkages.modules.assemblies import Module
 from linkages.structure.structure import Structure
 
 PRISM = [(0, 1), (0, 2), (1, 2), (0, 3), (1, 4), (2, 5), (3, 4), (3, 5), (4, 5)]
@@ -21,16 +22,10 @@ K33 = [(i, j) for i in (0, 2, 4) for j in (1, 3, 5)]
 
 
 class CommonType(NamedTuple):
-    """A random ``mechanism`` of a type that stands, and how many complex assemblies it
-    has."""
+    """The equations of a type that stands, and how many complex assemblies it has."""
 
-    mechanism: Mechanism
+    family: RealFamily
     count: int
-
-    @property
-    def module(self) -> Module:
-        """All of it."""
-        return Module(Structure(self.mechanism))
 
 
 def vector(numbers):
@@ -80,11 +75,26 @@ def random_on_sphere(arcs, seed):
     return on_sphere(np.random.default_rng(seed).normal(size=(6, 3)), arcs)
 
 
-# Ronga and Vust 1995; with reflections: Gallet, Grasegger, Legersky and Schicho 2021
+def group_of_bars(arcs, *, is_spherical):
+    """Bars between points, in a plane or on a sphere, of which the first one stands."""
+    order = list(dict.fromkeys(point for arc in arcs for point in arc))
+    bodies = tuple(tuple(map(order.index, arc)) for arc in arcs[1:])
+    return Group(Pattern(bodies, len(arcs[0]), is_spherical))
+
+
+def family_of(mechanism):
+    """The equations of a mechanism that nothing moves."""
+    return Module(Structure(mechanism)).family
+
+
+# Ronga and Vust 1995; in a plane: Wunderlich 1976, Borcea and Streinu 2004; on a sphere,
+# with reflections: Gallet, Grasegger, Legersky and Schicho 2021
 TYPES = {
-    "platform on six legs": CommonType(random_platform(0), 40),
-    "prism on a sphere": CommonType(random_on_sphere(PRISM, 5), 32),
-    "K(3,3) on a sphere": CommonType(random_on_sphere(K33, 5), 16),
+    "platform on six legs": CommonType(family_of(random_platform(0)), 40),
+    "prism": CommonType(group_of_bars(PRISM, is_spherical=False), 24),
+    "K(3,3)": CommonType(group_of_bars(K33, is_spherical=False), 16),
+    "prism on a sphere": CommonType(group_of_bars(PRISM, is_spherical=True), 32),
+    "K(3,3) on a sphere": CommonType(group_of_bars(K33, is_spherical=True), 16),
 }
 
 
@@ -92,15 +102,14 @@ def make() -> None:
     """Write the generic solutions of all types."""
     arrays = {}
     for name, one in TYPES.items():
-        family = one.module.family
-        generic = solve.find_generic(family, 2 * one.count)
+        generic = find_generic(one.family, 2 * one.count)
         if generic.count != one.count:
             raise ArithmeticError(f"{name}: {generic.count} solutions are not all")
-        key = solve.name_of(family.family)
+        key = name_of(one.family.family)
         arrays[f"{key} parameters"] = generic.fibre.parameters
         arrays[f"{key} solutions"] = generic.fibre.solutions
         arrays[f"{key} trace"] = np.array(generic.trace)
-    np.savez_compressed(solve.SHIPPED, **arrays)
+    np.savez_compressed(SHIPPED, **arrays)
 
 
 if __name__ == "__main__":
