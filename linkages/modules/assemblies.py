@@ -42,13 +42,8 @@ class Module:
 
     @property
     def count(self) -> int:
-        """How many complex configurations there are for generic lengths: what a plane
-        through two points of it mirrors is counted once."""
-        mirrored = sum(
-            len(one.directions) == 2 and bool(-one.limits[1, 0] != one.limits[1, 1])
-            for one in self.structure.free_points
-        )
-        return self.family.generic.count >> mirrored
+        """How many complex configurations there are for generic lengths."""
+        return self.family.generic.count
 
     @property
     def trace(self) -> float:

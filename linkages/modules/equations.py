@@ -127,19 +127,51 @@ class ClosureFamily(RealFamily):
     def _require_square(self) -> None:
         """Raises `ValueError` where the closures determine more or fewer unknowns than
         there are."""
-        unknowns = len(self.structure.unknowns) - 3 * len(self.structure.embedded)
-        equations = sum(map(self.freedoms, self.structure.closures))
+        structure = self.structure
+        unknowns = len(structure.unknowns) - len(self.standing)
+        unknowns -= 3 * len(structure.embedded)
+        equations = sum(map(self.freedoms, self.closures))
         if unknowns != equations:
             raise ValueError("it moves, or more holds it than has to")
 
     # --- unknowns ---------------------------------------------------------------------
 
     @cached_property
+    def _standing_pairs(self) -> list[int]:
+        """The pairs of points that stand: two rods hold one in a plane, on one side of
+        the line between their other ends."""
+        return [
+            pair
+            for pair, point in self.structure.point_pairs.items()
+            if len(point.directions) == 2
+            and bool(-point.limits[1, 0] != point.limits[1, 1])
+        ]
+
+    @cached_property
+    def standing(self) -> set[int]:
+        """The unknowns, by number, of points that stand."""
+        shifts = self.structure.shifts
+        return {number for pair in self._standing_pairs for number in shifts[pair]}
+
+    @cached_property
+    def closures(self) -> list[Closure]:
+        """The chains that have to close, but for those of rods that hold what stands."""
+        return [
+            closure
+            for closure in self.structure.closures
+            if not closure.chain
+            or any(step.pair not in self._standing_pairs for step in closure.chain)
+        ]
+
+    @cached_property
     def columns(self) -> list[slice]:
-        """The coordinates of every unknown x: exp(i x) and exp(-i x) of an angle."""
+        """The coordinates of every unknown x: exp(i x) and exp(-i x) of an angle; none
+        of what stands."""
         columns, first = [], 0
-        for unknown in self.structure.unknowns:
+        for number, unknown in enumerate(self.structure.unknowns):
             size = 2 if unknown.is_angle else 1
+            if number in self.standing:
+                size = 0
             columns.append(slice(first, first + size))
             first += size
         return columns
@@ -147,7 +179,8 @@ class ClosureFamily(RealFamily):
     @property
     def n(self) -> int:
         """The number of coordinates."""
-        return sum(2 if one.is_angle else 1 for one in self.structure.unknowns)
+        last: int = self.columns[-1].stop
+        return last
 
     def conjugates(self, coordinates: np.ndarray) -> np.ndarray:
         """The coordinates (k, c) of the complex conjugate configurations."""
@@ -163,8 +196,9 @@ class ClosureFamily(RealFamily):
         configurations."""
         points = np.zeros((len(coordinates), len(self.structure.unknowns)))
         for number, unknown in enumerate(self.structure.unknowns):
-            own = coordinates[:, self.columns[number].start]
-            points[:, number] = np.angle(own) if unknown.is_angle else own.real
+            if number not in self.standing:
+                own = coordinates[:, self.columns[number].start]
+                points[:, number] = np.angle(own) if unknown.is_angle else own.real
         return points
 
     # --- parameters -------------------------------------------------------------------
@@ -184,7 +218,7 @@ class ClosureFamily(RealFamily):
         for number, variable in enumerate(structure.mechanism.variables):
             if variable.locked:
                 parameters.add("locked", number, self._locked(variable))
-        for k, closure in enumerate(structure.closures):
+        for k, closure in enumerate(self.closures):
             if closure.rod is not None and closure.rod.leg is not None:
                 parameters.add("leg", k, [closure.rod.length / structure.unit])
             parameters.add("target", k, self._given_target(closure))
@@ -231,7 +265,7 @@ class ClosureFamily(RealFamily):
             self._point_of(motion)
         for pair in self.structure.embedded:
             self._place_of(self.structure.center(pair))
-        for closure in self.structure.closures:
+        for closure in self.closures:
             if closure.kind is not ClosureKind.CYCLE:
                 self._place_of(closure.second)
             if closure.kind is ClosureKind.ROD:
@@ -240,7 +274,7 @@ class ClosureFamily(RealFamily):
     def _all_motions(self) -> Iterator[tuple[int, Motion]]:
         """The variables, by number, of all chains that are not locked at 0."""
         structure = self.structure
-        for closure in structure.closures:
+        for closure in self.closures:
             for step in closure.chain:
                 for number in structure.variables_of(step.pair):
                     variable = structure.mechanism.variables[number]
@@ -295,7 +329,8 @@ class ClosureFamily(RealFamily):
     @cached_property
     def projection(self) -> Projection:
         """The targets vary, and one unknown is looked at."""
-        return Projection(self.are_targets, tuple(self.columns))
+        blocks = (one for one in self.columns if one.start < one.stop)
+        return Projection(self.are_targets, tuple(blocks))
 
     # --- equations --------------------------------------------------------------------
 
@@ -307,7 +342,7 @@ class ClosureFamily(RealFamily):
     def _equations(self, x: np.ndarray, p: np.ndarray) -> list[Number]:
         """What is 0 at a solution, but for what is 0 everywhere."""
         chains = _Chains(self, x, p)
-        closures = enumerate(self.structure.closures)
+        closures = enumerate(self.closures)
         gaps = [chains.gaps(k, closure) for k, closure in closures]
         gaps.append(chains.own_gaps())
         return [
@@ -333,7 +368,7 @@ class ClosureFamily(RealFamily):
             place = self.columns[columns[0]].start
             x[place : place + ROTATION] = [*frame[0], *frame[1]]
         chains = _Chains(self, x, p)
-        for k, closure in enumerate(self.structure.closures):
+        for k, closure in enumerate(self.closures):
             p[self.parameters.blocks["target", k]] = chains.reached(k, closure)
         return x, p
 
@@ -513,6 +548,8 @@ class _Chains:
 
     def _carried(self, step: Step, point: Point) -> Point:
         """A point moved by the pair of a free point."""
+        if step.pair in self.family._standing_pairs:
+            return point
         block = self._block("shift", step.pair)
         columns = self.structure.shifts[step.pair]
         for k, column in enumerate(columns):

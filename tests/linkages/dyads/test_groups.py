@@ -201,12 +201,12 @@ def test_the_answer_says_how_many_of_the_complex_assemblies_are_real():
     assert "24 of 24 complex assemblies are real, and all 24 were followed" in text
 
 
-@pytest.mark.parametrize("seed", one_in(16, range(100)))
+@pytest.mark.parametrize("seed", one_in(50, range(500)))
 def test_counts_of_random_frameworks_are_the_combinatorial_ones(seed):
     """By Capco, Gallet, Grasegger, Koutschan, Lubbes and Schicho (2018)."""
     lnumber = pytest.importorskip("lnumber")
     rng = np.random.default_rng(seed)
-    points = 6 + seed % 3
+    points = 6 + seed % 5
     bars, places = random_framework(rng, points)
     slices = built(framework(bars, places))
     bits = [int(pair in bars) for pair in combinations(range(points), 2)]
