@@ -64,11 +64,10 @@ def for_subject(
 ) -> DyadSlices | None:
     """All assemblies of the mechanism of a ``structure`` that nothing moves; None where
     it is not known that they are all."""
-    if not stands(problem, structure):
-        return None
     with until(current_deadline().share(TIME)):
         try:
-            return _assemblies(Module(structure))
+            module = Module(structure)
+            return _assemblies(module) if stands(problem, structure) else None
         except UnfollowedError:
             return None
 
