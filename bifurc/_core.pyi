@@ -232,6 +232,9 @@ class Tape:
         order: int,
         tolerance: float,
         most_steps: int,
+        places: int,
+        farthest: float,
+        is_precise: bool,
         seconds: float,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
     def project(

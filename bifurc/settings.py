@@ -84,12 +84,12 @@ class SearchSettings:
     takes the time to find out if a branch is missing. ``boxes``: into how many the bounds
     of exact equations of two to four unknowns are divided at most, to prove that nothing
     is missing; 0 for not at all. ``paths``: along how many all isolated solutions of
-    as many polynomials as unknowns are followed at most; 0 for none. ``certify``: whether every branch
-    gets a certificate, and is traced again, finer, where that is refused.
-    ``near_motions``: whether curves along which the system is nearly solved are traced;
-    without, points of them that solve it are isolated like any other. ``tracing``:
-    how a curve is followed, to a tolerance of at most 1e-7. Raises `ProblemError`
-    outside the ranges.
+    as many polynomials as unknowns, up to eight, are followed at most, fewer of more;
+    0 for none. ``certify``: whether every branch gets a certificate, and is traced again,
+    finer, where that is refused. ``near_motions``: whether curves along which the system
+    is nearly solved are traced; without, points of them that solve it are isolated like
+    any other. ``tracing``: how a curve is followed, to a tolerance of at most 1e-7.
+    Raises `ProblemError` outside the ranges.
     """
 
     starts: int = 200

@@ -16,6 +16,7 @@
 #include "bifurc/core/arrays.hpp"
 #include "bifurc/core/lu.hpp"
 #include "bifurc/core/tape.hpp"
+#include "bifurc/core/twofold.hpp"
 
 namespace bifurc {
 
@@ -44,6 +45,8 @@ constexpr double growth = 1.1;         // by which the way round an end at infin
 // What is left of a path that has an end at infinity. Where parameters are of different sizes, a path
 // may run away until what is left is as small as the least of them, and come back.
 constexpr double rest_at_infinity = 1e-11;
+// What is left of a path that is given up where it is too far away to be of interest.
+constexpr double rest_outside = 1e-6;
 
 }  // namespace paths
 
@@ -54,10 +57,18 @@ struct PathSettings {
     Index order;       // of the predictor
     double tolerance;  // of a prediction, over 1 + the size of the point
     int most_steps;
+    // Of homogeneous coordinates, the first unknowns, over the first of them: what is larger is of no
+    // interest.
+    Index places;
+    double farthest;
+    // Whether residuals are computed with twice the digits of doubles, as far from 1, and near singular
+    // points, they are corrected to the last digits of the point with them only.
+    bool is_precise;
 };
 
 // F(x; p) = 0 with x the first unknowns of a tape and p the others, on the line of parameters
 // last + t (first - last). With more equations than unknowns ``combinations`` (n, m) of them are solved.
+// Residuals of `linearize` are ``precise`` where that is set.
 class PathSystem {
 public:
     using Complex = paths::Complex;
@@ -67,24 +78,29 @@ public:
         : tape_(tape),
           n_(unknowns),
           combinations_(combinations),
+          first_(first.begin(), first.end()),
           last_(last.begin(), last.end()),
           change_(last.size()),
           point_(tape.unknowns()),
           step_(tape.unknowns()),
           row_(unknowns),
           equations_(tape.equations()),
+          precise_point_(tape.unknowns()),
+          precise_values_(tape.slots()),
           sweep_(tape),
           series_(tape, order) {
         for (std::size_t i = 0; i < change_.size(); ++i) change_[i] = first[i] - last[i];
     }
 
     Index unknowns() const { return n_; }
+    void set_precise(bool is_precise) { is_precise_ = is_precise; }
 
     // F at a point and t, and its factored derivatives by x; false where these are singular.
     bool linearize(Vector<const Complex> x, Complex t, Vector<Complex> residual, ComplexLu& lu) {
         place(x, t);
         sweep_.linearize(point_);
         for (Index row = 0; row < tape_.equations(); ++row) equations_[row] = sweep_.value(row);
+        if (is_precise_) evaluate_precisely(x, t);
         combine(residual);
         const View<Complex> matrix = lu.matrix();
         std::fill_n(matrix.data, n_ * n_, Complex(0.0));
@@ -134,6 +150,17 @@ private:
         for (std::size_t i = 0; i < change_.size(); ++i) point_[n_ + i] = last_[i] + t * change_[i];
     }
 
+    // F with twice the digits, also of the parameters at t.
+    void evaluate_precisely(Vector<const Complex> x, Complex t) {
+        std::copy(x.begin(), x.end(), precise_point_.begin());
+        const TwofoldComplex share(t), rest = TwofoldComplex(1.0) - share;
+        for (std::size_t i = 0; i < change_.size(); ++i) {
+            precise_point_[n_ + i] = rest * TwofoldComplex(last_[i]) + share * TwofoldComplex(first_[i]);
+        }
+        tape_.evaluate<TwofoldComplex>(precise_point_, precise_values_);
+        for (Index row = 0; row < tape_.equations(); ++row) equations_[row] = precise_values_[tape_.output(row)].rounded();
+    }
+
     void combine(Vector<Complex> out) const {
         if (!combinations_.rows) {
             std::copy(equations_.begin(), equations_.end(), out.begin());
@@ -148,7 +175,9 @@ private:
     const Tape& tape_;
     Index n_;
     View<const Complex> combinations_;
-    std::vector<Complex> last_, change_, point_, step_, row_, equations_;
+    bool is_precise_ = false;
+    std::vector<Complex> first_, last_, change_, point_, step_, row_, equations_;
+    std::vector<TwofoldComplex> precise_point_, precise_values_;
     Sweep<Complex> sweep_;
     SeriesSweep<Complex> series_;
 };
@@ -163,7 +192,9 @@ public:
           settings_(settings),
           lu_(system.unknowns()),
           coefficients_(settings.order + 1, system.unknowns()),
-          correction_(system.unknowns()) {}
+          correction_(system.unknowns()) {
+        system_.set_precise(settings.is_precise);
+    }
 
     struct Outcome {
         Point point;
@@ -191,6 +222,10 @@ public:
                 return out;
             }
             if (largest(out.point) > paths::far_away) {
+                out.end = PathEnd::at_infinity;
+                return out;
+            }
+            if (t.real() < paths::rest_outside && is_outside(out.point)) {
                 out.end = PathEnd::at_infinity;
                 return out;
             }
@@ -245,6 +280,14 @@ private:
         double size = 0.0;
         for (const Complex& entry : point) size = std::max(size, rough_size(entry));
         return size;
+    }
+
+    // Whether a point in homogeneous coordinates is too far away to be of interest.
+    bool is_outside(const Point& point) const {
+        if (!std::isfinite(settings_.farthest)) return false;
+        double size = 0.0;
+        for (Index i = 1; i < settings_.places; ++i) size = std::max(size, rough_size(point[i]));
+        return rough_size(point[0]) * settings_.farthest < size;
     }
 
     static double distance(const Point& point, const Point& other) {
@@ -388,6 +431,12 @@ private:
 
     // Newton's method at the end, as long as its steps become shorter.
     void polish(Point& point) {
+        system_.set_precise(true);
+        converge(point);
+        system_.set_precise(settings_.is_precise);
+    }
+
+    void converge(Point& point) {
         double former = 1.0;
         for (int i = 0; i < paths::last_corrections; ++i) {
             Point better = point;

@@ -120,6 +120,12 @@ Polynomial: TypeAlias = Mapping[tuple[int, ...], float]
 # The number of an unknown, and whether it stands there itself or its cosine or sine.
 _Coordinate: TypeAlias = tuple[int, Operation]
 _Terms: TypeAlias = dict[tuple[_Coordinate, ...], float]
+# What a coordinate is of its unknown.
+OF_COORDINATES: dict[Operation, Callable[[np.ndarray], np.ndarray]] = {
+    Operation.UNKNOWN: np.asarray,
+    Operation.COS: np.cos,
+    Operation.SIN: np.sin,
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,6 +166,15 @@ class PolynomialSystem:
                 sine = columns[number, Operation.SIN]
                 values[:, number] = np.arctan2(sine, column)
         return values
+
+    def places(self, unknowns: np.ndarray) -> np.ndarray:
+        """The points (k, c) at which the unknowns are these (k, n)."""
+        columns = [
+            OF_COORDINATES[kind](unknowns[:, number])
+            for number, kind in self.coordinates
+        ]
+        places: np.ndarray = np.array(columns).T / self.sizes
+        return places
 
 
 def polynomial_system(tape: Tape, reading: Reading) -> PolynomialSystem | None:

@@ -20,13 +20,15 @@ class Family:
     the parameters p. All are complex.
 
     There are as many equations as unknowns x, or more, of which generic combinations
-    are followed. ``is_projective``: whether x are homogeneous coordinates, the first of
-    which is zero at infinity. Raises `ValueError` where there are fewer.
+    are followed. ``is_projective``: whether x, or the first so many ``places`` of them
+    where these are not 0, are homogeneous coordinates, the first of which is zero at
+    infinity. Raises `ValueError` where there are fewer.
     """
 
     tape: Tape
     n: int
     is_projective: bool = False
+    places: int = 0
 
     def __post_init__(self) -> None:
         if self.tape.m < self.n:
@@ -51,6 +53,11 @@ class Family:
             for one in values
         ]
         return Family(writer.tape(slots), n)
+
+    @property
+    def coordinates(self) -> int:
+        """How many of the unknowns x are homogeneous coordinates."""
+        return (self.places or self.n) if self.is_projective else 0
 
     @property
     def parameters(self) -> int:

@@ -6,29 +6,38 @@ functions of a solution, every solution is reached from every other one (Duff, H
 Jensen, Lee, Leykin and Sommars 2019).
 
 Whether any is missing is asked of a curve: the solutions while the parameters move on a
-line, with the place t on that line as a further unknown. A hyperplane a x + b t = s
-that moves with s cuts it in points of which the sum is linear in s if they are all of
-them, and of no part of them (the trace test: Sommese, Verschelde and Wampler 2002).
+line, with the place t on that line as a further unknown. With a linear function l of x
+the sections l t = s of it have so many points as it has over a generic t and on a
+generic l together, and at s = 0 they are just these: the solutions at t = 0, and those
+at which l is 0. While s moves the sums of l and of t are linear in s if these are all
+points, and of no part of them (the trace test: Sommese, Verschelde and Wampler 2002, and
+for bilinear sections Leykin, Rodriguez and Sottile 2018). No point runs to infinity on
+the way from the section to the solutions, as from other ones. One or a few coordinates
+of x are enough for l, of which fewer points are to be found, if no two of the solutions
+agree in these.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import islice, pairwise
+from itertools import islice
+from typing import Any
 
 import numpy as np
 
-from bifurc.decisions import is_linear_trace
+from bifurc.decisions import is_linear_trace, is_same_path_end
 from bifurc.equations.tape import TapeWriter
 from bifurc.limits import Deadline
 from bifurc.paths.family import Family, complex_normal
 from bifurc.paths.follow import Paths, distinct, follow_paths
+from bifurc.paths.homogeneous import write_linear
 
 # closed ways in a row that bring nothing new before something else is tried: before the
 # trace test of a curve one is enough
 QUIET, QUIET_ON_CURVE = 2, 1
 MOST_LOOPS = 60
 MOST_SOLUTIONS = 10_000
+PATHS_EACH = 500  # of the solutions that are looked for at most
 CORNERS = 3  # of a closed way
 TESTS = 10  # trace tests, with further closed ways between them
 
@@ -40,6 +49,53 @@ class Fibre:
 
     parameters: np.ndarray
     solutions: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Projection:
+    """What is enough to vary and to look at: the ``targets`` (q,), parameters such that
+    the solutions of all members that differ in these alone are one irreducible variety;
+    and ``blocks`` of coordinates, of which one that tells all solutions apart will
+    do."""
+
+    targets: np.ndarray
+    blocks: tuple[slice, ...]
+
+    def coordinates_of(self, solutions: np.ndarray) -> np.ndarray:
+        """Which coordinates (n,) of the solutions (k, n) are looked at."""
+        looked_at = np.zeros(solutions.shape[1], dtype=bool)
+        for block in self.blocks:
+            chosen = looked_at.copy()
+            chosen[block] = True
+            if self.tells_apart(solutions, chosen):
+                return chosen
+        return ~looked_at
+
+    @staticmethod
+    def tells_apart(solutions: np.ndarray, looked_at: np.ndarray) -> bool:
+        """Whether no two of the solutions (k, n) agree in these coordinates (n,)."""
+        return len(distinct(solutions[:, looked_at])) == len(solutions)
+
+
+@dataclass(eq=False)
+class Effort:
+    """How many paths were ``followed``; it is spent at a ``deadline``, and after ``most``
+    of them."""
+
+    deadline: Deadline
+    most: float = np.inf
+    followed: int = 0
+
+    @property
+    def is_spent(self) -> bool:
+        """Whether no further paths are to be followed."""
+        return self.followed > self.most or self.deadline.passed
+
+    def follow(self, family: Family, fibre: Fibre, last: np.ndarray) -> Paths:
+        """The paths of the solutions of a fibre to the parameters ``last`` (q,)."""
+        self.followed += len(fibre.solutions)
+        starts, first = fibre.solutions, fibre.parameters
+        return follow_paths(family, starts, first, last, self.deadline)
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,36 +129,56 @@ def solve_generic(
     deadline: Deadline | None = None,
     most: int = MOST_SOLUTIONS,
     linear_in: int | None = None,
+    projection: Projection | None = None,
 ) -> GenericSolutions:
     """The solutions of the member with generic complex ``parameters`` (q,), of which
-    ``start`` (n,) is one; where there are more than ``most``, some of them.
+    ``start`` (n,) is one; where there are more than ``most``, some of them, as where
+    that takes more than `PATHS_EACH` paths for each of these.
 
     ``linear_in``: a parameter, by number, while which moves alone the sum of all
     solutions is linear in it, and that of no part of them; without, it is asked of a
-    curve that has further points. Raises `ValueError` where the start is no regular
-    solution.
+    curve that has further points, or of a ``projection`` of it. Raises `ValueError`
+    where the start is no regular solution.
     """
-    deadline = deadline or Deadline()
+    effort = Effort(deadline or Deadline(), PATHS_EACH * most)
     fibre = Fibre(np.asarray(parameters, complex), np.asarray(start, complex)[None])
     _require_start(family, fibre)
-    size = float(np.abs(fibre.parameters).mean()) if len(fibre.parameters) else 1.0
-    ways = _Ways(np.full(family.parameters, size), QUIET, most)
-    fibre = _enlarged(family, fibre, ways, rng, deadline)
-    if deadline.passed or len(fibre.solutions) > most:
+    projection = projection or Projection(np.ones(family.parameters, dtype=bool), ())
+    moved = np.abs(fibre.parameters[projection.targets])
+    size = float(np.sqrt(np.mean(moved**2))) if len(moved) else 1.0
+    sizes = np.where(projection.targets, size, 0.0)
+    ways = _Ways(sizes, QUIET, most)
+    fibre = _enlarged(family, fibre, ways, rng, effort)
+    if effort.is_spent or len(fibre.solutions) > most:
         return GenericSolutions(fibre, None)
     if linear_in is not None:
-        return _tested(family, fibre, ways, linear_in, rng, deadline)
-    curve = _CurveOverLine(family, fibre, size, rng, deadline)
+        return _tested(family, fibre, ways, linear_in, rng, effort)
+    return _tested_on_curve(family, fibre, ways, projection, rng, effort)
+
+
+def _tested_on_curve(
+    family: Family,
+    fibre: Fibre,
+    ways: _Ways,
+    projection: Projection,
+    rng: np.random.Generator,
+    effort: Effort,
+) -> GenericSolutions:
+    """A fibre with all solutions, told by points of the curve over a line."""
+    looked_at = projection.coordinates_of(fibre.solutions)
+    curve = CurveOverLine(family, fibre, ways.sizes, looked_at, rng)
     trace = None
     for _ in range(TESTS):
-        curve.find_points(rng, deadline)
-        if deadline.passed:
+        curve.find_points(rng, effort)
+        if effort.is_spent or len(curve.solutions) > ways.most:
             break
-        trace = curve.trace(deadline)
+        trace = curve.trace(effort)
         if trace is not None and is_linear_trace(trace):
-            fibre = curve.solutions_in(fibre, deadline)
             break
-    return GenericSolutions(fibre, trace)
+    solutions = curve.solutions
+    if not projection.tells_apart(solutions, looked_at):
+        trace = None
+    return GenericSolutions(Fibre(fibre.parameters, solutions), trace)
 
 
 def _tested(
@@ -111,16 +187,16 @@ def _tested(
     ways: _Ways,
     linear_in: int,
     rng: np.random.Generator,
-    deadline: Deadline,
+    effort: Effort,
 ) -> GenericSolutions:
     """A fibre with all solutions, told by their sum while one parameter moves."""
     trace = None
     for _ in range(TESTS):
-        trace = _trace(family, fibre, linear_in, ways.sizes[linear_in], deadline)
+        trace = _trace(family, fibre, linear_in, ways.sizes[linear_in], effort)
         has_all = trace is not None and is_linear_trace(trace)
-        if has_all or deadline.passed or len(fibre.solutions) > ways.most:
+        if has_all or effort.is_spent or len(fibre.solutions) > ways.most:
             break
-        fibre = _enlarged(family, fibre, ways, rng, deadline)
+        fibre = _enlarged(family, fibre, ways, rng, effort)
     return GenericSolutions(fibre, trace)
 
 
@@ -133,20 +209,20 @@ def _require_start(family: Family, fibre: Fibre) -> None:
 
 @dataclass(frozen=True, eq=False)
 class _Ways:
-    """Closed ways on which parameters move by about their ``sizes`` (q,); ``quiet`` of
-    them in a row that bring nothing new are the last, and none is tried once there are
-    more than ``most`` solutions."""
+    """Closed ways on which parameters move by about their ``sizes`` (q,), those of size
+    0 not at all; ``quiet`` of them in a row that bring nothing new are the last, and none
+    is tried once there are more than ``most`` solutions."""
 
     sizes: np.ndarray
     quiet: int
     most: float = np.inf
 
     def stops(self, home: np.ndarray, rng: np.random.Generator) -> list[np.ndarray]:
-        """The parameters (q,) at the corners of a way from ``home`` (q,)."""
-        stops = [
-            self.sizes * complex_normal(rng, len(home)) for _ in range(CORNERS - 1)
-        ]
-        return [home, *stops, home]
+        """The parameters (q,) at the corners of a way from ``home`` (q,), without that
+        itself; some ways are longer, as what they have to go round may be far away."""
+        longer = np.exp(rng.normal())
+        drawn = longer * self.sizes * complex_normal(rng, (CORNERS - 1, len(home)))
+        return [*np.where(self.sizes > 0.0, drawn, home), home]
 
 
 def _enlarged(
@@ -154,47 +230,54 @@ def _enlarged(
     fibre: Fibre,
     ways: _Ways,
     rng: np.random.Generator,
-    deadline: Deadline,
+    effort: Effort,
 ) -> Fibre:
     """A fibre with the solutions to which closed ways lead."""
-    known = fibre.solutions
+    home, known = fibre.parameters, fibre.solutions
     quiet = 0
     for _ in range(MOST_LOOPS):
-        if quiet == ways.quiet or deadline.passed or len(known) > ways.most:
+        if quiet == ways.quiet or effort.is_spent or len(known) > ways.most:
             break
-        points = known
-        for here, there in pairwise(ways.stops(fibre.parameters, rng)):
-            points = follow_paths(family, points, here, there, deadline).regular
-        larger = distinct(np.concatenate([known, points]))
+        here = Fibre(home, known)
+        for there in ways.stops(home, rng):
+            here = Fibre(there, effort.follow(family, here, there).regular)
+        larger = distinct(np.concatenate([known, here.solutions]))
         quiet = quiet + 1 if len(larger) == len(known) else 0
         known = larger
-    return Fibre(fibre.parameters, known)
+    return Fibre(home, known)
 
 
 def _trace(
-    family: Family, fibre: Fibre, parameter: int, step: float, deadline: Deadline
+    family: Family,
+    fibre: Fibre,
+    parameter: int,
+    step: float,
+    effort: Effort,
+    coordinates: Any = slice(None),
 ) -> float | None:
-    """How far the sum of the solutions is from linear in a ``parameter``, by number,
-    that moves by a ``step``, over its change; None where paths were lost, and where
-    there are no solutions."""
+    """How far the sum of the solutions, of some ``coordinates``, is from linear in a
+    ``parameter``, by number, that moves by a ``step``, over its change; None where paths
+    were lost, and where there are none."""
     if not len(fibre.solutions):
         return None
-    sums = [fibre.solutions.sum(axis=0)]
+    sums = [fibre.solutions[:, coordinates].sum(axis=0)]
     for shift in (step, -step):
         moved = fibre.parameters.copy()
         moved[parameter] += shift
-        paths = follow_paths(family, fibre.solutions, fibre.parameters, moved, deadline)
+        paths = effort.follow(family, fibre, moved)
         if not np.all(paths.is_regular):
             return None
-        sums.append(paths.points.sum(axis=0))
+        sums.append(paths.points[:, coordinates].sum(axis=0))
     here, ahead, behind = sums
     change = max(np.abs(ahead - here).max(), np.abs(behind - here).max(), 1.0)
     return float(np.abs(ahead - 2.0 * here + behind).max() / change)
 
 
-class _CurveOverLine:
+class CurveOverLine:
     """The curve of the solutions (x, t) of a ``family`` at the parameters p + t v, p
-    those of a ``fibre``, in the hyperplanes a x + b t = s.
+    those of a ``fibre``, with all of its points that are known in the ``section``
+    (a x - b) t = s for s = 0. v is about of the ``sizes`` (q,), and of the coordinates
+    some (n,) are ``looked_at``, where a is not 0.
 
     Its family has the unknowns x and t and the parameters p, v, a, b, s.
     """
@@ -203,50 +286,47 @@ class _CurveOverLine:
         self,
         family: Family,
         fibre: Fibre,
-        size: float,
+        sizes: np.ndarray,
+        looked_at: np.ndarray,
         rng: np.random.Generator,
-        deadline: Deadline,
     ):
-        self.family = _sliced(family)
-        self.n = family.n
-        direction = size * complex_normal(rng, family.parameters)
-        line = np.concatenate([fibre.parameters, direction])
-        hyperplane = complex_normal(rng, family.n + 2)
-        self.at_fibre = np.concatenate([line, np.zeros(family.n), [1.0, 0.0]])
-        generic = np.concatenate([line, hyperplane])
-        sizes = np.concatenate([np.full(len(line), size), np.ones(len(hyperplane))])
-        self.ways = _Ways(sizes, QUIET_ON_CURVE)
-        starts = np.column_stack([fibre.solutions, np.zeros(len(fibre.solutions))])
-        came = follow_paths(self.family, starts, self.at_fibre, generic, deadline)
-        self.slice = Fibre(generic, came.regular)
+        self.family = _bilinear_sections(family)
+        self.coordinates = np.append(np.flatnonzero(looked_at), family.n)
+        direction = sizes * complex_normal(rng, family.parameters)
+        of_section = np.append(looked_at, [True, True])
+        section = np.where(of_section, complex_normal(rng, family.n + 2), 0.0)
+        section[-1] = 0.0
+        moving = np.concatenate([sizes, sizes, of_section])
+        self.ways = _Ways(moving, QUIET_ON_CURVE)
+        self.section = Fibre(
+            np.concatenate([fibre.parameters, direction, section]),
+            np.column_stack([fibre.solutions, np.zeros(len(fibre.solutions))]),
+        )
 
-    def find_points(self, rng: np.random.Generator, deadline: Deadline) -> None:
-        """Find more of the points in a generic hyperplane: it moves, and so does the
-        line."""
-        self.slice = _enlarged(self.family, self.slice, self.ways, rng, deadline)
+    def find_points(self, rng: np.random.Generator, effort: Effort) -> None:
+        """Find more of the points in the section: it moves, and so does the line."""
+        self.section = _enlarged(self.family, self.section, self.ways, rng, effort)
 
-    def trace(self, deadline: Deadline) -> float | None:
+    def trace(self, effort: Effort) -> float | None:
         """How far the sum of the points is from linear in s, over its change; None
         where paths were lost."""
-        return _trace(self.family, self.slice, -1, 1.0, deadline)
+        return _trace(self.family, self.section, -1, 1.0, effort, self.coordinates)
 
-    def solutions_in(self, fibre: Fibre, deadline: Deadline) -> Fibre:
-        """The fibre at t = 0 with the points of the curve there."""
-        back = self._followed(self.at_fibre, deadline).regular[:, : self.n]
-        both = distinct(np.concatenate([fibre.solutions, back]))
-        return Fibre(fibre.parameters, both)
-
-    def _followed(self, last: np.ndarray, deadline: Deadline) -> Paths:
-        first = self.slice.parameters
-        return follow_paths(self.family, self.slice.solutions, first, last, deadline)
+    @property
+    def solutions(self) -> np.ndarray:
+        """The points (k, n) at t = 0."""
+        points = self.section.solutions
+        are_there = is_same_path_end(np.abs(points[:, -1]))
+        solutions: np.ndarray = points[are_there, :-1]
+        return solutions
 
 
-def _sliced(family: Family) -> Family:
-    """The family of the points of the curve over a line in a hyperplane."""
+def _bilinear_sections(family: Family) -> Family:
+    """The family of the points of the curve over a line in sections."""
     n, q = family.n, family.parameters
     writer = TapeWriter(n + 1 + 2 * q + n + 2)
     numbers = map(writer.unknown, range(writer.n))
-    x, (t,), start, direction, normal, (of_place, s) = (
+    x, (t,), start, direction, normal, (offset, s) = (
         list(islice(numbers, count)) for count in (n, 1, q, q, n, 2)
     )
     parameters = [
@@ -255,7 +335,6 @@ def _sliced(family: Family) -> Family:
     ]
     slots = family.tape.write_on(writer, [*x, *parameters])
     outputs = [slots[slot] for slot in family.tape.outputs.tolist()]
-    height = writer.multiply(of_place, t)
-    for factor, unknown in zip(normal, x, strict=True):
-        height = writer.add(height, writer.multiply(factor, unknown))
-    return Family(writer.tape([*outputs, writer.subtract(height, s)]), n + 1)
+    height = writer.subtract(write_linear(writer, normal, x), offset)
+    section = writer.subtract(writer.multiply(height, t), s)
+    return Family(writer.tape([*outputs, section]), n + 1)

@@ -575,7 +575,7 @@ class _Union:
             Scope.MOTIONS,
             levels[worst],
             factors=self.count,
-            least="; ".join(claim.text for claim in known[worst].claims),
+            weakest="; ".join(claim.text for claim in known[worst].claims),
         )
 
     def _doubts(

@@ -7,22 +7,22 @@ that are their own conjugates. Sines and cosines of unknowns are coordinates on 
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from bifurc.completeness import Claim, Level, Scope
 from bifurc.decisions import is_plainly_at_infinity
-from bifurc.equations.polynomials import (
-    PolynomialSystem,
-    polynomial_system,
-    simplest_ratio,
-)
-from bifurc.function_problem import FunctionProblem
+from bifurc.equations.polynomials import PolynomialSystem
 from bifurc.limits import Deadline
 from bifurc.paths.follow import PathEnd, Paths, copy_of
 from bifurc.paths.sparse import SparseFamily
 from bifurc.search.answer.completeness import SearchClaim
+
+# Whether points (k, c) all lie on curves.
+AreOnCurves: TypeAlias = Callable[[np.ndarray], bool]
 
 SEED = 28  # of the generic system from which paths begin
 MOST_POINTS = 20_000  # with whole turns of angles within bounds
@@ -32,31 +32,32 @@ MOST_POINTS = 20_000  # with whole turns of angles within bounds
 class IsolatedSolutions:
     """What became of the paths to the solutions of a problem.
 
-    ``points`` (k, n) are solutions in the units of the user: all real ones of full
-    rank, and then ends of paths that are singular, next to real ones or not. ``real``
+    ``points`` (k, n) are solutions in the units of the user, all real ones of full
+    rank, and ``singular`` (j, n) ends of paths, next to real ones or not. ``real``
     and ``complex`` count those of full rank, angles up to whole turns, ``trace`` is the
     test of the generic ones. ``has_curves``: whether complex ones are not isolated;
     None where that is not known.
     """
 
     points: np.ndarray
+    singular: np.ndarray
     real: int
     complex: int
     paths: Paths
     trace: float
     has_curves: bool | None
 
-    def claim(self, inside: int) -> Claim:
+    def claim(self, inside: int, are_on_curves: AreOnCurves | None = None) -> Claim:
         """What is said of the isolated solutions, of which so many are ``inside`` the
-        bounds."""
-        ends = self.paths.ends
-        singular = int(np.count_nonzero(ends == PathEnd.SINGULAR))
+        bounds; ``are_on_curves`` tells of points (k, c) whether all of them lie on
+        curves that are known."""
+        singular = len(self.singular_ends)
         lost = int(np.count_nonzero(self.paths.is_lost))
         data = {
             "real": self.real,
             "complex": self.complex,
             "inside": inside,
-            "paths": len(ends),
+            "paths": len(self.paths.ends),
             "trace": self.trace,
         }
         if lost:
@@ -64,6 +65,10 @@ class IsolatedSolutions:
             kind, more = SearchClaim.PATHS_LOST, {"lost": lost, "reasons": reasons}
         elif far := self._are_far():
             kind, more = SearchClaim.PATHS_FAR_AWAY, {"far": far}
+        elif are_on_curves is not None and are_on_curves(self.singular_ends):
+            kind = SearchClaim.ALL_ISOLATED_BESIDE_CURVES
+            level = Level.CERTIFIED
+            return kind.claim(Scope.ASSEMBLIES, level, **data, singular=singular)
         elif singular or self.has_curves:
             kind, more = SearchClaim.PATHS_TO_SINGULAR, {"singular": singular}
         elif self.has_curves is None:
@@ -73,6 +78,12 @@ class IsolatedSolutions:
             return kind.claim(Scope.ASSEMBLIES, Level.CERTIFIED, **data)
         return kind.claim(Scope.ASSEMBLIES, Level.ESTIMATED, **data, **more)
 
+    @property
+    def singular_ends(self) -> np.ndarray:
+        """The ends of paths (s, c) that are singular."""
+        ends: np.ndarray = self.paths.points[self.paths.ends == PathEnd.SINGULAR]
+        return ends
+
     def _are_far(self) -> int:
         """How many paths ended so far away that rounding may hide a solution there."""
         is_far = self.paths.ends == PathEnd.AT_INFINITY
@@ -81,14 +92,11 @@ class IsolatedSolutions:
 
 
 def isolated_solutions(
-    problem: FunctionProblem, most: int, deadline: Deadline
+    system: PolynomialSystem, bounds: np.ndarray, most: int, deadline: Deadline
 ) -> IsolatedSolutions | None:
-    """Those of a problem that has as many polynomials as unknowns, which are angles
-    where only their sines and cosines stand there; None where it has not, where the
-    trace test failed, or where there are more than ``most`` complex ones."""
-    system = _system_of(problem)
-    if system is None:
-        return None
+    """Those of as many polynomials as coordinates, with angles at all whole turns within
+    ``bounds`` (n, 2); None where the trace test failed, or where there are more than
+    ``most`` complex ones."""
     family = SparseFamily.of(system.polynomials)
     rng = np.random.default_rng(SEED)
     generic = family.generic_solutions(rng, deadline, most)
@@ -105,25 +113,18 @@ def isolated_solutions(
     partners = copy_of(np.concatenate([regular, regular.conj()]))[count:]
     real = regular[partners == np.arange(count)].real
     singular = paths.points[paths.ends == PathEnd.SINGULAR].real
-    points = system.unknowns(np.concatenate([real, singular]))
-    points = _with_turns(points, system, problem.domain.bounds)
-    return IsolatedSolutions(points, len(real), count, paths, generic.trace, has_curves)
+    return IsolatedSolutions(
+        points=with_turns(system.unknowns(real), system, bounds),
+        singular=with_turns(system.unknowns(singular), system, bounds),
+        real=len(real),
+        complex=count,
+        paths=paths,
+        trace=generic.trace,
+        has_curves=has_curves,
+    )
 
 
-def _system_of(problem: FunctionProblem) -> PolynomialSystem | None:
-    """The equations as polynomials, as many as coordinates."""
-    tape = problem.recording.tape
-    has_own = type(problem).residuals is not FunctionProblem.residuals
-    if tape is None or has_own:
-        return None
-    system = polynomial_system(tape, simplest_ratio)
-    is_circle = np.isfinite(problem.domain.periods)
-    if system is None or np.any(is_circle & ~system.are_angles):
-        return None
-    return system if system.is_square else None
-
-
-def _with_turns(
+def with_turns(
     points: np.ndarray, system: PolynomialSystem, bounds: np.ndarray
 ) -> np.ndarray:
     """The points (k, n) with angles at all whole turns within finite bounds."""

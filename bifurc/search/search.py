@@ -5,11 +5,10 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
-from bifurc.completeness import Level
 from bifurc.decisions import (
     is_at_rest,
     is_hidden_by,
@@ -18,7 +17,6 @@ from bifurc.decisions import (
     may_be_crossed,
     stops_short,
 )
-from bifurc.function_problem import FunctionProblem
 from bifurc.limits import CutOff, Deadline, cut_off_after
 from bifurc.numerics.singular_values import singular_values
 from bifurc.problem import Problem
@@ -39,7 +37,7 @@ from bifurc.search.components import (
 )
 from bifurc.search.findings import Findings, Run
 from bifurc.search.near_motion_search import NearMotionSearch
-from bifurc.search.own_units.unit_problem import UnitProblem
+from bifurc.search.path_audit import PathAudit
 from bifurc.search.point_search import BRANCH_REACH, SEED_REACH, PointSearch
 from bifurc.search.records import (
     PointSighting,
@@ -63,14 +61,11 @@ from bifurc.search.subdivision import (
     subdivide,
 )
 from bifurc.search.tracing import Tracer
-from bifurc.seeds import Audit, Seeds
+from bifurc.seeds import Seeds
 from bifurc.settings import SearchSettings
 from bifurc.singular.classify import classify_from_nearby
 from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.point import Kind
-
-if TYPE_CHECKING:
-    from bifurc.search.isolated import IsolatedSolutions
 
 log = logging.getLogger(__name__)
 
@@ -129,6 +124,7 @@ class Search:
         self.near_motions = NearMotionSearch(self.run)
         self.tracer = Tracer(self.run, self.examiner, self.near_motions)
         self.judge = SeedJudge(self.run, self.points, self.tracer)
+        self.paths = PathAudit(self.run, self.points, self._add_seeds)
 
     def take_steps(self) -> None:
         """Take all steps, each until it leads to nothing new."""
@@ -460,42 +456,13 @@ class Search:
         local = local_dimensions(self.problem, solutions, self.run.deadline)
         return solutions[local.dimension < LEAST_SAMPLED]
 
-    def follow_paths(self) -> Starts:
-        """Take all isolated solutions of as many polynomials as unknowns for seeds, and
-        say how many there are."""
-        problem, findings = self.problem, self.findings
-        found = self._isolated()
-        if found is None:
-            return
-        points = found.points
-        if isinstance(problem, UnitProblem):
-            points = problem.own_units.inwards(points)
-        points, gaps = problem.project(points)
-        is_inside = problem.domain.are_inside(points)
-        self._add_seeds(findings.book.seeds.with_constructed(points[is_inside]))
-        yield []
-        inside = int(np.count_nonzero(is_inside & is_start_solved(gaps)))
-        claim = found.claim(inside)
-        has_all = claim.level is Level.CERTIFIED
-        more = len(findings.traced) + len(findings.components.seeds)
-        if has_all and (more or len(findings.rigid) != inside):
-            return  # doubles do not tell them apart, or from what is nearly solved
-        findings.set_audit(Audit((claim,), np.empty((0, problem.n)), has_all))
+    def count_isolated(self) -> Starts:
+        """Take all isolated solutions of as many polynomials as unknowns for seeds."""
+        yield from self.paths.count_isolated()
 
-    def _isolated(self) -> IsolatedSolutions | None:
-        """The isolated solutions of the user's equations; None where these are not
-        asked for or not known."""
-        problem, settings = self.problem, self.settings
-        users = problem.problem if isinstance(problem, UnitProblem) else problem
-        is_asked = settings.paths > 0 and self.findings.book.seeds.audit is None
-        if not is_asked or self.run.is_over or not isinstance(users, FunctionProblem):
-            return None
-        tape = users.recording.tape
-        if tape is None or tape.m != tape.n:
-            return None
-        from bifurc.search.isolated import isolated_solutions  # few searches need it
-
-        return isolated_solutions(users, settings.paths, self.run.deadline)
+    def count_curves(self) -> Starts:
+        """Take points on all real parts of the curves of polynomials for seeds."""
+        yield from self.paths.count_curves()
 
     def audit_in_boxes(self) -> Starts:
         """Divide the bounds of exact equations into boxes, and trace the arcs that show
@@ -565,6 +532,7 @@ STEPS: tuple[Callable[[Search], Starts], ...] = (
     Search.join_branches,
     Search.mend_at_germs,
     Search.audit_branches,
-    Search.follow_paths,
+    Search.count_isolated,
     Search.audit_in_boxes,
+    Search.count_curves,
 )

@@ -20,6 +20,7 @@ from linkages.closure import cut_at_limits
 from linkages.closure.system import ClosureSystem
 from linkages.closure.within_limits import brought_within_limits
 from linkages.dyads import slices as dyads
+from linkages.modules import assemblies
 from linkages.structure.structure import Structure
 from linkages.turns import whole_turns
 from linkages.turns.whole_turns import TurnedEnds
@@ -51,6 +52,8 @@ ForSubject: TypeAlias = Callable[
 
 # what gives starts and judges what is traced: the first that applies to a mechanism
 SOURCES: tuple[ForSubject, ...] = (
+    dyads.built_at_once,
+    assemblies.for_subject,
     dyads.for_subject,
     whole_turns.for_subject,
     cut_at_limits.for_subject,

@@ -8,8 +8,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from linkages.dyads.geometry import Pivot, PlaneGeometry
-from linkages.dyads.group import UnfollowedError
+from linkages.dyads.generic import UnfollowedError
+from linkages.dyads.geometry import PlaneGeometry
 from linkages.dyads.pinned import GenericCount, PinnedGroup, generic_count
 from linkages.dyads.plan import Contact, Plan, Step
 from linkages.dyads.space import SpaceGeometry
@@ -122,30 +122,34 @@ class Builder:
     def _closed_group(
         self, step: Step, state: dict[int, Any], inner: dict[int, Any]
     ) -> Sequence[tuple[Any, ...]]:
-        """The same for a larger group, in the plane. Raises `UnfollowedError`."""
+        """The same for a larger group, in a plane or on a sphere. Raises
+        `UnfollowedError`."""
         geometry = self.geometry
-        if not isinstance(geometry, PlaneGeometry):
-            raise UnfollowedError("it does not move in a plane")
-        group = PinnedGroup(self.plan.part, step)
+        if not geometry.has_pins:
+            raise UnfollowedError("its axes are anywhere in space")
+        group = PinnedGroup(self.plan.part, step, geometry.is_spherical)
         own: dict[tuple[int, str], complex] = {}  # places of pins in parts
         for contact in step.contacts:
             for body in (contact.first, contact.second):
-                pivot = geometry.joint(
-                    inner[body], geometry.rest, self._motion(contact)
-                )
-                assert isinstance(pivot, Pivot)
-                own[self.plan.part[body], contact.joint] = pivot.first
-        standing = [
-            state[part](own[part, joint]) for joint, part in group.standing.items()
+                part = self.plan.part[body]
+                pose = state.get(part, geometry.rest).after(inner[body])
+                own[part, contact.joint] = geometry.pin(pose, self._motion(contact))
+        standing = [own[part, joint] for joint, part in group.standing.items()]
+        return [
+            tuple(geometry.held_by_pins(*ends) for ends in parts)
+            for parts in group.assemblies(own, standing)
         ]
-        return group.poses(own, standing, geometry.size)
 
     def generic_count(self) -> GenericCount | None:
         """How many complex configurations there are, for generic lengths; None where
         dyads are all that is built."""
         if not self.plan.has_groups:
             return None
-        counts = [generic_count(self.plan.part, step) for step in self.plan.steps]
+        is_spherical = self.geometry.is_spherical
+        counts = [
+            generic_count(self.plan.part, step, is_spherical)
+            for step in self.plan.steps
+        ]
         ways = math.prod(one.ways for one in counts)
         return GenericCount(ways, max(one.trace for one in counts))
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -119,6 +120,9 @@ class PlaneGeometry:
     """Bodies that turn and slide in the plane across ``normal`` (3,); ``size`` is a
     length of the mechanism."""
 
+    has_pins = True  # larger groups are held by pins that have places in the plane
+    is_spherical = False
+
     def __init__(self, normal: np.ndarray, size: float):
         self.normal = normal
         self.size = size
@@ -147,6 +151,20 @@ class PlaneGeometry:
             return Pivot(first(center), second(center))
         along = first.turn * self._flat(motion.direction)
         return Rail(first.after(second.inverse()), along)
+
+    # --- pins -------------------------------------------------------------------------
+
+    def pin(self, pose: PlanePose, motion: Motion) -> complex:
+        """The place of a turning joint of a body with this ``pose``."""
+        return pose(self._flat(motion.point)) / self.size
+
+    def held_by_pins(
+        self, own: Sequence[complex], there: Sequence[complex]
+    ) -> PlanePose:
+        """The pose of a body with two places of its ``own`` at others."""
+        turn = (there[1] - there[0]) / (own[1] - own[0])
+        turn /= abs(turn)
+        return PlanePose(turn, self.size * (there[0] - turn * own[0]))
 
     def _sense(self, motion: Motion) -> float:
         """1 where a turn is about the normal, -1 where it is the other way round."""

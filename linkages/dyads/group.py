@@ -1,12 +1,15 @@
-"""Groups of bodies in a plane that pins hold, more than a dyad: all of their assemblies.
+"""Groups of bodies that pins hold, more than a dyad: all of their assemblies, in a plane
+or on a sphere.
 
-The pins are at the places z of the plane, complex numbers; with their conjugates w as
-unknowns of their own the equations are polynomials: (z2 - z1) (w2 - w1) is the square
-of a length, and a third pin of a body is at z1 + r (z2 - z1). The parameters (squares
-of lengths, ratios r and places that stand) are functions of the places of the pins. So
-the solutions of all members of a family are one irreducible variety, and monodromy
-reaches all of one member (`bifurc.paths.monodromy`). From these all isolated assemblies
-of given lengths follow.
+The pins are at the places z of the plane, complex numbers, with their conjugates w as
+unknowns of their own. From a place 1 a place 2 is seen at d = z2 - z1; on the unit
+sphere, in stereographic projection, at d = (z2 - z1) / (1 + w1 z2), as the turn that
+takes 1 to the origin takes 2 there. The product of d with the same of w is the square
+of a length, or of the tangent of half an arc, and a third pin of a body is seen at r d.
+The parameters (these squares, ratios r and places that stand) are functions of the
+places of the pins. So the solutions of all members of a family are one irreducible
+variety, and monodromy reaches all of one member (`bifurc.paths.monodromy`). From these
+all isolated assemblies of given lengths follow.
 """
 
 from __future__ import annotations
@@ -15,18 +18,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import chain
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 
 from bifurc.equations.recorded import RecordedNumber, Recorder, unknowns_of
-from bifurc.limits import current_deadline
 from bifurc.paths.family import Family, complex_normal
-from bifurc.paths.follow import PathEnd, Paths, copy_of, follow_paths
-from bifurc.paths.monodromy import GenericSolutions, solve_generic
+from bifurc.paths.follow import PathEnd
+from bifurc.paths.monodromy import GenericSolutions, Projection
 from linkages.decisions import is_short_bar
+from linkages.dyads.generic import RealFamily, UnfollowedError
 
-SEED = 24  # of the generic member from which paths begin
 MOST_ASSEMBLIES = 200  # complex ones of a generic member, which take 15 s
 
 Places: TypeAlias = Sequence[complex] | np.ndarray
@@ -34,16 +36,13 @@ Places: TypeAlias = Sequence[complex] | np.ndarray
 Place: TypeAlias = tuple[Any, ...]
 
 
-class UnfollowedError(ArithmeticError):
-    """It is not known that all assemblies of a group were found; says why."""
-
-
 class Pattern(NamedTuple):
     """The pins (numbers) of every body, and how many of the pins, the first ones,
-    stand."""
+    stand; in a plane, or on a sphere."""
 
     bodies: tuple[tuple[int, ...], ...]
     standing: int
+    is_spherical: bool = False
 
     @property
     def pins(self) -> int:
@@ -66,48 +65,29 @@ def all_assemblies(
 
     Raises `UnfollowedError` where some are not isolated or paths were lost.
     """
-    group = _group(pattern)
-    generic = generic_solutions(pattern)
-    if not generic.are_all:
-        raise UnfollowedError("complex assemblies may be missing")
+    group = group_of(pattern)
     last = group.real_parameters(own, standing)
-    fibre, deadline = generic.fibre, current_deadline()
-    paths = follow_paths(
-        group.family, fibre.solutions, fibre.parameters, last, deadline
-    )
+    paths = group.paths_to(last)
     if np.any(paths.ends == PathEnd.AT_INFINITY):
-        _require_no_short_bar(own)
-    places = [group.places(end, last) for end in _real_ends(paths)]
+        _require_no_short_bar(pattern, own)
+    places = [group.places(end, last) for end in group.real_ends(paths)]
     return np.array(places).reshape(-1, pattern.pins)
 
 
-def _require_no_short_bar(own: Sequence[Places]) -> None:
+def generic_of(pattern: Pattern) -> GenericSolutions:
+    """The solutions of a generic member. Raises `UnfollowedError`."""
+    return group_of(pattern).generic
+
+
+def _require_no_short_bar(pattern: Pattern, own: Sequence[Places]) -> None:
     """Raise `UnfollowedError` where paths may come back that seem to end at infinity."""
-    squares = np.array([abs(pins[1] - pins[0]) ** 2 for pins in own])
+    seen = [_seen(pattern, _real(pins[0]), _real(pins[1])) for pins in own]
+    squares = np.array([abs(there) ** 2 for there, _ in seen])
+    if pattern.is_spherical:
+        # of the sine of an arc: half a turn is as bad as none
+        squares = np.append(4.0 * squares / (1.0 + squares) ** 2, 1.0)
     if is_short_bar(float(squares.min() / squares.max())):
         raise UnfollowedError("a bar is so short that paths seem to end at infinity")
-
-
-def _real_ends(paths: Paths) -> np.ndarray:
-    """The ends (k, n) that are real: each is its own conjugate.
-
-    Raises `UnfollowedError` unless every path came to an end, isolated or at infinity,
-    and the conjugate of each end is one of them.
-    """
-    if np.any(paths.is_lost):
-        raise UnfollowedError(f"paths were lost: {', '.join(paths.reasons())}")
-    if np.any(paths.ends == PathEnd.SINGULAR):
-        raise UnfollowedError("some assemblies are singular or move")
-    ends = paths.regular
-    count = len(ends)
-    # z and w change places
-    pairs = ends.reshape(count, ends.shape[1] // 2, 2)
-    conjugates = pairs[:, :, ::-1].conj().reshape(ends.shape)
-    partners = copy_of(np.concatenate([ends, conjugates]))[count:]
-    if np.any(partners >= count):
-        raise UnfollowedError("an assembly has no conjugate one")
-    real: np.ndarray = ends[partners == np.arange(count)]
-    return real
 
 
 # --- equations ------------------------------------------------------------------------
@@ -121,7 +101,7 @@ class _Third(NamedTuple):
 
 
 @dataclass(frozen=True)
-class _Group:
+class Group(RealFamily):
     """The equations of a ``pattern``.
 
     Parameters are those of the equations, one each (squares of lengths, and ratios of
@@ -130,6 +110,7 @@ class _Group:
     """
 
     pattern: Pattern
+    most: ClassVar[int] = MOST_ASSEMBLIES
 
     @cached_property
     def placed(self) -> dict[int, _Third]:
@@ -179,14 +160,22 @@ class _Group:
         of_equations = iter(numbers[n:])
         outputs: list[RecordedNumber] = []
         for pins in self.pattern.bodies:
-            along = [end - start for start, end in _between(places, pins)]
+            along = self._seen(places, pins, 1)
             outputs.append(along[0] * along[1] - next(of_equations))
         for third in self.checked:
             pins = self.pattern.bodies[third.body]
-            ends = zip(places[self._pin(third)], _between(places, pins), strict=True)
-            for place, (start, end) in ends:
-                outputs.append(place - start - next(of_equations) * (end - start))
+            along = self._seen(places, pins, 1)
+            for seen, base in zip(
+                self._seen(places, pins, third.place), along, strict=True
+            ):
+                outputs.append(seen - next(of_equations) * base)
         return Family(writer.tape([one.slot for one in outputs]), n)
+
+    def _seen(
+        self, places: Mapping[int, Place], pins: Sequence[int], place: int
+    ) -> Place:
+        """Where a pin of a body, by its place there, is seen from the first one."""
+        return _seen(self.pattern, places[pins[0]], places[pins[place]])
 
     def _all_places(self, unknowns: Any, parameters: Any) -> dict[int, Place]:
         """(z, w) of every pin."""
@@ -201,17 +190,30 @@ class _Group:
             places[pin] = unknowns[2 * number], unknowns[2 * number + 1]
         for number, (pin, third) in enumerate(self.placed.items()):
             pins = self.pattern.bodies[third.body]
-            both = zip(
-                ratios[2 * number : 2 * number + 2], _between(places, pins), strict=True
-            )
-            places[pin] = tuple(
-                start + ratio * (end - start) for ratio, (start, end) in both
-            )
+            own = ratios[2 * number : 2 * number + 2]
+            both = zip(own, self._seen(places, pins, 1), strict=True)
+            there = tuple(ratio * base for ratio, base in both)
+            places[pin] = _beside(self.pattern, places[pins[0]], there)
         return places
 
     # --- members ----------------------------------------------------------------------
 
-    def generic_member(self, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    @cached_property
+    def projection(self) -> Projection:
+        """The parameters of equations vary, and one coordinate is looked at."""
+        varied = np.arange(self.family.parameters) < self.counts[0]
+        coordinates = (slice(k, k + 1) for k in range(self.family.n))
+        return Projection(varied, tuple(coordinates))
+
+    def conjugates(self, points: np.ndarray) -> np.ndarray:
+        """The conjugates (k, n) of solutions (k, n): z and w change places."""
+        pairs = points.reshape(len(points), self.family.n // 2, 2)
+        conjugates: np.ndarray = pairs[:, :, ::-1].conj().reshape(points.shape)
+        return conjugates
+
+    def generic_member(
+        self, rng: np.random.Generator, attempt: int
+    ) -> tuple[np.ndarray, np.ndarray]:
         """A random solution (n,), and the parameters (q,) of the member that it is
         of."""
         family = self.family
@@ -229,11 +231,20 @@ class _Group:
 
     def real_parameters(self, own: Sequence[Places], standing: Places) -> np.ndarray:
         """The parameters (q,) of bodies with their pins at the places ``own``."""
-        lengths = [abs(pins[1] - pins[0]) ** 2 + 0j for pins in own]
+        bases = [self._own(pins, 1) for pins in own]
+        lengths = [abs(base) ** 2 + 0j for base in bases]
         thirds = [*self.checked, *self.placed.values()]
-        numbers = [_ratio(own[one.body], one.place) for one in thirds] + [*standing]
+        ratios = [
+            self._own(own[one.body], one.place) / bases[one.body] for one in thirds
+        ]
+        numbers = [*ratios, *standing]
         both = np.column_stack([numbers, np.conj(numbers)]).ravel()
         return np.concatenate([lengths, both])
+
+    def _own(self, pins: Places, place: int) -> complex:
+        """Where a pin of a body is seen from the first one, from their own places."""
+        start, end = complex(pins[0]), complex(pins[place])
+        return complex(_seen(self.pattern, _real(start), _real(end))[0])
 
     def places(self, point: np.ndarray, parameters: np.ndarray) -> list[complex]:
         """The places of all pins at a real solution (n,)."""
@@ -241,32 +252,28 @@ class _Group:
         return [places[pin][0] for pin in range(self.pattern.pins)]
 
 
-def _between(places: Mapping[int, Place], pins: Sequence[int]) -> list[Place]:
-    """(start, end) of z and of w, of the first two pins of a body."""
-    return list(zip(places[pins[0]], places[pins[1]], strict=True))
+def _seen(pattern: Pattern, here: Place, there: Place) -> Place:
+    """Where a place is seen from another one."""
+    along = there[0] - here[0], there[1] - here[1]
+    if not pattern.is_spherical:
+        return along
+    return along[0] / (1.0 + here[1] * there[0]), along[1] / (1.0 + here[0] * there[1])
 
 
-def _ratio(own: Places, place: int) -> complex:
-    return complex((own[place] - own[0]) / (own[1] - own[0]))
+def _beside(pattern: Pattern, here: Place, seen: Place) -> Place:
+    """The place that is seen so from another one."""
+    there = here[0] + seen[0], here[1] + seen[1]
+    if not pattern.is_spherical:
+        return there
+    return there[0] / (1.0 - here[1] * seen[0]), there[1] / (1.0 - here[0] * seen[1])
+
+
+def _real(place: complex) -> Place:
+    """z and w of a place."""
+    return complex(place), complex(place).conjugate()
 
 
 @cache
-def _group(pattern: Pattern) -> _Group:
-    return _Group(pattern)
-
-
-@cache
-def generic_solutions(pattern: Pattern) -> GenericSolutions:
-    """Those of one generic member, found once a process. Raises `UnfollowedError` where
-    it moves, and where the time is over."""
-    group, deadline = _group(pattern), current_deadline()
-    rng = np.random.default_rng(SEED)
-    start, parameters = group.generic_member(rng)
-    if not group.family.is_regular(start, parameters):
-        raise UnfollowedError("it moves, or has more bars than hold it")
-    generic = solve_generic(
-        group.family, start, parameters, rng, deadline, MOST_ASSEMBLIES
-    )
-    if deadline.passed:
-        raise UnfollowedError("out of time")
-    return generic
+def group_of(pattern: Pattern) -> Group:
+    """The equations of a pattern, the same ones every time."""
+    return Group(pattern)

@@ -20,15 +20,17 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.completeness import Claim, Level, Scope
+from bifurc.decisions import is_singular_path_end
 from bifurc.problem import Problem
 from bifurc.seeds import Audit
 from linkages.dyads.build import Builder, Geometry, TooManyError
+from linkages.dyads.generic import UnfollowedError
 from linkages.dyads.geometry import DegenerateDyadError, PlaneGeometry
-from linkages.dyads.group import UnfollowedError
 from linkages.dyads.pinned import GenericCount, are_held_by_pins
 from linkages.dyads.plan import Plan, make_plan
 from linkages.dyads.space import SpaceGeometry
 from linkages.statements import LinkageClaim, random_assemblies
+from linkages.structure.placement import Placement
 from linkages.structure.plane import normal_of_plane
 from linkages.structure.structure import Structure
 
@@ -120,32 +122,40 @@ class DyadSlices:
         return f"on which {', or '.join(parts)}"
 
 
+def built_at_once(
+    problem: Problem, structure: Structure, rng: np.random.Generator, count: int
+) -> DyadSlices | None:
+    """All assemblies of the mechanism of a ``structure`` that nothing moves; None where
+    dyads and larger groups in a plane do not build it."""
+    geometry = _geometry(structure)
+    if geometry is None or follows_many_turns(structure):
+        return None
+    plan = make_plan(structure.mechanism, (), with_groups=True)
+    if plan is None or (plan.has_groups and not stands(problem, structure)):
+        return None
+    try:
+        return _built(Builder(structure, geometry, plan))
+    except TooManyError:
+        return None
+
+
 def for_subject(
     problem: Problem, structure: Structure, rng: np.random.Generator, count: int
 ) -> DyadSlices | None:
     """Slices of the mechanism of a ``structure`` at evenly spaced values, the first one
     drawn, of a few of its variables; None where dyads do not build it, or build too
     many configurations."""
+    geometry = _geometry(structure)
+    if geometry is None or follows_many_turns(structure):
+        return None
+    if make_plan(structure.mechanism, ()) is not None:
+        return None
     try:
-        return _slice_by_dyads(structure, rng)
+        slices = _slices_of_dyads(structure, geometry, rng)
+        if not slices and geometry.has_pins:
+            slices = _slices_of_groups(structure, geometry, rng)
     except TooManyError:
         return None
-
-
-def _slice_by_dyads(
-    structure: Structure, rng: np.random.Generator
-) -> DyadSlices | None:
-    geometry = _geometry(structure)
-    if geometry is None or _follows_many_turns(structure):
-        return None
-    still = make_plan(structure.mechanism, (), with_groups=True)
-    if still is not None:
-        built = _built_at_once(Builder(structure, geometry, still))
-        if built is not None or not still.has_groups:
-            return built
-    slices = _slices_of_dyads(structure, geometry, rng)
-    if not slices and isinstance(geometry, PlaneGeometry):
-        slices = _slices_of_groups(structure, geometry, rng)
     return _joined(structure, slices) if slices else None
 
 
@@ -165,7 +175,7 @@ def _joined(structure: Structure, slices: Mapping[int, _Slice]) -> DyadSlices:
     )
 
 
-def _built_at_once(builder: Builder) -> DyadSlices | None:
+def _built(builder: Builder) -> DyadSlices | None:
     """The assemblies of what nothing moves; None where it is not known that they are
     all."""
     try:
@@ -187,8 +197,8 @@ def _built_at_once(builder: Builder) -> DyadSlices | None:
 
 
 def _geometry(structure: Structure) -> Geometry | None:
-    """That of the plane in which all moves, else that of turns in space; None where
-    other joints move, too."""
+    """That of the plane in which all moves, else that of turns in space, or on a
+    sphere; None where other joints move, too."""
     mechanism = structure.mechanism
     normal = normal_of_plane(mechanism)
     if normal is not None:
@@ -197,10 +207,26 @@ def _geometry(structure: Structure) -> Geometry | None:
     is_free = any(pair.center is not None for pair in mechanism.pairs)
     if is_free or any(not one.is_turn or one.advance for one in motions):
         return None
-    return SpaceGeometry(structure.unit)
+    given = [one.motion for one in mechanism.variables if one.locked != 0.0]
+    placement = Placement.of_chain(given, structure.unit)
+    is_on_sphere = placement.is_spherical and all(one.is_turn for one in given)
+    return SpaceGeometry(structure.unit, placement.origin if is_on_sphere else None)
 
 
-def _follows_many_turns(structure: Structure) -> bool:
+def stands(problem: Problem, structure: Structure) -> bool:
+    """Whether nothing moves about the closed configuration next to the reference, not
+    even to first order: else paths would end there at a singular one."""
+    points, _ = problem.project(structure.reference[None])
+    (matrix,) = problem.jacobians(points)
+    sizes = np.linalg.norm(matrix, axis=1, keepdims=True)
+    rows = matrix / np.where(sizes > 0.0, sizes, 1.0)
+    values = np.linalg.svd(rows, compute_uv=False)
+    if len(values) < problem.n:
+        return False
+    return not is_singular_path_end(float(values[-1] / values[0]))
+
+
+def follows_many_turns(structure: Structure) -> bool:
     """Whether something follows an angle that may turn by more than a full turn within
     its limits: it is elsewhere after each."""
     columns = list(structure.column_of.values())
@@ -235,14 +261,14 @@ def _slices_of_dyads(
 
 
 def _slices_of_groups(
-    structure: Structure, geometry: PlaneGeometry, rng: np.random.Generator
+    structure: Structure, geometry: Geometry, rng: np.random.Generator
 ) -> dict[int, _Slice]:
     """The slices of a few unknowns, by number, from which larger groups build the
     mechanism, and of which one moves on every motion; none where that is not known."""
     plans: dict[int, Plan] = {}
     for number, unknown in enumerate(structure.unknowns[:MOST_TRIED]):
         plan = make_plan(structure.mechanism, (unknown.variable,), with_groups=True)
-        if plan is not None and are_held_by_pins(plan):
+        if plan is not None and are_held_by_pins(plan, geometry.is_spherical):
             plans[number] = plan
     slices: dict[int, _Slice] = {}
     while drivers := _that_move(structure, geometry, plans):
@@ -259,7 +285,7 @@ def _slices_of_groups(
 
 
 def _that_move(
-    structure: Structure, geometry: PlaneGeometry, plans: Mapping[int, Plan]
+    structure: Structure, geometry: Geometry, plans: Mapping[int, Plan]
 ) -> tuple[int, ...]:
     """The unknowns, of those with ``plans`` with the least groups, of which one moves
     on every motion: where they stand still, dyads build all. None where there are not
@@ -328,13 +354,13 @@ def _points_at(
             point = builder.unknowns(poses)
             if driver is not None:
                 point[driver] = place
-            points += _within_limits(builder.structure, point)
+            points += within_limits(builder.structure, point)
             if len(points) > MOST_POINTS:
                 raise TooManyError
     return np.array(points).reshape(-1, len(builder.structure.unknowns))
 
 
-def _within_limits(structure: Structure, point: np.ndarray) -> list[np.ndarray]:
+def within_limits(structure: Structure, point: np.ndarray) -> list[np.ndarray]:
     """The configurations (n,) within the limits that are ``point`` (n,) but for whole
     turns of limited angles, somewhat more of them than are wanted at most."""
     turning, turns = [], []

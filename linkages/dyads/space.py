@@ -8,6 +8,7 @@ on a sphere and in overconstrained loops they do.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +20,10 @@ from linkages.dyads.geometry import (
     DegenerateDyadError,
 )
 from linkages.mechanisms.joint import Motion, transforms
+
+# Orthonormal vectors in rows: a sphere is projected from the point opposite to the third
+# one, any where no axis is likely to be.
+PROJECTED = np.linalg.qr(np.random.default_rng(28).normal(size=(3, 3)))[0]
 
 
 class SpacePose(NamedTuple):
@@ -58,10 +63,14 @@ class Axis(NamedTuple):
 
 
 class SpaceGeometry:
-    """Bodies that turn about axes in space; ``size`` is a length of the mechanism."""
+    """Bodies that turn about axes in space, on a sphere if all of these pass through a
+    ``center`` (3,); ``size`` is a length of the mechanism."""
 
-    def __init__(self, size: float):
+    is_spherical = True  # where larger groups are held by pins
+
+    def __init__(self, size: float, center: np.ndarray | None = None):
         self.size = size
+        self.center = center
         self.rest = SpacePose(np.eye(3), np.zeros(3))
 
     def motion(self, motion: Motion, value: float) -> SpacePose:
@@ -89,6 +98,34 @@ class SpaceGeometry:
             for pose in (first, second)
         ]
         return Axis(*lines)
+
+    # --- pins on a sphere -------------------------------------------------------------
+
+    @property
+    def has_pins(self) -> bool:
+        """Whether axes are places on a sphere."""
+        return self.center is not None
+
+    def pin(self, pose: SpacePose, motion: Motion) -> complex:
+        """The place of the axis of a body with this ``pose`` on the unit sphere, in
+        stereographic projection."""
+        x, y, z = PROJECTED @ (pose.rotation @ motion.direction)
+        return complex(x, y) / float(1.0 + z)
+
+    def held_by_pins(
+        self, own: Sequence[complex], there: Sequence[complex]
+    ) -> SpacePose:
+        """The pose of a body with two places of its ``own`` at others. Raises
+        `DegenerateDyadError` where they are one axis."""
+        before, after = (
+            _frame(*(_on_sphere(place) for place in places)) for places in (own, there)
+        )
+        rotation = after @ before.T
+        center = self.center
+        assert center is not None
+        return SpacePose(rotation, center - rotation @ center)
+
+    # --- dyads ------------------------------------------------------------------------
 
     def close_monad(self, one: Axis, other: Axis) -> list[SpacePose]:
         """The poses of a part that two joints hold; none where they do not fit. Raises
@@ -149,6 +186,15 @@ class SpaceGeometry:
         most = min(max(first, second), 1.0)
         sine = math.sqrt(1.0 - most * most)
         return is_degenerate_dyad(min(abs(first - second), sine))
+
+
+def _on_sphere(place: complex) -> np.ndarray:
+    """The unit vector (3,) with this place in the projection."""
+    square = abs(place) ** 2
+    vector: np.ndarray = (
+        np.array([2.0 * place.real, 2.0 * place.imag, 1.0 - square]) / (1.0 + square)
+    ) @ PROJECTED
+    return vector
 
 
 def _cosines(one: Axis, pin: Axis, other: Axis) -> tuple[float, float]:

@@ -232,10 +232,25 @@ class UnitProblem(EquationProblem):
 
     def multiplicity_along(self, branch: Branch) -> int:
         """How often the user's equations are solved all along a ``branch`` in these
-        units: the product over them of the powers of the factors that vanish there."""
-        if self.simplified is None:
+        units: the product over them of the powers of the factors that vanish there, 1
+        where they are independent there all the same."""
+        if self.simplified is None or self._are_independent_along(branch):
             return 1
         return self.simplified.order * math.prod(self._powers_along(branch).values())
+
+    def _are_independent_along(self, branch: Branch) -> bool:
+        """Whether the user's equations have rank n - 1 along a ``branch`` in these
+        units, but for singular points: two factors of one vanish there, say, and others
+        tell its place."""
+        points = self.own_units.outwards(branch(branch.length * PLACES))
+        matrices = self.problem.equations.jacobians(points) * self.own_units.sizes
+        anywhere = self.own_units.outwards(self._matrices()[0])
+        others = self.problem.equations.jacobians(anywhere) * self.own_units.sizes
+        rows = np.median(np.linalg.norm(others, axis=2), axis=0)
+        values = values_of(matrices / (rows[:, None] + TINY))
+        if values.shape[1] < self.n - 1:
+            return False
+        return bool(np.median(values[:, self.n - 2]) > REGULAR)
 
     def _powers_along(self, branch: Branch) -> dict[int, int]:
         """The sum of the powers of the factors that vanish all along a ``branch`` in

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bifurc.limits import Deadline
+from bifurc.paths import follow
 from bifurc.paths.family import Family
 from bifurc.paths.follow import PathEnd, distinct, follow_paths
 
@@ -16,6 +17,11 @@ def family_of_powers(degree):
 def ends_of(family, starts, first, last, **options):
     starts = np.array(starts, dtype=complex).reshape(-1, family.n)
     return follow_paths(family, starts, np.array(first), np.array(last), **options)
+
+
+def sorted_ends(paths):
+    """The ends of paths of one unknown, by their imaginary parts."""
+    return sorted(paths.points[:, 0].tolist(), key=lambda end: (end.imag, end.real))
 
 
 def test_regular_ends_are_exact_to_rounding():
@@ -76,12 +82,39 @@ def test_a_start_that_is_no_solution_is_said():
     assert paths.reasons() == ["the start is no solution"]
 
 
-def test_a_path_through_a_singular_member_is_lost_and_says_so():
+def test_paths_through_a_singular_member_are_led_round_it():
     # at p = 0, half way, the solutions meet
     paths = ends_of(family_of_powers(2), [1.0, -1.0], [1.0], [-1.0])
+    assert np.all(paths.is_regular)
+    assert sorted_ends(paths) == pytest.approx([-1j, 1j])
+
+
+def test_a_path_through_a_singular_member_is_lost_and_says_so(monkeypatch):
+    monkeypatch.setattr(follow, "DETOURS", ())
+    paths = ends_of(family_of_powers(2), [1.0, -1.0], [1.0], [-1.0])
     assert np.all(paths.is_lost)
-    assert set(paths.reasons()) <= {"steps became too small", "more than 2000 steps"}
+    assert set(paths.reasons()) <= {"steps became too small", "more than 3000 steps"}
     assert np.allclose(paths.rests, 0.5, atol=1e-6)
+
+
+def test_a_path_that_is_led_round_does_not_end_where_another_one_does():
+    # where two of three solutions meet half way; round that they may change places
+    family = Family.of(lambda x, p: [(x[0] ** 2 - p[0]) * (x[0] - 3.0)], 1, 1)
+    for side in (1.0, -1.0):
+        paths = ends_of(family, [side, 3.0, -side], [1.0], [-1.0])
+        assert sorted_ends(paths) == pytest.approx([-1j, 3.0, 1j])
+
+
+def test_where_terms_cancel_ends_are_exact_to_rounding():
+    # (x - 1)^3 = p; doubles leave 1e-16 / 3e-6
+    def equations(x, p):
+        return [((x[0] - 3.0) * x[0] + 3.0) * x[0] - 1.0 - p[0]]
+
+    family = Family.of(equations, 1, 1)
+    turns = np.exp(2j * np.pi * np.arange(3) / 3)
+    paths = ends_of(family, 1.0 + turns, [1.0], [1e-9])
+    assert np.all(paths.is_regular)
+    assert np.abs(paths.points[:, 0] - (1.0 + 1e-3 * turns)).max() < 1e-15
 
 
 def test_no_path_is_begun_after_a_deadline():

@@ -5,7 +5,16 @@ import pytest
 
 from bifurc.limits import Deadline
 from bifurc.paths.family import Family, complex_normal
-from bifurc.paths.monodromy import Fibre, GenericSolutions, solve_generic
+from bifurc.paths.monodromy import (
+    CurveOverLine,
+    Effort,
+    Fibre,
+    GenericSolutions,
+    _enlarged,
+    _trace,
+    _Ways,
+    solve_generic,
+)
 from tests.samples import one_in
 
 PRISM = [(0, 1), (0, 2), (1, 2), (0, 3), (1, 4), (2, 5), (3, 4), (3, 5), (4, 5)]
@@ -70,20 +79,43 @@ def test_a_univariate_polynomial_has_as_many_roots_as_its_degree():
 
 
 def test_the_trace_test_misses_a_point_that_is_left_out():
-    from bifurc.paths import monodromy
-
     family = framework(PRISM, 6)
     rng = np.random.default_rng(0)
     known = generic_solutions(family)
-    curve = monodromy._CurveOverLine(family, known.fibre, 1.0, rng, Deadline())
-    curve.find_points(rng, Deadline())
-    while not GenericSolutions(known.fibre, curve.trace(Deadline())).are_all:
-        curve.find_points(rng, Deadline())
-    points = curve.slice.solutions
-    for missing in range(0, len(points), 7):
-        left = np.delete(points, missing, axis=0)
-        curve.slice = Fibre(curve.slice.parameters, left)
-        assert curve.trace(Deadline()) > 1e-3
+    sizes, looked_at = np.ones(family.parameters), np.arange(family.n) < 2
+    curve = CurveOverLine(family, known.fibre, sizes, looked_at, rng)
+    effort = Effort(Deadline())
+    curve.find_points(rng, effort)
+    while not GenericSolutions(known.fibre, curve.trace(effort)).are_all:
+        curve.find_points(rng, effort)
+    assert len(curve.solutions) == 24
+    section = curve.section
+    for missing in range(0, len(section.solutions), 7):
+        left = np.delete(section.solutions, missing, axis=0)
+        curve.section = Fibre(section.parameters, left)
+        assert curve.trace(effort) > 1e-3
+
+
+def test_a_solution_that_closed_ways_do_not_reach_is_found_on_the_curve():
+    """As the trace test is asked of it, not of the solutions that are known."""
+    family = framework(PRISM, 6)
+    known = generic_solutions(family).fibre
+    one = Fibre(known.parameters, known.solutions[:1])
+    rng, effort = np.random.default_rng(1), Effort(Deadline())
+    sizes, looked_at = np.ones(family.parameters), np.arange(family.n) < 2
+    curve = CurveOverLine(family, one, sizes, looked_at, rng)
+    while not GenericSolutions(one, curve.trace(effort)).are_all:
+        curve.find_points(rng, effort)
+    assert len(curve.solutions) == 24
+
+
+def test_no_more_paths_than_are_allowed_are_followed():
+    family = framework(PRISM, 6)
+    fibre = generic_solutions(family).fibre
+    effort = Effort(Deadline(), most=100)
+    ways = _Ways(np.ones(family.parameters), quiet=60)
+    _enlarged(family, fibre, ways, np.random.default_rng(0), effort)
+    assert 100 < effort.followed <= 100 + 3 * 24
 
 
 def test_what_is_not_tested_for_lack_of_time_is_not_said_to_be_all():
@@ -129,8 +161,6 @@ def platform(x, p):
 
 def test_a_platform_on_six_legs_has_40_complex_assemblies():
     """Ronga and Vust 1995; Raghavan 1993."""
-    from bifurc.paths.monodromy import _enlarged, _Ways
-
     family = Family.of(platform, 9, 36)
     rng = np.random.default_rng(0)
     start, parameters = complex_normal(rng, 9), complex_normal(rng, 36)
@@ -138,12 +168,11 @@ def test_a_platform_on_six_legs_has_40_complex_assemblies():
     parameters[18:27] = family.residuals(start[None], parameters)[0]
     ways = _Ways(np.ones(36), quiet=3)
     fibre = Fibre(parameters, start[None])
-    assert len(_enlarged(family, fibre, ways, rng, Deadline()).solutions) == 40
+    fibre = _enlarged(family, fibre, ways, rng, Effort(Deadline()))
+    assert len(fibre.solutions) == 40
 
 
 def test_a_trace_of_no_points_says_nothing():
-    from bifurc.paths.monodromy import _trace
-
     family = framework(PRISM, 6)
     nothing = Fibre(np.ones(family.parameters, dtype=complex), np.empty((0, family.n)))
-    assert _trace(family, nothing, 0, 1.0, Deadline()) is None
+    assert _trace(family, nothing, 0, 1.0, Effort(Deadline())) is None

@@ -13,7 +13,7 @@ from bifurc.system import relative_gaps
 from linkages.closure.closure import Closure
 from linkages.dyads import slices as slices_module
 from linkages.dyads.geometry import Pivot, PlaneGeometry
-from linkages.dyads.slices import SLICES, for_subject
+from linkages.dyads.slices import SLICES, built_at_once, for_subject
 from linkages.files.arcs import read_arcs
 from linkages.mapping import map_linkage
 from linkages.mechanisms.joint import Joint
@@ -80,7 +80,8 @@ def sliced(mechanism):
 
 def sliced_structure(structure):
     problem = Closure(structure.mechanism)
-    return for_subject(problem, structure, np.random.default_rng(0), 0)
+    given = problem, structure, np.random.default_rng(0), 0
+    return built_at_once(*given) or for_subject(*given)
 
 
 @pytest.mark.parametrize("name", BUILT)

@@ -1,0 +1,185 @@
+"""All real solutions of a member of a family, from the complex ones of a generic member.
+
+These are found once a process for all mechanisms of the same equations; of common types
+with many of them they are at hand. From there paths lead to all isolated solutions of
+any other member.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from abc import ABC, abstractmethod
+from functools import cache, cached_property
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+
+from bifurc.limits import current_deadline
+from bifurc.paths.family import Family
+from bifurc.paths.follow import PathEnd, Paths, copy_of, follow_paths
+from bifurc.paths.monodromy import (
+    Fibre,
+    GenericSolutions,
+    Projection,
+    solve_generic,
+)
+
+SEED = 28  # of the generic member from which paths begin
+ATTEMPTS = 4  # generic members that are tried, one after the other
+SHIPPED = Path(__file__).with_name("generic_solutions.npz")
+
+
+class UnfollowedError(ArithmeticError):
+    """It is not known that all assemblies were found; says why."""
+
+
+class RealFamily(ABC):
+    """Equations of which some members are those of mechanisms: with each solution its
+    conjugate is one."""
+
+    # complex solutions that are looked for: some seconds
+    most: ClassVar[int]
+
+    @property
+    @abstractmethod
+    def family(self) -> Family:
+        """The equations."""
+
+    @property
+    @abstractmethod
+    def projection(self) -> Projection:
+        """What is enough to vary and to look at."""
+
+    @abstractmethod
+    def generic_member(
+        self, rng: np.random.Generator, attempt: int
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """A random solution (n,), and the parameters (q,) of the member that it is of,
+        drawn in another way at every ``attempt``."""
+
+    @abstractmethod
+    def conjugates(self, points: np.ndarray) -> np.ndarray:
+        """The conjugates (k, n) of solutions (k, n)."""
+
+    @cached_property
+    def generic(self) -> GenericSolutions:
+        """The solutions of one generic member: of a common type, known, or found.
+
+        Raises `UnfollowedError` where it moves, where there are more than are looked
+        for, and where the time is over.
+        """
+        name = name_of(self.family)
+        if name not in _known:
+            shipped = _shipped().get(name)
+            _known[name] = shipped or find_generic(self, self.most)
+        return _known[name]
+
+    def paths_to(self, last: np.ndarray) -> Paths:
+        """The paths to all isolated solutions of the member with the parameters
+        ``last`` (q,); where one is lost, from another generic member.
+
+        Raises `UnfollowedError` unless every path came to an isolated solution, or to
+        infinity.
+        """
+        start = self.generic.fibre
+        rng = np.random.default_rng(SEED)
+        for attempt in reversed(range(ATTEMPTS)):
+            paths = self._followed(start, last)
+            if np.any(paths.ends == PathEnd.SINGULAR):
+                raise UnfollowedError("some configurations are singular or move")
+            if not np.any(paths.is_lost) or current_deadline().passed:
+                break
+            _, moved = self.generic_member(rng, attempt)
+            elsewhere = self._followed(start, moved)
+            if np.all(elsewhere.is_regular):
+                start = Fibre(moved, elsewhere.points)
+        if np.any(paths.is_lost):
+            raise UnfollowedError(f"paths were lost: {', '.join(paths.reasons())}")
+        return paths
+
+    def _followed(self, start: Fibre, last: np.ndarray) -> Paths:
+        solutions, first = start.solutions, start.parameters
+        return follow_paths(self.family, solutions, first, last, current_deadline())
+
+    def real_ends(self, paths: Paths) -> np.ndarray:
+        """The ends (k, n) that are real: each is its own conjugate.
+
+        Raises `UnfollowedError` unless the conjugate of each end is one of them.
+        """
+        ends = paths.regular
+        count = len(ends)
+        partners = copy_of(np.concatenate([ends, self.conjugates(ends)]))[count:]
+        if np.any(partners >= count):
+            raise UnfollowedError("a configuration has no conjugate one")
+        real: np.ndarray = ends[partners == np.arange(count)]
+        return real
+
+
+_known: dict[str, GenericSolutions] = {}
+
+
+def generic_solutions(one: RealFamily) -> GenericSolutions:
+    """Those of one generic member: of a common type, known, or found.
+
+    Raises `UnfollowedError` where it moves, where there are more than are looked for,
+    and where the time is over.
+    """
+    name = name_of(one.family)
+    if name not in _known:
+        shipped = _shipped().get(name)
+        _known[name] = shipped or find_generic(one, one.most)
+    return _known[name]
+
+
+def find_generic(one: RealFamily, most: int) -> GenericSolutions:
+    """The solutions of a generic member, at ``most`` so many, by monodromy: all of them,
+    as the trace test says.
+
+    Raises `UnfollowedError`.
+    """
+    deadline = current_deadline()
+    for attempt in range(ATTEMPTS):
+        rng = np.random.default_rng(SEED + attempt)
+        start, parameters = one.generic_member(rng, attempt)
+        if not one.family.is_regular(start, parameters):
+            raise UnfollowedError("it moves, or more holds it than has to")
+        generic = solve_generic(
+            one.family,
+            start,
+            parameters,
+            rng,
+            deadline,
+            most,
+            projection=one.projection,
+        )
+        if deadline.passed:
+            raise UnfollowedError("out of time")
+        if generic.count > most:
+            raise UnfollowedError("there are too many complex configurations")
+        if generic.are_all:
+            return generic
+    raise UnfollowedError("complex configurations may be missing")
+
+
+def name_of(family: Family) -> str:
+    """What equations are called: the same have the same name."""
+    nodes, outputs = family.tape.nodes()
+    return hashlib.sha256(repr((nodes, outputs, family.n)).encode()).hexdigest()[:32]
+
+
+@cache
+def _shipped() -> dict[str, GenericSolutions]:
+    """The solutions of generic members of common types, by the names of their
+    equations."""
+    if not SHIPPED.exists():
+        return {}
+    with np.load(SHIPPED) as arrays:
+        names = sorted({key.split()[0] for key in arrays})
+        return {
+            name: GenericSolutions(
+                Fibre(arrays[f"{name} parameters"], arrays[f"{name} solutions"]),
+                float(arrays[f"{name} trace"]),
+            )
+            for name in names
+        }
