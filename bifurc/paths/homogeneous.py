@@ -15,7 +15,7 @@ Exponents: TypeAlias = tuple[int, ...]
 Terms: TypeAlias = Mapping[Exponents, float]
 
 
-def degree_of(polynomial: Terms) -> int:
+def degree_of(polynomial: Iterable[Exponents]) -> int:
     """The degree of a polynomial."""
     return max(map(sum, polynomial))
 
@@ -67,14 +67,6 @@ def write_homogeneous(
         term = write_monomial(writer, writer.constant(value), slots, powers)
         total = writer.add(total, term)
     return total
-
-
-def write_product(writer: TapeWriter, factors: Sequence[int]) -> int:
-    """The slot of a product."""
-    product = writer.constant(1.0)
-    for factor in factors:
-        product = writer.multiply(product, factor)
-    return product
 
 
 def write_linear(

@@ -15,21 +15,36 @@ isolated solutions of the polynomials plus generic multiples of the hyperplanes
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 
 from bifurc.decisions import solves_all_equations
 from bifurc.equations.tape import TapeWriter
 from bifurc.limits import Deadline
-from bifurc.paths.family import Family, complex_normal
-from bifurc.paths.follow import PathEnd, Paths, follow_paths
+from bifurc.paths.family import Family, complex_normal, on_patch
+from bifurc.paths.follow import PathEnd, Paths, follow_paths, with_affine_ends
+from bifurc.paths.homogeneous import (
+    Exponents,
+    degree_of,
+    write_linear,
+    write_monomial,
+)
 from bifurc.paths.monodromy import Fibre, GenericSolutions, solve_generic
 
-Exponents: TypeAlias = tuple[int, ...]
+
+class SolvedPolynomials(NamedTuple):
+    """The ``paths`` to all isolated solutions of polynomials, by how much the test of the
+    generic ones from which they begin failed, ``trace``, and whether there are complex
+    solutions that are not isolated, ``has_curves``; None where that is not known."""
+
+    paths: Paths
+    trace: float
+    has_curves: bool | None
 
 
 @dataclass(frozen=True)
@@ -73,30 +88,25 @@ class SparseFamily:
         writer = TapeWriter(size + self.coefficients + size)
         first, *unknowns = (writer.unknown(number) for number in range(size))
         outputs = self._written(writer, unknowns, first)
-        height = writer.constant(-1.0)
-        for number, unknown in enumerate([first, *unknowns]):
-            factor = writer.unknown(size + self.coefficients + number)
-            height = writer.add(height, writer.multiply(factor, unknown))
-        return Family(writer.tape([*outputs, height]), size, is_projective=True)
+        of_plane = map(writer.unknown, range(size + self.coefficients, writer.n))
+        height = write_linear(writer, of_plane, [first, *unknowns])
+        outputs.append(writer.subtract(height, writer.constant(1.0)))
+        return Family(writer.tape(outputs), size, is_projective=True)
 
     def _written(
         self, writer: TapeWriter, unknowns: Sequence[int], first: int | None = None
     ) -> list[int]:
         """The slots of the polynomials in slots ``unknowns`` (n), with the coefficients
         after them; homogeneous with another one."""
-        number = len(unknowns) + (first is not None)
+        slots = [*unknowns] if first is None else [*unknowns, first]
+        number = len(slots)
         outputs = []
         for support in self.supports:
             degree = max(map(sum, support))
             total = writer.constant(0.0)
             for exponents in support:
-                term = writer.unknown(number)
-                factors = list(zip(unknowns, exponents, strict=True))
-                if first is not None:
-                    factors.append((first, degree - sum(exponents)))
-                for slot, exponent in factors:
-                    power = writer.power(slot, writer.constant(float(exponent)))
-                    term = writer.multiply(term, power)
+                powers = (*exponents, degree - sum(exponents))[: len(slots)]
+                term = write_monomial(writer, writer.unknown(number), slots, powers)
                 total = writer.add(total, term)
                 number += 1
             outputs.append(total)
@@ -133,13 +143,31 @@ class SparseFamily:
             self.family, start, parameters, rng, deadline, most, int(self.constants[0])
         )
 
-    def with_zeros_of(
+    def solve(
         self,
-        generic: GenericSolutions,
+        polynomials: Sequence[Mapping[Exponents, complex]],
+        rng: np.random.Generator,
+        deadline: Deadline,
+        most: int,
+    ) -> SolvedPolynomials | None:
+        """The isolated solutions of ``polynomials`` of the family; None where the trace
+        test failed, or there are more than ``most`` generic ones."""
+        generic = self.generic_solutions(rng, deadline, most)
+        if not generic.are_all or generic.trace is None or generic.count > most:
+            return None
+        member = self.member(polynomials)
+        starts = self._with_zeros_of(generic.fibre, member, rng, deadline)
+        paths = self.follow(starts, member, rng, deadline)
+        has_curves = self._has_curves(generic.fibre, member, rng, deadline)
+        return SolvedPolynomials(paths, generic.trace, has_curves)
+
+    def _with_zeros_of(
+        self,
+        generic: Fibre,
         member: np.ndarray,
         rng: np.random.Generator,
         deadline: Deadline,
-    ) -> GenericSolutions:
+    ) -> Fibre:
         """The solutions of a member with random coefficients, but zeros where those (q,)
         of another one are zero; the ``generic`` ones where those are not all regular.
 
@@ -151,30 +179,25 @@ class SparseFamily:
         paths = self.follow(generic, parameters, rng, deadline)
         if not np.all(paths.is_regular | (paths.ends == PathEnd.AT_INFINITY)):
             return generic
-        return replace(generic, fibre=Fibre(parameters, paths.regular))
+        return Fibre(parameters, paths.regular)
 
     def follow(
         self,
-        generic: GenericSolutions,
+        starts: Fibre,
         member: np.ndarray,
         rng: np.random.Generator,
         deadline: Deadline,
     ) -> Paths:
-        """The paths from the solutions of a generic member to those of another one."""
-        starts = np.insert(generic.fibre.solutions, 0, 1.0, axis=1)
+        """The paths from the solutions of one member to those of another one."""
         plane = complex_normal(rng, self.n + 1)
-        starts /= (starts @ plane)[:, None]
-        first, last = (
-            np.concatenate([coefficients, plane])
-            for coefficients in (generic.fibre.parameters, member)
-        )
-        paths = follow_paths(self.projective, starts, first, last, deadline)
-        points = paths.points[:, 1:] / paths.points[:, :1]
-        return replace(paths, points=points)
+        places = on_patch(starts.solutions, plane)
+        first, last = (np.r_[one, plane] for one in (starts.parameters, member))
+        paths = follow_paths(self.projective, places, first, last, deadline)
+        return with_affine_ends(self.projective, paths)
 
-    def has_curves(
+    def _has_curves(
         self,
-        generic: GenericSolutions,
+        generic: Fibre,
         member: np.ndarray,
         rng: np.random.Generator,
         deadline: Deadline,
@@ -198,3 +221,24 @@ class SparseFamily:
             if np.any(paths.is_lost):
                 return None
         return False
+
+
+def paths_from_powers(
+    polynomials: Sequence[Mapping[Exponents, complex]],
+    rng: np.random.Generator,
+    deadline: Deadline,
+) -> Paths:
+    """The paths to all isolated solutions of n ``polynomials`` in n unknowns from those
+    of x^d = 1, d the degree of each (Bezout)."""
+    n = len(polynomials)
+    degrees = [degree_of(one) for one in polynomials]
+    powers = [tuple(row) for row in np.diag(degrees).tolist()]
+    given = [
+        {power: 0.0, **one} for power, one in zip(powers, polynomials, strict=True)
+    ]
+    family = SparseFamily.of(given)
+    gamma = np.exp(2j * np.pi * rng.random())
+    first = family.member([{power: gamma, (0,) * n: -gamma} for power in powers])
+    roots = [np.exp(2j * np.pi * np.arange(degree) / degree) for degree in degrees]
+    starts = np.array(list(itertools.product(*roots)), dtype=complex)
+    return family.follow(Fibre(first, starts), family.member(given), rng, deadline)
