@@ -12,6 +12,7 @@ itself their sum is linear over each irreducible curve, and over no part of one
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
@@ -32,12 +33,11 @@ from bifurc.paths.homogeneous import (
     Terms,
     degree_of,
     misfits,
-    number_of_paths,
     write_homogeneous,
     write_linear,
 )
 from bifurc.paths.monodromy import Fibre, Projection, solve_generic, trace_of
-from bifurc.paths.sparse import SparseFamily, paths_from_powers
+from bifurc.paths.sparse import have_curves, paths_to_isolated
 
 QUIET = 6  # closed ways in a row that join no points
 CORNERS = 3  # of a closed way
@@ -153,15 +153,16 @@ class CurveEquations:
         units = [tuple(row) for row in np.eye(self.n, dtype=int).tolist()]
         terms = dict(zip([(0,) * self.n, *units], plane.tolist(), strict=True))
         polynomials = [*self.square, terms]
-        paths = None
-        if number_of_paths(self.degrees) <= most:
-            paths = paths_from_powers(polynomials, rng, deadline)
-        if paths is None or paths.lost:
-            family = SparseFamily.of(polynomials)
-            solved = family.solve(polynomials, rng, deadline, most)
-            if solved is None or solved.has_curves is not False:
-                return None
-            paths = solved.paths
+        paths = paths_to_isolated(polynomials, rng, deadline, most, most)
+        if paths is None:
+            return None
+        # but from powers no path need come to a surface
+        is_of_powers = len(paths.ends) == math.prod(self.degrees)
+        if (
+            not is_of_powers
+            and have_curves(polynomials, rng, deadline, most) is not False
+        ):
+            return None
         solves_all = solves_all_equations(misfits(self.polynomials, paths.points))
         points = paths.points[paths.is_regular & solves_all]
         return self.section(plane, points, rng), paths

@@ -123,6 +123,12 @@ class Paths:
         """How many of them came to no end."""
         return int(np.count_nonzero(self.is_lost))
 
+    @property
+    def is_finite(self) -> np.ndarray:
+        """Which of them (k,) did not end at infinity."""
+        finite: np.ndarray = self.ends != PathEnd.AT_INFINITY
+        return finite
+
     def far(self, reach: float = np.inf) -> int:
         """How many ended so far away that it is not told from infinity, and is not
         plainly beyond what is within ``reach``."""

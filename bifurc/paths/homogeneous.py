@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TypeAlias
 
@@ -78,8 +77,3 @@ def write_linear(
     for slot, factor in zip(slots, factors, strict=False):
         total = writer.add(total, writer.multiply(factor, slot))
     return total
-
-
-def number_of_paths(degrees: Sequence[int]) -> int:
-    """How many solutions equations of these degrees have at most (Bezout)."""
-    return math.prod(degrees)

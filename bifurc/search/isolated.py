@@ -17,7 +17,7 @@ from bifurc.completeness import Claim, Level, Scope
 from bifurc.equations.polynomials import PolynomialSystem
 from bifurc.limits import Deadline
 from bifurc.paths.follow import Paths, copy_of
-from bifurc.paths.sparse import SparseFamily
+from bifurc.paths.sparse import SparseFamily, have_curves
 from bifurc.search.answer.completeness import SearchClaim
 
 # Whether points (k, c) all lie on curves.
@@ -92,7 +92,9 @@ def isolated_solutions(
     solved = family.solve(system.polynomials, rng, deadline, most)
     if solved is None or deadline.passed:
         return None
-    paths = solved.paths
+    paths, has_curves = solved.paths, None
+    if not paths.lost:
+        has_curves = have_curves(system.polynomials, rng, deadline, most)
     regular = paths.regular
     count = len(regular)
     partners = copy_of(np.concatenate([regular, regular.conj()]))[count:]
@@ -105,7 +107,7 @@ def isolated_solutions(
         complex=count,
         paths=paths,
         trace=solved.trace,
-        has_curves=solved.has_curves,
+        has_curves=has_curves,
     )
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from bifurc.limits import Deadline
 from bifurc.paths.follow import PathEnd
-from bifurc.paths.sparse import SparseFamily
+from bifurc.paths.sparse import SparseFamily, have_curves
 from tests.samples import one_in
 
 
@@ -13,7 +13,7 @@ def solved(polynomials, seed=0):
     family = SparseFamily.of(polynomials)
     rng = np.random.default_rng(seed)
     found = family.solve(polynomials, rng, Deadline(), 400)
-    return found.paths, found.has_curves
+    return found.paths, have_curves(polynomials, rng, Deadline(), 400)
 
 
 def real_ones(points):
