@@ -278,7 +278,8 @@ class CurveEquations:
 def _plane_through(point: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """A generic hyperplane (n + 1,) through a point (n,)."""
     normal = complex_normal(rng, len(point))
-    return np.r_[-(normal @ point), normal]
+    plane: np.ndarray = np.insert(normal, 0, -(normal @ point))
+    return plane
 
 
 def _traces(moved: np.ndarray, group: np.ndarray) -> dict[int, float]:
