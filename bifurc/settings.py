@@ -73,6 +73,10 @@ def lowest_order(tolerance: float) -> int:
     return 1 + math.ceil(power)
 
 
+# Along so many a search counts complex solutions; whoever allows more wants to know.
+USUAL_PATHS = 200
+
+
 @dataclass(frozen=True)
 class SearchSettings:
     """How much a search looks at.
@@ -85,11 +89,12 @@ class SearchSettings:
     of exact equations of two to four unknowns are divided at most, to prove that nothing
     is missing; 0 for not at all. ``paths``: along how many all isolated solutions of
     as many polynomials as unknowns, up to eight, are followed at most, fewer of more;
-    0 for none. ``certify``: whether every branch gets a certificate, and is traced again,
-    finer, where that is refused. ``near_motions``: whether curves along which the system
-    is nearly solved are traced; without, points of them that solve it are isolated like
-    any other. ``tracing``: how a curve is followed, to a tolerance of at most 1e-7.
-    Raises `ProblemError` outside the ranges.
+    0 for none; so are the curves of polynomials where something is open, and with more
+    than `USUAL_PATHS` also where nothing is. ``certify``: whether every branch gets a
+    certificate, and is traced again, finer, where that is refused. ``near_motions``:
+    whether curves along which the system is nearly solved are traced; without, points of
+    them that solve it are isolated like any other. ``tracing``: how a curve is followed,
+    to a tolerance of at most 1e-7. Raises `ProblemError` outside the ranges.
     """
 
     starts: int = 200
@@ -97,7 +102,7 @@ class SearchSettings:
     charts: int = 1500
     prove: bool = True
     boxes: int = 20_000
-    paths: int = 200
+    paths: int = USUAL_PATHS
     certify: bool = True
     near_motions: bool = True
     tracing: TraceSettings = field(default_factory=TraceSettings)

@@ -69,8 +69,9 @@ class Count:
     seconds: float
 
 
-def count(system: SquareSystem) -> Count | None:
-    """The solutions of a system; None where there was no time."""
+def count(system: SquareSystem, seed: int = 0) -> Count | None:
+    """The solutions of a system, from generic ones of a ``seed``; None where there was no
+    time."""
     content = {
         "name": system.name,
         "unknowns": {name: {} for name in system.unknowns},
@@ -83,14 +84,15 @@ def count(system: SquareSystem) -> Count | None:
     if polynomials is None:
         raise click.ClickException(f"{system.name}: its equations are no polynomials")
     bounds = np.full((len(system.unknowns), 2), [-np.inf, np.inf])
-    found = isolated_solutions(polynomials, bounds, MOST, Deadline(LIMIT))
+    deadline = Deadline(LIMIT)
+    found = isolated_solutions(polynomials, bounds, MOST, deadline, seed)
     if found is None:
         return None
     return Count(
         complex=found.complex,
         real=found.real,
         paths=len(found.paths.ends),
-        lost=int(np.count_nonzero(found.paths.is_lost)),
+        lost=found.paths.lost,
         seconds=time.process_time() - began,
     )
 
@@ -114,10 +116,10 @@ def seconds_of_phcpack(system: SquareSystem) -> float | None:
     return after - before
 
 
-def row_of(system: SquareSystem) -> str:
+def row_of(system: SquareSystem, seed: int) -> str:
     """What is found of a system, beside what is published."""
-    found = count(system)
-    other = seconds_of_phcpack(system)
+    found = count(system, seed)
+    other = seconds_of_phcpack(system) if seed == 0 else None
     shown = "-" if other is None else f"{other:.2f}"
     published = f"{system.real} of {system.complex}"
     if found is None:
@@ -134,7 +136,8 @@ def row_of(system: SquareSystem) -> str:
 
 @click.command(cls=Study)
 @click.option("--only", multiple=True, help="The name of a system.")
-def main(only: Sequence[str]) -> None:
+@click.option("--seeds", default=1, show_default=True, help="Random seeds from 0 on.")
+def main(only: Sequence[str], seeds: int) -> None:
     """Count the real and complex solutions of square systems of the literature."""
     systems = load_systems()
     require_known("--only", only, [system.name for system in systems])
@@ -142,7 +145,8 @@ def main(only: Sequence[str]) -> None:
     click.echo("{:<10} {:>10} {:>10} {:>6} {:>8} {:>8}".format(*heads))
     for system in systems:
         if not only or system.name in only:
-            click.echo(row_of(system))
+            for seed in range(seeds):
+                click.echo(row_of(system, seed))
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ bounded, or of which the function is a distance, one of them is a point).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
@@ -22,22 +22,17 @@ import numpy as np
 
 from bifurc.equations.tape import TapeWriter
 from bifurc.limits import Deadline
-from bifurc.paths.curves import (
-    CurveEquations,
-    HyperplaneSection,
-    on_patch,
-    with_affine_ends,
-)
-from bifurc.paths.family import Family, complex_normal
-from bifurc.paths.follow import Paths, follow_paths
+from bifurc.paths.curves import CurveEquations
+from bifurc.paths.family import Family, complex_normal, on_patch
+from bifurc.paths.follow import PathEnd, Paths, follow_paths, with_affine_ends
 from bifurc.paths.homogeneous import (
     Terms,
     degree_of,
     derivative,
     write_homogeneous,
     write_linear,
-    write_product,
 )
+from bifurc.paths.monodromy import Fibre
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,38 +60,38 @@ class CriticalPoints:
         """The family of pairs of homogeneous coordinates (n + 1) and directions (n);
         parameters are two linear functions that are 1, one of each, the shares of the
         equations and of the products, and the factors of these: of x, then of v."""
-        n, factors = self.equations.n, sum(self.degrees)
-        size = n + 1
+        n, size, factors = self.equations.n, self.equations.n + 1, sum(self.degrees)
         writer = TapeWriter(2 * (size + n) + 2 + factors * size + n * n)
         slots = map(writer.unknown, range(writer.n))
         places, along = list(islice(slots, size)), list(islice(slots, n))
-        units = [write_linear(writer, slots, one) for one in (places, along)]
-        share, start = islice(slots, 2)
-        of_places = [write_linear(writer, slots, places) for _ in range(factors)]
-        of_directions = [write_linear(writer, slots, along) for _ in range(n)]
-        products = self._products(writer, of_places, of_directions)
-        outputs = self._written_curves(writer, places)
-        outputs += [writer.subtract(unit, writer.constant(1.0)) for unit in units]
+        units = [write_linear(writer, slots, k) for k in (places, along)]
+        shares = list(islice(slots, 2))
+        products = self._products(writer, slots, places, along)
+        outputs = self.equations.written(writer, places)
+        one = writer.constant(1.0)
+        outputs += [writer.subtract(unit, one) for unit in units]
         for pair in zip(self._written(writer, places, along), products, strict=True):
-            outputs.append(write_linear(writer, pair, (share, start)))
+            outputs.append(write_linear(writer, pair, shares))
         return Family(writer.tape(outputs), size + n, True, size)
 
-    def _written_curves(self, writer: TapeWriter, places: list[int]) -> list[int]:
-        """The slots of F."""
-        return [
-            write_homogeneous(writer, polynomial, places, degree_of(polynomial))
-            for polynomial in self.equations.polynomials
-        ]
-
     def _products(
-        self, writer: TapeWriter, of_places: list[int], of_directions: list[int]
+        self,
+        writer: TapeWriter,
+        slots: Iterator[int],
+        places: list[int],
+        along: list[int],
     ) -> list[int]:
-        """The slots of the products, from linear functions of x and of v."""
-        products, first = [], 0
-        for degree, direction in zip(self.degrees, of_directions, strict=True):
-            factors = [*of_places[first : first + degree], direction]
-            products.append(write_product(writer, factors))
-            first += degree
+        """The slots of the products, with the coefficients of their factors in further
+        ``slots``."""
+        factors = [
+            write_linear(writer, slots, places) for _ in range(sum(self.degrees))
+        ]
+        directions = [write_linear(writer, slots, along) for _ in along]
+        products, others = [], iter(factors)
+        for degree, product in zip(self.degrees, directions, strict=True):
+            for factor in islice(others, degree):
+                product = writer.multiply(product, factor)
+            products.append(product)
         return products
 
     def _written(
@@ -117,44 +112,44 @@ class CriticalPoints:
 
     def paths(
         self,
-        section: HyperplaneSection,
+        section: Fibre,
         rng: np.random.Generator,
         deadline: Deadline,
         farthest: float = np.inf,
-    ) -> tuple[Paths, Paths]:
+    ) -> Paths:
         """The paths to all of them on curves with the points of a generic section, as in
-        `follow_paths`; and those to the starts. Their ends (k, n) are points."""
-        n = self.equations.n
+        `follow_paths`; those whose starts are not known are lost."""
+        n, follow = self.equations.n, self.equations.follow
         planes = complex_normal(rng, (sum(self.degrees), n + 1))
-        directions = complex_normal(rng, (n, n))
-        patch, unit = complex_normal(rng, n + 1), complex_normal(rng, n)
-        before = [self.equations.follow(section, one, rng, deadline) for one in planes]
-        vectors = np.repeat(_kernels(directions, unit), self.degrees, axis=0)
-        starts = _pairs(before, vectors, patch)
+        if not len(planes):  # the curves are lines
+            return follow(section, section.parameters[n + 1 :], deadline)
+        ends = Paths.joined([follow(section, plane, deadline) for plane in planes])
+        directions, unit = complex_normal(rng, (n, n)), complex_normal(rng, n)
+        patch = section.parameters[: n + 1]
+        starts = self._pairs(ends, patch, _kernels(directions, unit))
         shares = np.array([[0.0, complex_normal(rng, ())], [1.0, 0.0]])
-        products = np.concatenate([planes.ravel(), directions.ravel()])
-        first, last = (np.r_[patch, unit, pair, products] for pair in shares)
-        paths = follow_paths(
-            self.family,
-            starts,
-            first,
-            last,
-            deadline,
-            farthest=farthest,
-        )
-        return with_affine_ends(paths, n), _together(before, n)
+        factors = np.r_[planes.ravel(), directions.ravel()]
+        first, last = (np.r_[patch, unit, pair, factors] for pair in shares)
+        family = self.family
+        paths = follow_paths(family, starts, first, last, deadline, farthest=farthest)
+        return _continued(ends, with_affine_ends(family, paths))
+
+    def _pairs(self, ends: Paths, patch: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+        """The regular ends of paths to zeros of factors, each with that of the
+        ``vectors`` (n, n) at which the other products are zero."""
+        each = len(ends.ends) // sum(self.degrees)
+        along = np.repeat(vectors, each * np.array(self.degrees), axis=0)
+        both = np.hstack([on_patch(ends.points, patch), along])
+        starts: np.ndarray = both[ends.is_regular]
+        return starts
 
 
-def _pairs(
-    paths: Sequence[Paths], vectors: np.ndarray, patch: np.ndarray
-) -> np.ndarray:
-    """Ends (k, n) of each of the ``paths`` in homogeneous coordinates, with the direction
-    that is in ``vectors`` (p, n) at its place."""
-    pairs = [np.empty((0, len(patch) + vectors.shape[1]))]
-    for ends, vector in zip(paths, vectors, strict=True):
-        along = np.tile(vector, (len(ends.points), 1))
-        pairs.append(np.hstack([on_patch(ends.points, patch), along]))
-    return np.concatenate(pairs)
+def _continued(before: Paths, after: Paths) -> Paths:
+    """Paths of which those that came to regular ends went on; the others are lost."""
+    goes_on = np.flatnonzero(before.is_regular)
+    before.ends[~before.is_regular] = PathEnd.NO_START
+    before.replace(goes_on, after, np.arange(len(goes_on)))
+    return before
 
 
 def _kernels(directions: np.ndarray, unit: np.ndarray) -> np.ndarray:
@@ -180,17 +175,3 @@ def _written_gradient(
             value = write_homogeneous(writer, slope, places, degree)
             total = writer.add(total, writer.multiply(value, component))
     return total
-
-
-def _together(paths: list[Paths], n: int) -> Paths:
-    """Several paths as one record."""
-    if not paths:
-        nothing = np.empty(0)
-        whole = np.empty(0, dtype=int)
-        return Paths(
-            np.empty((0, n)), nothing, whole, whole, whole, np.empty(0, dtype=bool)
-        )
-    names = list(vars(paths[0]))
-    return Paths(
-        **{name: np.concatenate([vars(one)[name] for one in paths]) for name in names}
-    )

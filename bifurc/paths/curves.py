@@ -12,10 +12,10 @@ itself their sum is linear over each irreducible curve, and over no part of one
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass
 from functools import cached_property
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
@@ -27,47 +27,31 @@ from bifurc.decisions import (
 )
 from bifurc.equations.tape import TapeWriter
 from bifurc.limits import Deadline
-from bifurc.paths.family import Family, complex_normal
-from bifurc.paths.follow import Paths, copy_of, distinct, follow_paths
+from bifurc.paths.family import Family, complex_normal, on_patch
+from bifurc.paths.follow import Paths, copy_of, follow_paths, with_affine_ends
 from bifurc.paths.homogeneous import (
     Terms,
     degree_of,
     misfits,
-    number_of_paths,
     write_homogeneous,
     write_linear,
 )
-from bifurc.paths.sparse import SparseFamily
+from bifurc.paths.monodromy import Fibre, Projection, solve_generic, trace_of
+from bifurc.paths.sparse import have_curves, paths_to_isolated
 
-MOST_LOOPS = 40  # closed ways on which all points of one curve are found
 QUIET = 6  # closed ways in a row that join no points
 CORNERS = 3  # of a closed way
 
 
-class HyperplaneSection(NamedTuple):
-    """The ``points`` (d, n) that curves have in common with a hyperplane, of which the
-    coefficients are ``plane`` (n + 1,), the constant first."""
+class IrreducibleCurves(NamedTuple):
+    """The ``degrees`` of irreducible curves, the largest first, and by how much the sums
+    of their points in a hyperplane are not linear while it moves, over their change, the
+    largest ``trace``. So many points ``together`` may be of one curve, or of several that
+    nearly meet, and count as one; 0 where all is told."""
 
-    plane: np.ndarray
-    points: np.ndarray
-
-
-@dataclass(frozen=True, eq=False)
-class IrreducibleCurves:
-    """The irreducible curves that meet a hyperplane ``plane`` (n + 1,): the ``points``
-    (d, n) of each, and by how much their sums are not linear while it moves, over their
-    change, the largest ``trace``. Points ``together`` may be of one curve, or of several
-    that nearly meet, and count as one; 0 where all is told."""
-
-    plane: np.ndarray
-    points: tuple[np.ndarray, ...]
+    degrees: list[int]
     trace: float
     together: int = 0
-
-    @property
-    def degrees(self) -> list[int]:
-        """The degrees of the curves, the largest first."""
-        return sorted(map(len, self.points), reverse=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,205 +96,124 @@ class CurveEquations:
     @cached_property
     def sections(self) -> Family:
         """The family of the points in hyperplanes, in homogeneous coordinates, where a
-        linear function of them is 1; its coefficients and those of the hyperplane are
-        the parameters."""
+        linear function of them is 1; its coefficients and those of the hyperplane, the
+        constant first, are the parameters."""
         size = self.n + 1
         writer = TapeWriter(3 * size)
-        places = [writer.unknown(k) for k in range(size)]
-        outputs = [
+        slots = map(writer.unknown, range(writer.n))
+        places = list(islice(slots, size))
+        outputs = self.written(writer, places)
+        height = write_linear(writer, slots, places)
+        outputs.append(writer.subtract(height, writer.constant(1.0)))
+        outputs.append(write_linear(writer, slots, places))
+        return Family(writer.tape(outputs), size, is_projective=True)
+
+    def written(self, writer: TapeWriter, places: list[int]) -> list[int]:
+        """The slots of the polynomials, in homogeneous coordinates in slots ``places``
+        (n + 1)."""
+        return [
             write_homogeneous(writer, one, places, degree_of(one))
             for one in self.polynomials
         ]
-        outputs += _written_planes(writer, places, size)
-        return Family(writer.tape(outputs), size, is_projective=True)
 
-    @cached_property
-    def from_powers(self) -> Family:
-        """The `square` polynomials in such a hyperplane, times the parameter before the
-        last, plus the last one times the powers of one coordinate each."""
-        size = self.n + 1
-        writer = TapeWriter(3 * size + 2)
-        places = [writer.unknown(k) for k in range(size)]
-        share, start = writer.unknown(3 * size), writer.unknown(3 * size + 1)
-        outputs = []
-        for place, one in zip(places[1:], self.square, strict=False):
-            degree = degree_of(one)
-            power = writer.constant(float(degree))
-            before = writer.subtract(
-                writer.power(place, power), writer.power(places[0], power)
-            )
-            given = write_homogeneous(writer, one, places, degree)
-            both = writer.add(
-                writer.multiply(share, given), writer.multiply(start, before)
-            )
-            outputs.append(both)
-        outputs += _written_planes(writer, places, size)
-        return Family(writer.tape(outputs), size, is_projective=True)
-
-    def all_points(
-        self, rng: np.random.Generator, deadline: Deadline, most: int
-    ) -> tuple[np.ndarray, Paths] | None:
-        """A generic hyperplane (n + 1,), and the paths to all points in it that solve
-        the `square` polynomials; None where there would be more than ``most``, or it
-        is not known how many."""
-        plane = complex_normal(rng, self.n + 1)
-        if number_of_paths(self.degrees) <= most:
-            paths = self._from_powers(plane, rng, deadline)
-            if not np.any(paths.is_lost):
-                return plane, paths
-        others = self._from_generic(plane, rng, deadline, most)
-        return None if others is None else (plane, others)
-
-    def _from_powers(
-        self, plane: np.ndarray, rng: np.random.Generator, deadline: Deadline
-    ) -> Paths:
-        """The paths from the roots of unity."""
-        roots = [np.exp(2j * np.pi * np.arange(d) / d) for d in self.degrees]
-        firsts = np.array(list(itertools.product(*roots)), dtype=complex)
-        firsts = firsts.reshape(-1, self.n - 1)
-        last = -(plane[0] + firsts @ plane[1 : self.n]) / plane[self.n]
-        starts = np.column_stack([firsts, last])
+    def section(
+        self, plane: np.ndarray, points: np.ndarray, rng: np.random.Generator
+    ) -> Fibre:
+        """The one with ``points`` (d, n) of a hyperplane with the coefficients ``plane``
+        (n + 1,)."""
         patch = complex_normal(rng, self.n + 1)
-        gamma = np.exp(2j * np.pi * rng.random())
-        ends = (np.r_[patch, plane, 0.0, gamma], np.r_[patch, plane, 1.0, 0.0])
-        starts = on_patch(starts, patch)
-        paths = follow_paths(self.from_powers, starts, *ends, deadline)
-        return with_affine_ends(paths, self.n)
+        return Fibre(np.r_[patch, plane], on_patch(points, patch))
 
-    def _from_generic(
-        self,
-        plane: np.ndarray,
-        rng: np.random.Generator,
-        deadline: Deadline,
-        most: int,
-    ) -> Paths | None:
-        """The paths from the solutions of polynomials with the same monomials."""
-        units = [tuple(row) for row in np.eye(self.n, dtype=int).tolist()]
-        terms = dict(zip([(0,) * self.n, *units], plane.tolist(), strict=True))
-        family = SparseFamily.of([*self.square, terms])
-        generic = family.generic_solutions(rng, deadline, most)
-        if not generic.are_all or generic.count > most:
-            return None
-        member = family.member([*self.square, terms])
-        starts = family.with_zeros_of(generic, member, rng, deadline)
-        paths = family.follow(starts, member, rng, deadline)
-        if family.has_curves(generic, member, rng, deadline) is not False:
-            return None
-        return paths
+    def points(self, section: Fibre) -> np.ndarray:
+        """The points (d, n) of a section."""
+        return self.sections.affine(section.solutions)
 
     def follow(
         self,
-        section: HyperplaneSection,
+        section: Fibre,
         plane: np.ndarray,
-        rng: np.random.Generator,
         deadline: Deadline,
         farthest: float = np.inf,
     ) -> Paths:
         """The paths of the points of a section to another hyperplane (n + 1,), as in
         `follow_paths`."""
-        patch = complex_normal(rng, self.n + 1)
-        starts = on_patch(section.points, patch)
-        first, last = np.r_[patch, section.plane], np.r_[patch, plane]
-        paths = follow_paths(
-            self.sections, starts, first, last, deadline, farthest=farthest
-        )
-        return with_affine_ends(paths, self.n)
+        first = section.parameters
+        last = np.r_[first[: self.n + 1], plane]
+        starts, family = section.solutions, self.sections
+        paths = follow_paths(family, starts, first, last, deadline, farthest=farthest)
+        return with_affine_ends(family, paths)
+
+    def whole_section(
+        self, rng: np.random.Generator, deadline: Deadline, most: int
+    ) -> tuple[Fibre, Paths] | None:
+        """A generic section with all its regular points that solve all equations, and
+        all paths that lead to such points; None where there would be more than ``most``,
+        or it is not known how many."""
+        plane = complex_normal(rng, self.n + 1)
+        units = [tuple(row) for row in np.eye(self.n, dtype=int).tolist()]
+        terms = dict(zip([(0,) * self.n, *units], plane.tolist(), strict=True))
+        polynomials = [*self.square, terms]
+        paths = paths_to_isolated(polynomials, rng, deadline, most, most)
+        if paths is None:
+            return None
+        # but from powers no path need come to a surface
+        is_of_powers = len(paths.ends) == math.prod(self.degrees)
+        if (
+            not is_of_powers
+            and have_curves(polynomials, rng, deadline, most) is not False
+        ):
+            return None
+        solves_all = solves_all_equations(misfits(self.polynomials, paths.points))
+        points = paths.points[paths.is_regular & solves_all]
+        return self.section(plane, points, rng), paths
 
     # --- irreducible curves -----------------------------------------------------------
 
-    def solve_all(self, points: np.ndarray) -> np.ndarray:
-        """Which points (k, n) solve all polynomials (k,)."""
-        return solves_all_equations(misfits(self.polynomials, points))
-
     def irreducible(
-        self,
-        section: HyperplaneSection,
-        rng: np.random.Generator,
-        deadline: Deadline,
+        self, section: Fibre, rng: np.random.Generator, deadline: Deadline
     ) -> IrreducibleCurves | None:
         """The irreducible curves with all points of a generic section; None where paths
         were lost, or points are missing."""
-        if not len(section.points):
-            return IrreducibleCurves(section.plane, (), 0.0)
-        moved = self._parallel(section, rng, deadline)
+        if not len(section.solutions):
+            return IrreducibleCurves([], 0.0)
+        moved = self._moved(section, deadline)
         if moved is None:
             return None
-        group = np.arange(len(section.points))
-        traces = _traces(moved, group)
-        quiet = 0
-        while quiet < QUIET and not _are_linear(traces) and not deadline.passed:
+        group, quiet = np.arange(len(section.solutions)), 0
+        while quiet < QUIET and not deadline.passed:
+            if not np.any(_are_open(moved, group)):
+                break
             joined = self._joined(section, group, rng, deadline)
             quiet = quiet + 1 if np.array_equal(joined, group) else 0
-            group, traces = joined, _traces(moved, joined)
-        # groups that no way joined, and whose sums are linear only together
-        are_open = [k for k, trace in traces.items() if not is_plainly_linear(trace)]
-        together = np.isin(group, are_open) & (len(are_open) > 1)
-        group[together] = -1
+            group = joined
+        # those that no way joined, and whose sums are linear only together
+        are_open = _are_open(moved, group)
+        together = int(np.count_nonzero(are_open))
+        if len(np.unique(group[are_open])) < 2:
+            together = 0
+        group[are_open] = -1
         trace = max(_traces(moved, group).values())
         if not is_linear_trace(trace):
             return None
-        points = tuple(section.points[group == k] for k in np.unique(group))
-        return IrreducibleCurves(
-            section.plane, points, trace, int(np.count_nonzero(together))
-        )
+        degrees = np.unique(group, return_counts=True)[1].tolist()
+        return IrreducibleCurves(sorted(degrees, reverse=True), trace, together)
 
-    def curve_through(
-        self, point: np.ndarray, rng: np.random.Generator, deadline: Deadline, most: int
-    ) -> IrreducibleCurves | None:
-        """The irreducible curve through a regular ``point`` (n,) of it; None where it
-        has more than ``most`` points in a hyperplane, or is not known to have all."""
-        normal = complex_normal(rng, self.n)
-        through = np.r_[-(normal @ point), normal]
-        section = HyperplaneSection(through, point.astype(complex)[None])
-        plane = complex_normal(rng, self.n + 1)
-        points = self.follow(section, plane, rng, deadline).regular
-        for _ in range(MOST_LOOPS):
-            if not 0 < len(points) <= most or deadline.passed:
-                break
-            section = HyperplaneSection(plane, points)
-            moved = self._parallel(section, rng, deadline)
-            if moved is not None and is_linear_trace(_trace(moved)):
-                return IrreducibleCurves(plane, (points,), _trace(moved))
-            back = self._round_trip(section, rng, deadline)
-            points = distinct(np.concatenate([points, back.regular]))
-        return None
-
-    def _parallel(
-        self,
-        section: HyperplaneSection,
-        rng: np.random.Generator,
-        deadline: Deadline,
-    ) -> np.ndarray | None:
+    def _moved(self, section: Fibre, deadline: Deadline) -> np.ndarray | None:
         """The points (3, d, n) of a section, and of those on either side of it; None
         where paths were lost."""
-        planes = [section.points]
+        planes = [self.points(section)]
         for sense in (1.0, -1.0):
-            beside = section.plane.copy()
+            beside = section.parameters[self.n + 1 :].copy()
             beside[0] += sense
-            paths = self.follow(section, beside, rng, deadline)
+            paths = self.follow(section, beside, deadline)
             if not np.all(paths.is_regular):
                 return None
             planes.append(paths.points)
         return np.array(planes)
 
-    def _round_trip(
-        self,
-        section: HyperplaneSection,
-        rng: np.random.Generator,
-        deadline: Deadline,
-    ) -> Paths:
-        """Where the points of a section come to when the hyperplane has moved on a
-        closed way."""
-        stops = complex_normal(rng, (CORNERS - 1, self.n + 1))
-        here = section
-        for plane in stops:
-            paths = self.follow(here, plane, rng, deadline)
-            here = HyperplaneSection(plane, paths.points)
-        return self.follow(here, section.plane, rng, deadline)
-
     def _joined(
         self,
-        section: HyperplaneSection,
+        section: Fibre,
         group: np.ndarray,
         rng: np.random.Generator,
         deadline: Deadline,
@@ -318,55 +221,77 @@ class CurveEquations:
         """The groups (d,) of the points of a section, those as one between which a
         closed way leads."""
         count = len(group)
-        back = self._round_trip(section, rng, deadline)
-        copies = copy_of(np.concatenate([section.points, back.points]))[count:]
+        stops = complex_normal(rng, (CORNERS - 1, self.n + 1))
+        planes = [*stops, section.parameters[self.n + 1 :]]
+        patch = section.parameters[: self.n + 1]
+        here = section
+        is_back = np.ones(count, dtype=bool)
+        for plane in planes:
+            paths = self.follow(here, plane, deadline)
+            is_back &= paths.is_regular
+            here = Fibre(np.r_[patch, plane], on_patch(paths.points, patch))
+        both = np.concatenate([section.solutions, here.solutions])
+        copies = copy_of(both)[count:].tolist()
         joined = group.copy()
-        for start, end in enumerate(copies.tolist()):
-            if end < count and back.is_regular[start]:
+        for start, end in enumerate(copies):
+            if end < count and is_back[start]:
                 joined[joined == joined[start]] = joined[end]
         return joined
 
+    def curve_through(
+        self, point: np.ndarray, rng: np.random.Generator, deadline: Deadline, most: int
+    ) -> Fibre | None:
+        """A section with all points of the irreducible curve through a regular ``point``
+        (n,) of it; None where it has more than ``most``, or is not known to have
+        all."""
+        start = self.section(_plane_through(point, rng), point[None], rng)
+        is_plane = np.arange(2 * self.n + 2) > self.n
+        try:
+            generic = solve_generic(
+                self.sections,
+                start.solutions[0],
+                start.parameters,
+                rng,
+                deadline,
+                most,
+                linear_in=self.n + 1,
+                projection=Projection(is_plane, ()),
+            )
+        except ValueError:  # the point is not regular, or not known well enough
+            return None
+        return generic.fibre if generic.are_all and generic.count <= most else None
 
-def on_patch(points: np.ndarray, patch: np.ndarray) -> np.ndarray:
-    """Points (k, n) in homogeneous coordinates (k, n + 1) of which a linear function
-    with the coefficients ``patch`` (n + 1,) is 1."""
-    places = np.insert(points.astype(complex), 0, 1.0, axis=1)
-    scaled: np.ndarray = places / (places @ patch)[:, None]
-    return scaled
+    def gap_to(
+        self,
+        section: Fibre,
+        point: np.ndarray,
+        rng: np.random.Generator,
+        deadline: Deadline,
+    ) -> float:
+        """How far from a ``point`` (n,), over 1 + its size, the nearest of the points of
+        a section is when the hyperplane has come to a generic one through it."""
+        paths = self.follow(section, _plane_through(point, rng), deadline)
+        gaps = np.abs(paths.points - point).max(axis=1, initial=0.0)
+        return float(gaps.min(initial=np.inf) / (1.0 + np.abs(point).max()))
 
 
-def with_affine_ends(paths: Paths, n: int) -> Paths:
-    """Paths with their ends (k, n) no longer in homogeneous coordinates, which the
-    first n + 1 of them are."""
-    with np.errstate(all="ignore"):
-        points = paths.points[:, 1 : n + 1] / paths.points[:, :1]
-    return replace(paths, points=points)
-
-
-def _written_planes(writer: TapeWriter, places: Sequence[int], first: int) -> list[int]:
-    """The slots of a linear function of ``places`` less 1, and of another one, with the
-    unknowns from ``first`` on as coefficients."""
-    size = len(places)
-    patch = [writer.unknown(first + k) for k in range(size)]
-    plane = [writer.unknown(first + size + k) for k in range(size)]
-    one = writer.constant(1.0)
-    height = writer.subtract(write_linear(writer, patch, places), one)
-    return [height, write_linear(writer, plane, places)]
-
-
-def _trace(moved: np.ndarray) -> float:
-    """By how much the sum of points (3, d, n), here, ahead and behind, is not linear,
-    over its change."""
-    here, ahead, behind = moved.sum(axis=1)
-    change = max(np.abs(ahead - here).max(), np.abs(behind - here).max(), 1.0)
-    return float(np.abs(ahead - 2.0 * here + behind).max() / change)
+def _plane_through(point: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """A generic hyperplane (n + 1,) through a point (n,)."""
+    normal = complex_normal(rng, len(point))
+    plane: np.ndarray = np.insert(normal, 0, -(normal @ point))
+    return plane
 
 
 def _traces(moved: np.ndarray, group: np.ndarray) -> dict[int, float]:
-    """That of the points (3, d, n) of each group, by its number in ``group`` (d,)."""
-    return {k: _trace(moved[:, group == k]) for k in np.unique(group).tolist()}
+    """By how much the sums of the points (3, d, n) of each group, by its number in
+    ``group`` (d,), are not linear."""
+    numbers = np.unique(group).tolist()
+    return {k: trace_of(moved[:, group == k].sum(axis=1)) for k in numbers}
 
 
-def _are_linear(traces: dict[int, float]) -> bool:
-    """Whether the sums of all groups are linear."""
-    return is_plainly_linear(max(traces.values()))
+def _are_open(moved: np.ndarray, group: np.ndarray) -> np.ndarray:
+    """Which points (d,) are in groups the sums of which are not plainly linear."""
+    traces = _traces(moved, group)
+    numbers = [k for k, one in traces.items() if not is_plainly_linear(one)]
+    are_open: np.ndarray = np.isin(group, numbers)
+    return are_open

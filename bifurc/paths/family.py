@@ -85,6 +85,15 @@ class Family:
         jacobians: np.ndarray = self.tape.compiled.complex_jacobians(at)
         return jacobians[:, :, : self.n]
 
+    def affine(self, points: np.ndarray) -> np.ndarray:
+        """Points (k, n) without further unknowns, and no longer in homogeneous
+        coordinates where they are."""
+        if not self.is_projective:
+            return points
+        with np.errstate(all="ignore"):
+            places: np.ndarray = points[:, 1 : self.coordinates] / points[:, :1]
+        return places
+
     def is_regular(self, point: np.ndarray, parameters: np.ndarray) -> bool:
         """Whether the equations are independent at a point (n,)."""
         (jacobian,) = self.jacobians(point[None], parameters)
@@ -96,6 +105,14 @@ class Family:
         repeated = np.broadcast_to(parameters, (len(points), self.parameters))
         joined: np.ndarray = np.hstack([points, repeated]).astype(complex)
         return joined
+
+
+def on_patch(points: np.ndarray, patch: np.ndarray) -> np.ndarray:
+    """Points (k, n) in homogeneous coordinates (k, n + 1) of which a linear function
+    with the coefficients ``patch`` (n + 1,) is 1."""
+    places = np.insert(points.astype(complex), 0, 1.0, axis=1)
+    scaled: np.ndarray = places / (places @ patch)[:, None]
+    return scaled
 
 
 def complex_normal(rng: np.random.Generator, shape: Any) -> np.ndarray:

@@ -13,14 +13,17 @@ doubles (Timme 2021), as all of them have at the ends.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
 
 from bifurc.decisions import (
+    ends_beyond_reach,
     is_at_infinity,
+    is_plainly_at_infinity,
     is_same_path_end,
     is_singular_meeting,
     is_singular_path_end,
@@ -109,6 +112,40 @@ class Paths:
         lost: np.ndarray = self.ends >= PathEnd.STUCK
         return lost
 
+    @property
+    def singular(self) -> np.ndarray:
+        """The ends (j, n) that are singular."""
+        points: np.ndarray = self.points[self.ends == PathEnd.SINGULAR]
+        return points
+
+    @property
+    def lost(self) -> int:
+        """How many of them came to no end."""
+        return int(np.count_nonzero(self.is_lost))
+
+    @property
+    def is_finite(self) -> np.ndarray:
+        """Which of them (k,) did not end at infinity."""
+        finite: np.ndarray = self.ends != PathEnd.AT_INFINITY
+        return finite
+
+    def far(self, reach: float = np.inf) -> int:
+        """How many ended so far away that it is not told from infinity, and is not
+        plainly beyond what is within ``reach``."""
+        ends = self.points[self.ends == PathEnd.AT_INFINITY]
+        # at infinity a coordinate that is zero is none
+        sizes = np.fmax.reduce(np.abs(ends), axis=1, initial=1.0)
+        if np.isinf(reach):
+            return int(np.count_nonzero(~is_plainly_at_infinity(1.0 / sizes)))
+        return int(np.count_nonzero(~ends_beyond_reach(reach / sizes)))
+
+    @staticmethod
+    def joined(several: Sequence[Paths]) -> Paths:
+        """Several batches, one at least, as one."""
+        names = vars(several[0])
+        rows = {name: [vars(one)[name] for one in several] for name in names}
+        return Paths(**{name: np.concatenate(row) for name, row in rows.items()})
+
     def replace(self, numbers: np.ndarray, others: Paths, own: np.ndarray) -> None:
         """Put the ``others`` with their ``own`` numbers (j,) in the places of those with
         ``numbers`` (j,)."""
@@ -155,6 +192,11 @@ def follow_paths(
     _tell_meetings(family, paths, last)
     _tell_apart(family, paths, last)
     return paths
+
+
+def with_affine_ends(family: Family, paths: Paths) -> Paths:
+    """Paths with their ends no longer in homogeneous coordinates."""
+    return replace(paths, points=family.affine(paths.points))
 
 
 def _lead_round(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TypeAlias
 
@@ -15,7 +14,7 @@ Exponents: TypeAlias = tuple[int, ...]
 Terms: TypeAlias = Mapping[Exponents, float]
 
 
-def degree_of(polynomial: Terms) -> int:
+def degree_of(polynomial: Iterable[Exponents]) -> int:
     """The degree of a polynomial."""
     return max(map(sum, polynomial))
 
@@ -69,14 +68,6 @@ def write_homogeneous(
     return total
 
 
-def write_product(writer: TapeWriter, factors: Sequence[int]) -> int:
-    """The slot of a product."""
-    product = writer.constant(1.0)
-    for factor in factors:
-        product = writer.multiply(product, factor)
-    return product
-
-
 def write_linear(
     writer: TapeWriter, factors: Iterable[int], slots: Sequence[int]
 ) -> int:
@@ -86,8 +77,3 @@ def write_linear(
     for slot, factor in zip(slots, factors, strict=False):
         total = writer.add(total, writer.multiply(factor, slot))
     return total
-
-
-def number_of_paths(degrees: Sequence[int]) -> int:
-    """How many solutions equations of these degrees have at most (Bezout)."""
-    return math.prod(degrees)

@@ -260,14 +260,20 @@ def _trace(
     were lost, and where there are none."""
     if not len(fibre.solutions):
         return None
-    sums = [fibre.solutions[:, coordinates].sum(axis=0)]
+    sums = [family.affine(fibre.solutions)[:, coordinates].sum(axis=0)]
     for shift in (step, -step):
         moved = fibre.parameters.copy()
         moved[parameter] += shift
         paths = effort.follow(family, fibre, moved)
         if not np.all(paths.is_regular):
             return None
-        sums.append(paths.points[:, coordinates].sum(axis=0))
+        sums.append(family.affine(paths.points)[:, coordinates].sum(axis=0))
+    return trace_of(np.array(sums))
+
+
+def trace_of(sums: np.ndarray) -> float:
+    """How far sums (3, n) of solutions, here, ahead and behind, are from linear, over
+    their change."""
     here, ahead, behind = sums
     change = max(np.abs(ahead - here).max(), np.abs(behind - here).max(), 1.0)
     return float(np.abs(ahead - 2.0 * here + behind).max() / change)

@@ -10,15 +10,13 @@ unknowns are coordinates on circles.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from bifurc.completeness import Claim, Level, Scope
 from bifurc.decisions import (
     Decision,
-    ends_beyond_reach,
-    is_plainly_at_infinity,
     is_real_path_end,
     is_same_point,
     may_be_real_path_end,
@@ -27,9 +25,9 @@ from bifurc.equations.polynomials import PolynomialSystem
 from bifurc.equations.tape import Operation
 from bifurc.limits import Deadline
 from bifurc.paths.critical import CriticalPoints
-from bifurc.paths.curves import CurveEquations, HyperplaneSection, IrreducibleCurves
-from bifurc.paths.family import complex_normal
-from bifurc.paths.follow import PathEnd, Paths
+from bifurc.paths.curves import CurveEquations, IrreducibleCurves
+from bifurc.paths.follow import Paths
+from bifurc.paths.monodromy import Fibre
 from bifurc.search.answer.completeness import SearchClaim
 from bifurc.search.isolated import with_turns
 
@@ -40,112 +38,66 @@ SEED = 29  # of hyperplanes, and of the function that is critical
 
 @dataclass(frozen=True, eq=False)
 class CountedCurves:
-    """The irreducible ``curves`` of solutions over the complex numbers, to whose points
-    in a hyperplane so many ``paths`` lead. Some may have been ``lost``, or have ended so
-    ``far`` away that it is not told from infinity; ``multiple`` ones came to points that
-    are not of full rank."""
+    """The irreducible ``curves`` of solutions over the complex numbers, all of their
+    points in a hyperplane, a ``section``, and the ``paths`` to that. Where some of these
+    were lost, or ended far away or at what is not of full rank, it is not all curves."""
 
     curves: IrreducibleCurves
-    function: CriticalPoints
-    paths: int
-    lost: int
-    far: int
-    multiple: int
-
-    @property
-    def section(self) -> HyperplaneSection:
-        """All points in the hyperplane."""
-        nothing = np.empty((0, len(self.curves.plane) - 1), dtype=complex)
-        points = np.concatenate([nothing, *self.curves.points])
-        return HyperplaneSection(self.curves.plane, points)
+    section: Fibre
+    paths: Paths
 
     @property
     def is_whole(self) -> bool:
         """Whether these are all curves, and no surface is among the solutions."""
-        return not (self.lost or self.far or self.multiple)
+        return not (self.paths.lost or self.paths.far() or len(self.paths.singular))
 
-    @property
-    def data(self) -> dict[str, object]:
-        """The numbers that claims state."""
-        degrees = self.curves.degrees
-        return {
-            "curves": len(degrees),
-            "degrees": degrees,
-            "trace": self.curves.trace,
-            "paths": self.paths,
-        }
-
-    def degrees_claims(self) -> list[Claim]:
-        """What is said of the degrees alone."""
-        kind, more = SearchClaim.DEGREES, {}
+    def claims(self) -> list[Claim]:
+        """What is said of the degrees."""
+        curves, paths = self.curves, self.paths
+        data = {"curves": len(curves.degrees), "degrees": curves.degrees}
+        kind, more = SearchClaim.DEGREES, {"paths": len(paths.ends)}
         if not self.is_whole:
             kind = SearchClaim.OTHER_CURVES
-            more = {"multiple": self.multiple, "lost": self.lost + self.far}
-        claim = kind.claim(Scope.MOTIONS, None, **self.data, **more)
-        return [claim, *self._claims_of_parts()]
-
-    def _claims_of_parts(self) -> list[Claim]:
-        """What is said where points are not told to be of one curve or of several."""
-        if not self.curves.together:
-            return []
-        kind, together = SearchClaim.MAY_SPLIT, self.curves.together
-        return [kind.claim(Scope.MOTIONS, None, together=together)]
-
-    def claims(self, parts: PointsOnParts, unlisted: int, outside: int) -> list[Claim]:
-        """What is said of the real ``parts``, where so many of the points on them that
-        are inside the bounds are ``unlisted``, and so many ``outside`` of bounds that
-        were assumed."""
-        data = self.data
-        data["paths"] = self.paths + parts.paths
-        if parts.lost or parts.far:
-            kind, more = SearchClaim.PARTS_LOST, {"lost": parts.lost, "far": parts.far}
-        elif unlisted:
-            kind, more = SearchClaim.PARTS_UNLISTED, {"unlisted": unlisted}
-        elif outside:
-            kind, more = SearchClaim.PARTS_OUTSIDE, {"outside": outside}
-        else:
-            kind = SearchClaim.ALL_CURVES
-            more = {"points": parts.count, "singular": parts.count_singular}
-            data["least"] = is_same_point.threshold
-        is_whole = kind is SearchClaim.ALL_CURVES
-        level = Level.CERTIFIED if is_whole else Level.ESTIMATED
-        claim = kind.claim(Scope.MOTIONS, level, **data, **more)
-        return [claim, *self._claims_of_parts()]
+            more["multiple"] = len(paths.singular)
+            more["lost"] = paths.lost + paths.far()
+        claims = [kind.claim(Scope.MOTIONS, None, trace=curves.trace, **data, **more)]
+        if curves.together:
+            # points are not told to be of one curve or of several
+            kind, together = SearchClaim.MAY_SPLIT, curves.together
+            claims.append(kind.claim(Scope.MOTIONS, None, together=together))
+        return claims
 
 
-@dataclass
+@dataclass(frozen=True, eq=False)
 class PointsOnParts:
-    """Ends of paths to points on real parts of curves: batches of ``regular`` and of
-    ``singular`` ones (k, c) that are real, how many ``paths`` there were, and how many
-    were ``lost`` or ended too ``far`` away to be told from infinity, and not plainly
-    beyond what is within ``reach``."""
+    """The ``paths`` to points on all real parts of curves; what is not within ``reach`` is
+    of no interest."""
 
+    paths: Paths
     reach: float
-    regular: list[np.ndarray] = field(default_factory=list)
-    singular: list[np.ndarray] = field(default_factory=list)
-    paths: int = 0
-    lost: int = 0
-    far: int = 0
 
     @property
-    def count(self) -> int:
-        """How many regular ones there are."""
-        return sum(map(len, self.regular))
+    def regular(self) -> np.ndarray:
+        """Real ends (k, c) of full rank."""
+        return _real(self.paths.regular, is_real_path_end)
 
     @property
-    def count_singular(self) -> int:
-        """How many singular ones there are."""
-        return sum(map(len, self.singular))
+    def singular(self) -> np.ndarray:
+        """Ends (k, c) that may be real points at which the curves are singular."""
+        return _real(self.paths.singular, may_be_real_path_end)
 
-    def take(self, paths: Paths) -> None:
-        """Add the ends of paths."""
-        self.paths += len(paths.ends)
-        self.lost += int(np.count_nonzero(paths.is_lost))
-        at_infinity = paths.points[paths.ends == PathEnd.AT_INFINITY]
-        self.far += int(np.count_nonzero(~_are_away(at_infinity, self.reach)))
-        self.regular.append(_real(paths.regular, is_real_path_end))
-        singular = paths.points[paths.ends == PathEnd.SINGULAR]
-        self.singular.append(_real(singular, may_be_real_path_end))
+    def claim(self, unlisted: int, outside: int) -> Claim:
+        """What is said where so many of the points that are inside the bounds are
+        ``unlisted``, and so many ``outside`` of bounds that were assumed."""
+        lost, far = self.paths.lost, self.paths.far(self.reach)
+        data = {"points": len(self.regular), "singular": len(self.singular)}
+        data["paths"] = len(self.paths.ends)
+        kind, level = SearchClaim.ALL_PARTS, Level.CERTIFIED
+        more: dict[str, float] = {"least": is_same_point.threshold}
+        if lost or far or unlisted or outside:
+            kind, level = SearchClaim.PARTS_OPEN, Level.ESTIMATED
+            more = {"lost": lost, "far": far, "unlisted": unlisted, "outside": outside}
+        return kind.claim(Scope.MOTIONS, level, **data, **more)
 
 
 class CurveCounter:
@@ -158,6 +110,7 @@ class CurveCounter:
         bounds: np.ndarray,
         most: int,
         deadline: Deadline,
+        seed: int = SEED,
     ):
         self.system = system
         self.bounds = bounds
@@ -165,77 +118,53 @@ class CurveCounter:
         self.deadline = deadline
         count = len(system.coordinates)
         self.equations = CurveEquations(system.polynomials, count)
-        self.rng = np.random.default_rng(SEED)
+        self.rng = np.random.default_rng(seed)
 
-    def count(self, is_unbounded: bool) -> CountedCurves | None:
+    def count(self) -> CountedCurves | None:
         """All curves; None where more paths would have to be followed, or the trace test
-        fails. Where the system ``is_unbounded`` real parts are told by a distance."""
-        found = self.equations.all_points(self.rng, self.deadline, self.most)
+        fails."""
+        found = self.equations.whole_section(self.rng, self.deadline, self.most)
         if found is None or self.deadline.passed:
             return None
-        plane, paths = found
-        is_single = paths.is_regular & self.equations.solve_all(paths.points)
-        section = HyperplaneSection(plane, paths.points[is_single])
+        section, paths = found
         curves = self.equations.irreducible(section, self.rng, self.deadline)
         if curves is None or self.deadline.passed:
             return None
-        of = self.rng.normal(size=self.equations.n)
-        at_infinity = paths.points[paths.ends == PathEnd.AT_INFINITY]
-        return CountedCurves(
-            curves=curves,
-            function=CriticalPoints(self.equations, of, is_unbounded),
-            paths=len(paths.ends),
-            lost=int(np.count_nonzero(paths.is_lost)),
-            far=int(np.count_nonzero(~_are_away(at_infinity, np.inf))),
-            multiple=int(np.count_nonzero(paths.ends == PathEnd.SINGULAR)),
-        )
+        return CountedCurves(curves, section, paths)
 
     # --- real parts -------------------------------------------------------------------
 
-    def finds_points(self, found: CountedCurves) -> bool:
-        """Whether points on all real parts of curves can be found along few enough
-        paths."""
-        degree = len(found.section.points)
-        return found.is_whole and found.function.number_of_paths(degree) <= self.most
-
-    def points_on_parts(self, found: CountedCurves) -> PointsOnParts | None:
-        """Points on all real parts of the curves; None where there was no time. Where
-        paths are lost others lead there."""
-        parts = self._points_on_parts(found)
-        for _ in range(TRIES - 1):
-            if not parts.lost or self.deadline.passed:
+    def points_on_parts(
+        self, found: CountedCurves, is_unbounded: bool
+    ) -> PointsOnParts | None:
+        """Points on all real parts of the curves; None where these are not all, more
+        paths lead there, or there was no time. Where paths are lost others are followed.
+        Where the system ``is_unbounded`` the function is a distance."""
+        of = self.rng.normal(size=self.equations.n)
+        function = CriticalPoints(self.equations, of, is_unbounded)
+        degree = len(found.section.solutions)
+        if not found.is_whole or function.number_of_paths(degree) > self.most:
+            return None
+        reach = np.inf if is_unbounded else self._reach()
+        farthest = OUTSIDE * reach
+        for _ in range(TRIES):
+            batches = [function.paths(found.section, self.rng, self.deadline, farthest)]
+            batches += [
+                self.equations.follow(found.section, plane, self.deadline, farthest)
+                for plane in self._planes()
+            ]
+            parts = PointsOnParts(Paths.joined(batches), reach)
+            if not parts.paths.lost or self.deadline.passed:
                 break
-            parts = self._points_on_parts(found)
         return None if self.deadline.passed else parts
 
-    def _points_on_parts(self, found: CountedCurves) -> PointsOnParts:
-        parts = PointsOnParts(self._reach(found.function.is_distance))
-        farthest = OUTSIDE * parts.reach
-        critical, starts = found.function.paths(
-            found.section, self.rng, self.deadline, farthest
-        )
-        parts.lost += int(np.count_nonzero(~starts.is_regular))
-        parts.take(critical)
-        for plane in self._planes():
-            section = found.section
-            paths = self.equations.follow(
-                section, plane, self.rng, self.deadline, farthest
-            )
-            parts.take(paths)
-        return parts
-
-    def unknowns(self, batches: list[np.ndarray]) -> np.ndarray:
-        """The unknowns (k, n) at points (k, c), angles at all whole turns within the
+    def unknowns(self, points: np.ndarray) -> np.ndarray:
+        """The unknowns (j, n) at points (k, c), angles at all whole turns within the
         bounds."""
-        nothing = np.empty((0, self.equations.n))
-        points = self.system.unknowns(np.concatenate([nothing, *batches]))
-        return with_turns(points, self.system, self.bounds)
+        return with_turns(self.system.unknowns(points), self.system, self.bounds)
 
-    def _reach(self, is_unbounded: bool) -> float:
-        """The largest coordinate of a point within the bounds; infinite where there are
-        none."""
-        if is_unbounded:
-            return np.inf
+    def _reach(self) -> float:
+        """The largest coordinate of a point within the bounds."""
         sizes = dict(zip(self.system.coordinates, self.system.sizes, strict=True))
         widest = [
             float(np.abs(self.bounds[number]).max() / size)
@@ -271,19 +200,15 @@ class CurveCounter:
             return False
         return all(self._is_on(found.section, point) for point in points)
 
-    def _is_on(self, section: HyperplaneSection, point: np.ndarray) -> bool:
-        """Whether a point (c,) lies on a curve with the points of a generic section: one
-        of these comes to it when the hyperplane comes to a generic one through it."""
-        normal = complex_normal(self.rng, self.equations.n)
-        through = np.r_[-(normal @ point), normal]
-        paths = self.equations.follow(section, through, self.rng, self.deadline)
-        gaps = np.abs(paths.points - point).max(axis=1, initial=0.0)
-        return bool(np.any(may_be_real_path_end(gaps / (1.0 + np.abs(point).max()))))
+    def _is_on(self, section: Fibre, point: np.ndarray) -> bool:
+        """Whether a point (c,) lies on a curve with the points of a generic section."""
+        gap = self.equations.gap_to(section, point, self.rng, self.deadline)
+        return bool(may_be_real_path_end(gap))
 
     def degrees_through(self, points: np.ndarray) -> list[int]:
         """The degrees of the irreducible curves through regular points (k, n), each
         curve once; empty where one of them is not known."""
-        known: list[HyperplaneSection] = []
+        known: list[Fibre] = []
         for point in self.system.places(points).astype(complex):
             if any(self._is_on(section, point) for section in known):
                 continue
@@ -292,8 +217,8 @@ class CurveCounter:
             )
             if curve is None:
                 return []
-            known.append(HyperplaneSection(curve.plane, curve.points[0]))
-        return sorted((len(section.points) for section in known), reverse=True)
+            known.append(curve)
+        return sorted((len(section.solutions) for section in known), reverse=True)
 
 
 def _real(points: np.ndarray, is_real: Decision) -> np.ndarray:
@@ -302,13 +227,3 @@ def _real(points: np.ndarray, is_real: Decision) -> np.ndarray:
     imaginary = np.abs(points.imag).max(axis=1, initial=0.0)
     real: np.ndarray = points[is_real(imaginary / sizes)].real
     return real
-
-
-def _are_away(points: np.ndarray, reach: float) -> np.ndarray:
-    """Which ends at infinity (k, c) are farther away than any point within ``reach``."""
-    # at infinity a coordinate that is zero is none
-    sizes = np.fmax.reduce(np.abs(points), axis=1, initial=1.0)
-    are_away: np.ndarray = ends_beyond_reach(reach / sizes)
-    if np.isinf(reach):
-        are_away = is_plainly_at_infinity(1.0 / sizes)
-    return are_away

@@ -187,7 +187,7 @@ class Findings:
         unit = within / may_be_known.threshold
         are_on = np.zeros(len(points), dtype=bool)
         for branch in self.branches:
-            distances, _ = branch.nearest(points, float(within.max()))
+            distances, _ = branch.nearest(points, float(within.max(initial=0.0)))
             are_on |= may_be_known(distances, unit)
         return are_on
 

@@ -14,11 +14,10 @@ from typing import TypeAlias
 import numpy as np
 
 from bifurc.completeness import Claim, Level, Scope
-from bifurc.decisions import is_plainly_at_infinity
 from bifurc.equations.polynomials import PolynomialSystem
 from bifurc.limits import Deadline
-from bifurc.paths.follow import PathEnd, Paths, copy_of
-from bifurc.paths.sparse import SparseFamily
+from bifurc.paths.follow import Paths, copy_of
+from bifurc.paths.sparse import SparseFamily, have_curves
 from bifurc.search.answer.completeness import SearchClaim
 
 # Whether points (k, c) all lie on curves.
@@ -51,8 +50,7 @@ class IsolatedSolutions:
         """What is said of the isolated solutions, of which so many are ``inside`` the
         bounds; ``are_on_curves`` tells of points (k, c) whether all of them lie on
         curves that are known."""
-        singular = len(self.singular_ends)
-        lost = int(np.count_nonzero(self.paths.is_lost))
+        singular, lost = len(self.paths.singular), self.paths.lost
         data = {
             "real": self.real,
             "complex": self.complex,
@@ -63,9 +61,9 @@ class IsolatedSolutions:
         if lost:
             reasons = ", ".join(self.paths.reasons())
             kind, more = SearchClaim.PATHS_LOST, {"lost": lost, "reasons": reasons}
-        elif far := self._are_far():
+        elif far := self.paths.far():
             kind, more = SearchClaim.PATHS_FAR_AWAY, {"far": far}
-        elif are_on_curves is not None and are_on_curves(self.singular_ends):
+        elif are_on_curves is not None and are_on_curves(self.paths.singular):
             kind = SearchClaim.ALL_ISOLATED_BESIDE_CURVES
             level = Level.CERTIFIED
             return kind.claim(Scope.ASSEMBLIES, level, **data, singular=singular)
@@ -78,48 +76,37 @@ class IsolatedSolutions:
             return kind.claim(Scope.ASSEMBLIES, Level.CERTIFIED, **data)
         return kind.claim(Scope.ASSEMBLIES, Level.ESTIMATED, **data, **more)
 
-    @property
-    def singular_ends(self) -> np.ndarray:
-        """The ends of paths (s, c) that are singular."""
-        ends: np.ndarray = self.paths.points[self.paths.ends == PathEnd.SINGULAR]
-        return ends
-
-    def _are_far(self) -> int:
-        """How many paths ended so far away that rounding may hide a solution there."""
-        is_far = self.paths.ends == PathEnd.AT_INFINITY
-        sizes = np.abs(self.paths.points[is_far]).max(axis=1, initial=1.0)
-        return int(np.count_nonzero(~is_plainly_at_infinity(1.0 / sizes)))
-
 
 def isolated_solutions(
-    system: PolynomialSystem, bounds: np.ndarray, most: int, deadline: Deadline
+    system: PolynomialSystem,
+    bounds: np.ndarray,
+    most: int,
+    deadline: Deadline,
+    seed: int = SEED,
 ) -> IsolatedSolutions | None:
     """Those of as many polynomials as coordinates, with angles at all whole turns within
     ``bounds`` (n, 2); None where the trace test failed, or where there are more than
-    ``most`` complex ones."""
+    ``most`` complex ones. The generic system is that of a ``seed``."""
     family = SparseFamily.of(system.polynomials)
-    rng = np.random.default_rng(SEED)
-    generic = family.generic_solutions(rng, deadline, most)
-    if not generic.are_all or generic.trace is None or generic.count > most:
+    rng = np.random.default_rng(seed)
+    solved = family.solve(system.polynomials, rng, deadline, most)
+    if solved is None or deadline.passed:
         return None
-    member = family.member(system.polynomials)
-    starts = family.with_zeros_of(generic, member, rng, deadline)
-    paths = family.follow(starts, member, rng, deadline)
-    has_curves = family.has_curves(generic, member, rng, deadline)
-    if deadline.passed:
-        return None
+    paths, has_curves = solved.paths, None
+    if not paths.lost:
+        has_curves = have_curves(system.polynomials, rng, deadline, most)
     regular = paths.regular
     count = len(regular)
     partners = copy_of(np.concatenate([regular, regular.conj()]))[count:]
     real = regular[partners == np.arange(count)].real
-    singular = paths.points[paths.ends == PathEnd.SINGULAR].real
+    singular = paths.singular.real
     return IsolatedSolutions(
         points=with_turns(system.unknowns(real), system, bounds),
         singular=with_turns(system.unknowns(singular), system, bounds),
         real=len(real),
         complex=count,
         paths=paths,
-        trace=generic.trace,
+        trace=solved.trace,
         has_curves=has_curves,
     )
 

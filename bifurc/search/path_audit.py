@@ -18,6 +18,7 @@ from bifurc.search.own_units.unit_problem import UnitProblem
 from bifurc.search.point_search import BRANCH_REACH, PointSearch
 from bifurc.search.records import Start, half_branch_starts
 from bifurc.seeds import Audit, Seeds
+from bifurc.settings import USUAL_PATHS
 
 if TYPE_CHECKING:
     from bifurc.domain import Domain
@@ -107,49 +108,61 @@ class PathAudit:
         """Say of which degrees the curves of polynomials are, and, where that is open,
         take points on all their real parts for seeds, and hold them against the
         forms."""
-        users, findings = self._users(), self.findings
-        if users is None or findings.components.seeds or self._has_no_curves():
+        counter = self._counter()
+        if counter is None:
             return
-        system = system_of(self.problem.domain, self._tape_of_curves(users))
-        if system is None or len(system.polynomials) < len(system.coordinates) - 1:
-            return
-        from bifurc.search.curves_by_paths import CurveCounter  # few searches need it
-
-        most, deadline = self._most_paths(system), self.run.deadline
-        counter = CurveCounter(system, self._bounds(), most, deadline)
-        found = counter.count(is_unbounded=self._is_unbounded())
+        found = counter.count()
         if found is None:
             self._take_claims(self._claims_of_forms(counter))
             return
-        is_open = findings.audit is None or findings.audit.level is Level.ESTIMATED
-        if not is_open or not counter.finds_points(found):
-            self._take_claims(found.degrees_claims())
-            return
-        yield from self._hold_against(found, counter)
+        claims, is_unbounded = found.claims(), self._is_unbounded()
+        parts = (
+            counter.points_on_parts(found, is_unbounded) if self._is_open() else None
+        )
+        if parts is not None and not self.run.is_over:
+            points = counter.unknowns(parts.regular)
+            singular = counter.unknowns(parts.singular)
+            inside, _ = self._inside(points)
+            near, _ = self._inside(singular, is_exact=False)
+            yield from self._look_at(inside, near)
+            unlisted = sum(not self._is_singular_point(place) for place in near)
+            unlisted += int(np.count_nonzero(~self._are_listed(inside)))
+            beyond = len(points) - len(inside) + len(singular) - len(near)
+            claims.append(parts.claim(unlisted, beyond if is_unbounded else 0))
+            claims += self._claims_beside_curves(found, counter)
+        self._take_claims(claims)
 
-    def _hold_against(self, found: CountedCurves, counter: CurveCounter) -> Starts:
-        """Take points on all real parts of the curves for seeds, and hold them against
-        the forms."""
-        parts = counter.points_on_parts(found)
-        if self.run.is_over or parts is None:
-            return
-        points = counter.unknowns(parts.regular)
-        inside, _ = self._inside(points)
+    def _counter(self) -> CurveCounter | None:
+        """What counts the curves; None where they are not asked for, or there are
+        none."""
+        users, findings = self._users(), self.findings
+        if users is None or findings.components.seeds or self._has_no_curves():
+            return None
+        if not self._is_open() and self.run.settings.paths <= USUAL_PATHS:
+            return None  # the degrees alone take as long as a simple search
+        system = system_of(self.problem.domain, self._tape_of_curves(users))
+        if system is None or len(system.polynomials) < len(system.coordinates) - 1:
+            return None
+        from bifurc.search.curves_by_paths import CurveCounter  # few searches need it
+
+        most, deadline = self._most_paths(system), self.run.deadline
+        return CurveCounter(system, self._bounds(), most, deadline)
+
+    def _look_at(self, inside: np.ndarray, near: np.ndarray) -> Starts:
+        """Take points (k, n) of real parts for seeds, and look for singular points
+        ``near`` others (j, n)."""
         self._add(inside)
         yield []
-        singular = counter.unknowns(parts.singular)
-        near, _ = self._inside(singular, is_exact=False)
         for place in near:
             if not self._is_singular_point(place) and not self.run.is_over:
                 sighting = self.points.near(place, 2, BRANCH_REACH)
                 if sighting is not None and sighting.is_new:
                     yield half_branch_starts(sighting.point)
-        unlisted = sum(not self._is_singular_point(place) for place in near)
-        unlisted += int(np.count_nonzero(~self._are_listed(inside)))
-        beyond = len(points) - len(inside) + len(singular) - len(near)
-        outside = beyond if self._is_unbounded() else 0
-        claims = found.claims(parts, unlisted, outside)
-        self._take_claims([*claims, *self._claims_beside_curves(found, counter)])
+
+    def _is_open(self) -> bool:
+        """Whether something may still be missing."""
+        audit = self.findings.audit
+        return audit is None or audit.level is Level.ESTIMATED
 
     def _take_claims(self, claims: Sequence[Claim]) -> None:
         """Add to what is claimed; what was said of isolated solutions gives way to what

@@ -5,19 +5,15 @@ import pytest
 
 from bifurc.limits import Deadline
 from bifurc.paths.follow import PathEnd
-from bifurc.paths.sparse import SparseFamily
+from bifurc.paths.sparse import SparseFamily, have_curves
 from tests.samples import one_in
 
 
 def solved(polynomials, seed=0):
     family = SparseFamily.of(polynomials)
-    rng, deadline = np.random.default_rng(seed), Deadline()
-    generic = family.generic_solutions(rng, deadline, 400)
-    assert generic.are_all
-    member = family.member(polynomials)
-    paths = family.follow(generic, member, rng, deadline)
-    has_curves = family.has_curves(generic, member, rng, deadline)
-    return generic.count, paths, has_curves
+    rng = np.random.default_rng(seed)
+    found = family.solve(polynomials, rng, Deadline(), 400)
+    return found.paths, have_curves(polynomials, rng, Deadline(), 400)
 
 
 def real_ones(points):
@@ -68,7 +64,7 @@ KNOWN = {
 @pytest.mark.parametrize("name", one_in(3, KNOWN))
 def test_systems_have_as_many_solutions_as_in_the_literature(name):
     polynomials, complex_ones, real = KNOWN[name]
-    _, paths, has_curves = solved(polynomials)
+    paths, has_curves = solved(polynomials)
     assert not np.any(paths.is_lost)
     assert has_curves is False
     assert len(paths.regular) == complex_ones
@@ -93,7 +89,7 @@ SMALL = {
 @pytest.mark.parametrize("name", SMALL)
 def test_solutions_with_zeros_and_of_parts_are_found(name, seed):
     polynomials, count = SMALL[name]
-    _, paths, has_curves = solved(polynomials, seed)
+    paths, has_curves = solved(polynomials, seed)
     assert len(paths.regular) == count
     others = ~(paths.is_regular & paths.solves_all)
     assert np.all(paths.ends[others] == PathEnd.AT_INFINITY)
@@ -102,7 +98,7 @@ def test_solutions_with_zeros_and_of_parts_are_found(name, seed):
 
 def test_a_double_solution_is_singular():
     polynomials = [{(2, 0): 1, (0, 2): 1, (0, 0): -1}, {(1, 0): 1, (0, 0): -1}]
-    _, paths, has_curves = solved(polynomials)
+    paths, has_curves = solved(polynomials)
     assert paths.ends.tolist() == [PathEnd.SINGULAR] * 2
     assert np.allclose(paths.points, [1, 0], atol=1e-6)
     assert has_curves is False
@@ -123,7 +119,7 @@ CURVES = {
 
 @pytest.mark.parametrize("name", CURVES)
 def test_curves_are_seen(name):
-    _, paths, has_curves = solved(CURVES[name])
+    paths, has_curves = solved(CURVES[name])
     assert has_curves
     assert not np.any(paths.is_lost)
 

@@ -1,5 +1,7 @@
 """Curves of polynomials in any number of unknowns are counted, and found whole."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -30,7 +32,7 @@ def viviani(u):
 
 def test_one_curve_of_degree_4_is_whole():
     atlas = explored(viviani, [(-3, 3)] * 3)
-    claim = claim_of(atlas, SearchClaim.ALL_CURVES)
+    claim = claim_of(atlas, SearchClaim.DEGREES)
     assert claim.data["degrees"] == [4]
     assert "1 irreducible curve, of degree 4" in claim.text
     assert atlas.completeness.level is Level.CERTIFIED
@@ -61,7 +63,7 @@ def test_an_oval_that_starts_miss_is_found(radius, n):
     assert [form.branch.closed for form in atlas.forms] == [True, True]
     lengths = sorted(form.branch.length for form in atlas.forms)
     assert lengths[0] < 100 * radius
-    degrees = claim_of(atlas, SearchClaim.ALL_CURVES).data["degrees"]
+    degrees = claim_of(atlas, SearchClaim.DEGREES).data["degrees"]
     # nearly a pair of lines, and no such pair
     assert degrees == [2, 2]
     assert atlas.completeness.level is Level.CERTIFIED or atlas.completeness.doubts
@@ -89,14 +91,14 @@ def test_angles_are_coordinates_on_circles(is_circle):
     bounds = [(-np.pi, np.pi)] * 3
     atlas = explored(four_bar, bounds, **turns)
     # the coupler curve's six circular points are not among the configurations
-    assert claim_of(atlas, SearchClaim.ALL_CURVES).data["degrees"] == [6]
+    assert claim_of(atlas, SearchClaim.DEGREES).data["degrees"] == [6]
     assert atlas.completeness.level is Level.CERTIFIED
 
 
 def test_isolated_solutions_beside_a_curve_are_counted():
     # the line x = 0, and the point (2, 1)
     atlas = explored(lambda u: [u[0] * (u[1] - 1), u[0] * (u[0] - 2)], [(-4, 4)] * 2)
-    assert claim_of(atlas, SearchClaim.ALL_CURVES).data["degrees"] == [1]
+    assert claim_of(atlas, SearchClaim.DEGREES).data["degrees"] == [1]
     beside = claim_of(atlas, SearchClaim.ALL_ISOLATED_BESIDE_CURVES)
     assert (beside.data["real"], beside.data["inside"]) == (1, 1)
     assert len(atlas.forms) == len(atlas.rigid) == 1
@@ -109,16 +111,24 @@ def test_more_equations_than_curves_need_leave_isolated_solutions_open():
         return [y - x**2, z - x * y, x * z - y**2, (z - x * y) * (x - 5)]
 
     atlas = explored(twisted, [(-2, 2)] * 3)
-    assert claim_of(atlas, SearchClaim.ALL_CURVES).data["degrees"] == [3]
+    assert claim_of(atlas, SearchClaim.DEGREES).data["degrees"] == [3]
     assert claim_of(atlas, SearchClaim.ISOLATED_NOT_COUNTED)
     assert atlas.completeness.level is Level.ESTIMATED
 
 
-def test_what_is_proved_by_boxes_has_a_degree_too():
+def test_what_is_proved_by_boxes_has_a_degree_where_it_is_asked_for():
+    def ellipse(u):
+        return [u[0] ** 2 + 2 * u[1] ** 2 - 1]
+
     settings = SearchSettings(starts=5, near_motions=False)
-    atlas = explored(lambda u: [u[0] ** 2 + 2 * u[1] ** 2 - 1], [(-2, 2)] * 2, settings)
-    assert claim_of(atlas, SearchClaim.DEGREES).data["degrees"] == [2]
+    atlas = explored(ellipse, [(-2, 2)] * 2, settings)
     assert atlas.completeness.level is Level.PROVED
+    assert not [
+        c for c in atlas.completeness.claims if SearchClaim.DEGREES.is_kind_of(c)
+    ]
+    more = explored(ellipse, [(-2, 2)] * 2, replace(settings, paths=201))
+    assert claim_of(more, SearchClaim.DEGREES).data["degrees"] == [2]
+    assert more.completeness.level is Level.PROVED
 
 
 def test_parts_outside_of_bounds_that_were_assumed_are_said():
@@ -145,13 +155,13 @@ def test_of_too_many_paths_the_degree_of_the_curve_of_a_form_is_stated():
     atlas = explored(quadrics, [(-3, 3)] * 4, settings)
     assert atlas.completeness.level is Level.ESTIMATED
     more = explored(quadrics, [(-3, 3)] * 4)
-    assert claim_of(more, SearchClaim.ALL_CURVES).data["degrees"] == [8]
+    assert claim_of(more, SearchClaim.DEGREES).data["degrees"] == [8]
 
 
 def test_a_multiple_curve_is_no_reason_for_doubt_where_its_factor_is_known():
     atlas = explored(lambda u: [(u[0] ** 2 + u[1] ** 2 - 1) ** 2, u[2]], [(-2, 2)] * 3)
     assert atlas.completeness.level is Level.CERTIFIED
-    assert claim_of(atlas, SearchClaim.ALL_CURVES).data["degrees"] == [2]
+    assert claim_of(atlas, SearchClaim.DEGREES).data["degrees"] == [2]
 
 
 def test_surfaces_are_not_counted_as_curves():

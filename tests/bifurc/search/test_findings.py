@@ -68,6 +68,11 @@ def test_a_branch_is_known_by_a_point_on_it_and_by_its_course(findings):
     assert findings.branch_along(trace_branch(PROBLEM, ON_CIRCLE[2])) == fate
 
 
+def test_of_no_points_none_lies_on_a_branch(findings):
+    findings.add_branch(traced(ON_CIRCLE[0]))
+    assert len(findings.are_on_branches(np.empty((0, 2)))) == 0
+
+
 def test_a_singular_point_is_new_once(findings):
     first = findings.add_point(point_at([0.0, 1.0]))
     assert (first.number, first.is_new) == (0, True)
