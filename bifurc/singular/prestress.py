@@ -51,8 +51,9 @@ class SecondOrder:
 def second_order_at(problem: System, point: np.ndarray) -> SecondOrder:
     """What second order says of a solution at ``point`` (n,).
 
-    Singular values below 1e-7 of the magnitude of F' count as zero. Without flexes the
-    solution is isolated by first order. Raises `ProblemError` for a point of another
+    Singular values below 1e-7 of the magnitude of F' count as zero, and so do eigenvalues
+    of a form below 1e-6 of the largest form. Without flexes the solution is isolated by
+    first order. Raises `ProblemError` for a point of another
     shape or not finite.
 
     >>> import numpy as np

@@ -13,11 +13,13 @@ from typing import Any
 
 import numpy as np
 
+from bifurc.numerics.singular_values import singular_values
 from bifurc.singular.prestress import (
     SecondOrder,
     positive_combination,
     second_order_at,
 )
+from linkages.decisions import is_drawn_singular
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.readout.readout import Readout
@@ -183,6 +185,9 @@ def is_as_drawn(readout: Readout, point: np.ndarray) -> bool:
     """Whether what is singular in the assembly at a configuration (n,) is as it is drawn:
     the assembly itself, or all points of bars in which the stress that holds it is."""
     drawn = readout.structure.reference
+    smallest = singular_values(readout.closure, drawn)[-1]
+    if not is_drawn_singular(float(smallest)):
+        return False
     if _is_same(readout, point, drawn):
         return True
     hold = hold_at(readout, point)

@@ -150,6 +150,15 @@ def test_two_bars_on_one_line_are_held_by_their_tension(collinear):
     assert heights == pytest.approx([-0.7, 0.7])
 
 
+@pytest.mark.parametrize("height", [2e-8, 5e-8, 1e-7, 3e-7])
+@pytest.mark.parametrize("scale", [1.0, 1e-6, 1e6])
+def test_two_assemblies_that_doubles_do_not_tell_apart_are_in_doubt(height, scale):
+    points = {"a": (0, 0), "b": (2 * scale, 0), "c": (scale, height * scale)}
+    atlas = map_linkage(framework(points, ["ab", "ac", "bc"]))
+    if len(atlas.rigid) != 2:
+        assert atlas.completeness.is_in_doubt
+
+
 def test_the_summary_says_what_holds_a_shaky_assembly(collinear):
     done = CliRunner().invoke(main, ["map", str(collinear)])
     assert done.stdout.count("isolated: 1 flex, 1 stress, rigid by prestress") == 2
