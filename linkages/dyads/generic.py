@@ -175,11 +175,11 @@ def _shipped() -> dict[str, GenericSolutions]:
     if not SHIPPED.exists():
         return {}
     with np.load(SHIPPED) as arrays:
-        names = sorted({key.split()[0] for key in arrays})
+        names = sorted({key.split("/")[0] for key in arrays})
         return {
             name: GenericSolutions(
-                Fibre(arrays[f"{name} parameters"], arrays[f"{name} solutions"]),
-                float(arrays[f"{name} trace"]),
+                Fibre(arrays[f"{name}/parameters"], arrays[f"{name}/solutions"]),
+                float(arrays[f"{name}/trace"]),
             )
             for name in names
         }

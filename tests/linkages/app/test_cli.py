@@ -389,7 +389,7 @@ def test_a_surface_is_a_form_of_dimension_2(write):
     assert result.exit_code == 0
     document = json.loads(result.stdout)
     assert [form["dimension"] for form in document["forms"]] == [2]
-    assert set(document["forms"][0]) == KEYS["forms"] | {"note"}
+    assert set(document["forms"][0]) == KEYS["forms"] | {"note", "factors"}
 
 
 DOES_NOT_MOVE = {

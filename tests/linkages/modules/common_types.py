@@ -106,9 +106,9 @@ def make() -> None:
         if generic.count != one.count:
             raise ArithmeticError(f"{name}: {generic.count} solutions are not all")
         key = name_of(one.family.family)
-        arrays[f"{key} parameters"] = generic.fibre.parameters
-        arrays[f"{key} solutions"] = generic.fibre.solutions
-        arrays[f"{key} trace"] = np.array(generic.trace)
+        arrays[f"{key}/parameters"] = generic.fibre.parameters
+        arrays[f"{key}/solutions"] = generic.fibre.solutions
+        arrays[f"{key}/trace"] = np.array(generic.trace)
     np.savez_compressed(SHIPPED, **arrays)
 
 
