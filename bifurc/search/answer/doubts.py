@@ -186,13 +186,15 @@ def doubts_of_findings(
     assemblies = list(findings.rigid.values())
     hidden = np.array([assembly.hidden for assembly in assemblies])
     is_known = is_known_assembly(hidden, problem.domain.scale)
-    is_open = ~(is_known & _are_single(problem, assemblies))
+    missed, are_single = _missed_by(problem, assemblies)
+    is_open = ~(is_known & are_single)
     for k in np.flatnonzero(is_open & is_known).tolist():
         is_open[k] = not is_held(problem, assemblies[k].place)
-    hidden = hidden[is_open]
-    if len(hidden):
-        reach = hidden.max() / problem.domain.scale
-        yield SearchDoubt.HIDDEN_ASSEMBLIES.doubt(amount=reach, count=len(hidden))
+    if np.any(is_open):
+        # what bends by one over the scale and misses so much is the root of it apart
+        apart = np.maximum(hidden / problem.domain.scale, np.sqrt(missed))[is_open]
+        kind = SearchDoubt.HIDDEN_ASSEMBLIES
+        yield kind.doubt(amount=float(apart.max()), count=len(apart))
     on_rim = int(np.count_nonzero(are_on_rim(problem, findings.rigid.values())))
     if on_rim:
         yield SearchDoubt.ON_RIM.doubt(count=on_rim)
@@ -255,13 +257,15 @@ def _doubts_on_rims(
         yield SearchDoubt.MEETING_ON_RIM.doubt(starts=len(meeting))
 
 
-def _are_single(problem: Problem, assemblies: Sequence[RigidAssembly]) -> np.ndarray:
-    """Which assemblies (k,) are solutions, and one each, by what they miss and how weakly
-    they are held."""
+def _missed_by(
+    problem: Problem, assemblies: Sequence[RigidAssembly]
+) -> tuple[np.ndarray, np.ndarray]:
+    """How much assemblies miss (k,), over the scale, and which are solutions, and one
+    each, by that and by how weakly they are held."""
     places = np.array([one.place for one in assemblies]).reshape(-1, problem.n)
     missed = relative_gaps(problem, places) / problem.domain.scale + ROUNDING
     weakest = singular_values(problem, places)[:, problem.n - 1]
-    return is_single_assembly(missed / (weakest**2 + TINY))
+    return missed, is_single_assembly(missed / (weakest**2 + TINY))
 
 
 def _others(

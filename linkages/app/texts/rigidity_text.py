@@ -28,8 +28,8 @@ def assemblies_table(
     heads: tuple[str, ...] = (subject_at(atlas).heading(atlas),)
     rows: list[Sequence[str]] = [(show_configuration(atlas, u),) for u in atlas.rigid]
     size = dimension_of_points(readout.mechanism)
-    if size:
-        names = moving_points(readout.mechanism)
+    names = moving_points(readout.mechanism) if size else []
+    if names:
         axes = ", ".join("xyz"[:size])
         heads = tuple(f"{name} ({axes})" for name in names)
         rows = [_places(readout, u) for u in atlas.rigid]

@@ -288,6 +288,18 @@ def test_bars_of_a_file_in_space_take_lengths(tmp_path):
     assert "T (x, y, z)" in text
 
 
+def test_what_is_held_on_the_frame_alone_is_listed_by_its_joints(tmp_path):
+    pins = [
+        f'[[joints]]\nname = "{name}"\nkind = "revolute"\nbodies = ["frame", "link"]\n'
+        f"point = [{x}, 0, 0]\ndirection = [0, 0, 1]\n"
+        for name, x in (("A", 0), ("B", 1))
+    ]
+    path = tmp_path / "two.toml"
+    path.write_text("planar = true\n" + "".join(pins))
+    text = CliRunner().invoke(main, ["map", str(path)]).stdout
+    assert "A, B (deg)" in text
+
+
 def test_points_on_bars_in_space_are_refused(tmp_path):
     path = tmp_path / "tripod.toml"
     path.write_text(f'{TRIPOD}[points_on_bars]\nM = ["A", "T", 0.5]\n')
