@@ -259,6 +259,12 @@ def main(out: Path, largest: int) -> None:
         costs.append(cost_of_fold(*run))
         click.echo(_line(costs[-1]))
     _write(costs, out)
+    _tell_of_costs(costs)
+    _tell_of_points()
+
+
+def _tell_of_costs(costs: Sequence[FoldCost]) -> None:
+    """How time grows, and what folds tend to."""
     square = [cost for cost in costs if cost.dimensions == 2]
     for solver in ("fast Poisson", "sparse LU"):
         own = [cost for cost in square if cost.solver == solver]
@@ -272,6 +278,10 @@ def main(out: Path, largest: int) -> None:
     for name, own in (("1-D", short), ("2-D", halved), ("2-D", coarser)):
         limits = ", ".join(f"{limit:.9f}" for limit in richardson(own))
         click.echo(f"Richardson {name}: {limits}")
+
+
+def _tell_of_points() -> None:
+    """How well crossings and Hopf points are found."""
     for points in (200, 800):
         errors, seconds = crossing_errors(points)
         click.echo(

@@ -68,12 +68,7 @@ def second_order_at(problem: System, point: np.ndarray) -> SecondOrder:
     if point.shape != (problem.n,):
         raise ProblemError("shape of the point", point.shape, f"({problem.n},)")
     check_finite("point", point)
-    jacobian = relative_jacobians(problem, point[None])[0]
-    factors = factors_of(jacobian)
-    sigma = np.zeros(problem.n)
-    sigma[: len(factors.sigma)] = factors.sigma
-    rank = int(np.count_nonzero(~is_null(sigma)))
-    flexes, stresses = factors.right[rank:], factors.left[:, rank:].T
+    flexes, stresses = _flexes_and_stresses(problem, point)
     if not len(flexes):
         return SecondOrder(flexes, stresses, None, 0.0, True)
     hessian = hessian_at(problem, point) / problem.magnitude
@@ -82,6 +77,16 @@ def second_order_at(problem: System, point: np.ndarray) -> SecondOrder:
     if weights is not None:
         return SecondOrder(flexes, stresses, weights @ stresses, margin, True)
     return SecondOrder(flexes, stresses, None, margin, _have_no_common_zero(forms))
+
+
+def _flexes_and_stresses(
+    problem: System, point: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Orthonormal bases (k, n) and (s, m) of what F' takes to nothing at a point (n,), and
+    of what takes F' to nothing."""
+    factors = factors_of(relative_jacobians(problem, point[None])[0])
+    rank = int(np.count_nonzero(~is_null(factors.sigma)))
+    return factors.right[rank:], factors.left[:, rank:].T
 
 
 def positive_combination(forms: np.ndarray) -> tuple[np.ndarray | None, float]:

@@ -32,7 +32,12 @@ from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.mechanism import Variable
 from linkages.structure.cycles import Step
 from linkages.structure.placement import Placement
-from linkages.structure.structure import Closure, ClosureKind, Structure
+from linkages.structure.structure import (
+    CONSTRAINTS,
+    Closure,
+    ClosureKind,
+    Structure,
+)
 
 # recorded, complex or real
 Number: TypeAlias = Any
@@ -41,8 +46,7 @@ Point: TypeAlias = Any  # three of them, in any sequence
 ROTATION = 6  # numbers of an embedded rotation: two orthonormal vectors
 X_AXIS, Y_AXIS, ORIGIN = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
 OF_SINES = -0.5j  # the sine of x is this times exp(i x) - exp(-i x)
-FREEDOMS = {ClosureKind.CYCLE: 6, ClosureKind.POINT: 3, ClosureKind.ROD: 1}
-OF_PLANE = {ClosureKind.CYCLE: 3, ClosureKind.POINT: 2, ClosureKind.ROD: 1}
+FLAT = {ClosureKind.CYCLE: 3, ClosureKind.POINT: 2, ClosureKind.ROD: 1}
 # Complex ones of a generic member that are looked for. Types with more of them are at
 # hand, or are not followed.
 MOST_SOLUTIONS = 48
@@ -50,7 +54,6 @@ MOST_SOLUTIONS = 48
 # Along a chain of displacements products of numbers that are far from real become large;
 # from numbers that are nearly real paths pass near singular members.
 IMAGINARY = (0.5, 0.4, 0.6, 0.3)
-OF_SPHERE = {ClosureKind.CYCLE: 3, ClosureKind.POINT: 2, ClosureKind.ROD: 1}
 
 
 @dataclass
@@ -118,11 +121,9 @@ class ClosureFamily(RealFamily):
 
     def freedoms(self, closure: Closure) -> int:
         """How many unknowns a closure determines."""
-        if self.placement.is_planar:
-            return OF_PLANE[closure.kind]
-        if self.placement.is_spherical:
-            return OF_SPHERE[closure.kind]
-        return FREEDOMS[closure.kind]
+        if self.placement.is_planar or self.placement.is_spherical:
+            return FLAT[closure.kind]
+        return CONSTRAINTS[closure.kind]
 
     def _require_square(self) -> None:
         """Raises `ValueError` where the closures determine more or fewer unknowns than

@@ -13,11 +13,10 @@ from bifurc.numerics.blur import blur_along, change_by_blur
 from linkages.decisions import is_dependent_constraint, keeps_angle
 from linkages.readout.ranges import VariableRange, variable_ranges
 from linkages.readout.readout import Readout
-from linkages.structure.structure import ClosureKind, Structure
+from linkages.structure.structure import CONSTRAINTS, Structure
 
 SAMPLES = 400  # of a form
 IN_PLANE = 3  # constraints of a cycle in a plane
-CONSTRAINTS = {ClosureKind.CYCLE: 6, ClosureKind.POINT: 3, ClosureKind.ROD: 1}
 
 
 # --- loops ----------------------------------------------------------------------------

@@ -59,6 +59,10 @@ class ClosureKind(Enum):
     ROD = "rod"
 
 
+# how many equations each of them is, in space
+CONSTRAINTS = {ClosureKind.CYCLE: 6, ClosureKind.POINT: 3, ClosureKind.ROD: 1}
+
+
 @dataclass(frozen=True, eq=False)
 class Closure:
     """A ``chain`` that has to close. The point ``second`` (3,) of its last body comes

@@ -45,13 +45,10 @@ def _places(readout: Readout, u: np.ndarray) -> list[str]:
     """Where the points that move are at a configuration (n,)."""
     unit, size = readout.structure.unit, dimension_of_points(readout.mechanism)
     mechanism = readout.mechanism
-    moving = set(moving_points(mechanism))
+    names = [joint.name for joint in mechanism.joints]
     places = points_at(readout, u[None])[0] + np.array(mechanism.origin)
-    return [
-        ", ".join(in_lengths(float(value), unit) for value in place[:size])
-        for joint, place in zip(mechanism.joints, places, strict=True)
-        if joint.name in moving
-    ]
+    moving = places[[names.index(name) for name in moving_points(mechanism)], :size]
+    return [", ".join(in_lengths(x, unit) for x in place) for place in moving.tolist()]
 
 
 def how_held(readout: Readout, u: np.ndarray) -> str:
@@ -60,4 +57,4 @@ def how_held(readout: Readout, u: np.ndarray) -> str:
     hold = hold_at(readout, u)
     flexes = count_of(hold.flexes, "flex")
     counts = f"{flexes}, {count_of(hold.stresses, 'stress')}"
-    return counts if hold.words == "-" else f"{counts}, rigid by {hold.words}"
+    return f"{counts}, rigid by {hold.words}" if hold.order.is_rigid else counts
