@@ -1,19 +1,24 @@
 """All real solutions of a member of a family, from the complex ones of a generic member.
 
-These are found once a process for all mechanisms of the same equations; of common types
-with many of them they are at hand. From there paths lead to all isolated solutions of
-any other member.
+These are found once for all mechanisms of the same equations, and kept in the cache of
+the user; of common types with many of them they are part of the package. From there
+paths lead to all isolated solutions of any other member.
 """
 
 from __future__ import annotations
 
 import hashlib
+import os
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from functools import cache, cached_property
 from pathlib import Path
-from typing import ClassVar
+from tempfile import NamedTemporaryFile
+from typing import Any, ClassVar
+from zipfile import BadZipFile
 
 import numpy as np
+from platformdirs import user_cache_path
 
 from bifurc.limits import current_deadline
 from bifurc.paths.family import Family
@@ -28,6 +33,9 @@ from bifurc.paths.monodromy import (
 SEED = 28  # of the generic member from which paths begin
 ATTEMPTS = 4  # generic members that are tried, one after the other
 SHIPPED = Path(__file__).with_name("generic_solutions.npz")
+# Environment variable that names another folder for the solutions that are kept.
+CACHE = "BIFURC_CACHE"
+SOLVED = 1e-8  # residual of solutions that are kept, over the largest parameter
 
 
 class UnfollowedError(ArithmeticError):
@@ -71,8 +79,10 @@ class RealFamily(ABC):
         """
         name = name_of(self.family)
         if name not in _known:
-            shipped = _shipped().get(name)
-            _known[name] = shipped or find_generic(self, self.most)
+            known = _shipped().get(name) or kept(name, self.family)
+            _known[name] = known or find_generic(self, self.most)
+            if known is None:
+                keep(name, _known[name])
         return _known[name]
 
     def paths_to(self, last: np.ndarray) -> Paths:
@@ -119,19 +129,6 @@ class RealFamily(ABC):
 _known: dict[str, GenericSolutions] = {}
 
 
-def generic_solutions(one: RealFamily) -> GenericSolutions:
-    """Those of one generic member: of a common type, known, or found.
-
-    Raises `UnfollowedError` where it moves, where there are more than are looked for,
-    and where the time is over.
-    """
-    name = name_of(one.family)
-    if name not in _known:
-        shipped = _shipped().get(name)
-        _known[name] = shipped or find_generic(one, one.most)
-    return _known[name]
-
-
 def find_generic(one: RealFamily, most: int) -> GenericSolutions:
     """The solutions of a generic member, at ``most`` so many, by monodromy: all of them,
     as the trace test says.
@@ -168,13 +165,50 @@ def name_of(family: Family) -> str:
     return hashlib.sha256(repr((nodes, outputs, family.n)).encode()).hexdigest()[:32]
 
 
+# --- files of solutions ---------------------------------------------------------------
+
+
 @cache
 def _shipped() -> dict[str, GenericSolutions]:
     """The solutions of generic members of common types, by the names of their
     equations."""
-    if not SHIPPED.exists():
-        return {}
-    with np.load(SHIPPED) as arrays:
+    return read_generic(SHIPPED) if SHIPPED.exists() else {}
+
+
+def kept(name: str, family: Family) -> GenericSolutions | None:
+    """The solutions of equations that were kept; None where there are none, or they are
+    none."""
+    try:
+        generic = read_generic(_place_of(name))[name]
+    except (OSError, EOFError, ValueError, KeyError, BadZipFile):
+        return None
+    solutions, parameters = generic.fibre.solutions, generic.fibre.parameters
+    if solutions.shape[1:] != (family.n,) or parameters.shape != (family.parameters,):
+        return None
+    misses = np.abs(family.residuals(solutions, parameters)).max()
+    return generic if misses < SOLVED * np.abs(parameters).max() else None
+
+
+def keep(name: str, generic: GenericSolutions) -> None:
+    """Keep the solutions of equations for other processes, where that can be."""
+    place = _place_of(name)
+    try:
+        place.parent.mkdir(parents=True, exist_ok=True)
+        # another process finds the whole file, or none
+        with NamedTemporaryFile(dir=place.parent, suffix=".npz", delete=False) as file:
+            write_generic(Path(file.name), {name: generic})
+        Path(file.name).replace(place)
+    except OSError:
+        return
+
+
+def _place_of(name: str) -> Path:
+    return Path(os.environ.get(CACHE) or user_cache_path("bifurc")) / f"{name}.npz"
+
+
+def read_generic(path: Path) -> dict[str, GenericSolutions]:
+    """The solutions of a file, by the names of their equations."""
+    with np.load(path) as arrays:
         names = sorted({key.split("/")[0] for key in arrays})
         return {
             name: GenericSolutions(
@@ -183,3 +217,13 @@ def _shipped() -> dict[str, GenericSolutions]:
             )
             for name in names
         }
+
+
+def write_generic(path: Path, known: Mapping[str, GenericSolutions]) -> None:
+    """Write a file of solutions, by the names of their equations."""
+    arrays: dict[str, Any] = {}
+    for name, one in known.items():
+        arrays[f"{name}/parameters"] = one.fibre.parameters
+        arrays[f"{name}/solutions"] = one.fibre.solutions
+        arrays[f"{name}/trace"] = np.array(one.trace)
+    np.savez_compressed(path, **arrays)

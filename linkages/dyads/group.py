@@ -18,6 +18,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import chain
+from operator import itemgetter
 from typing import Any, ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
@@ -27,6 +28,7 @@ from bifurc.paths.family import Family, complex_normal
 from bifurc.paths.follow import PathEnd
 from bifurc.paths.monodromy import GenericSolutions, Projection
 from linkages.decisions import is_short_bar
+from linkages.dyads.canonical import canonical_order, in_order, numbers_in
 from linkages.dyads.generic import RealFamily, UnfollowedError
 
 MOST_ASSEMBLIES = 200  # complex ones of a generic member, which take 15 s
@@ -65,18 +67,51 @@ def all_assemblies(
 
     Raises `UnfollowedError` where some are not isolated or paths were lost.
     """
+    numbering = _Numbering(pattern)
+    own, standing = numbering.own(own), numbering.standing(standing)
     group = group_of(pattern)
     last = group.real_parameters(own, standing)
     paths = group.paths_to(last)
     if np.any(paths.ends == PathEnd.AT_INFINITY):
-        _require_no_short_bar(pattern, own)
+        _require_no_short_bar(group.pattern, own)
     places = [group.places(end, last) for end in group.real_ends(paths)]
-    return np.array(places).reshape(-1, pattern.pins)
+    return np.array(places).reshape(-1, pattern.pins)[:, numbering.pins]
 
 
 def generic_of(pattern: Pattern) -> GenericSolutions:
     """The solutions of a generic member. Raises `UnfollowedError`."""
     return group_of(pattern).generic
+
+
+def group_of(pattern: Pattern) -> Group:
+    """The equations of all patterns that differ in numbers alone."""
+    return _group(_Numbering(pattern).pattern)
+
+
+class _Numbering:
+    """A ``pattern`` with its pins and bodies numbered as in all patterns of its type."""
+
+    def __init__(self, pattern: Pattern):
+        self._bodies = pattern.bodies
+        self._order = canonical_order(pattern.bodies, pattern.standing)
+        self.pins = numbers_in(self._order)  # the number of every pin
+        self.pattern = pattern._replace(bodies=in_order(pattern.bodies, self._order))
+
+    def own(self, own: Sequence[Places]) -> list[Places]:
+        """Places in bodies, in the order of these."""
+        numbered = [
+            sorted(
+                zip((self.pins[pin] for pin in pins), places, strict=True),
+                key=itemgetter(0),
+            )
+            for pins, places in zip(self._bodies, own, strict=True)
+        ]
+        numbered.sort(key=lambda body: [pin for pin, _ in body])
+        return [[place for _, place in body] for body in numbered]
+
+    def standing(self, standing: Places) -> list[complex]:
+        """Places of the pins that stand, in the order of these."""
+        return [complex(standing[pin]) for pin in self._order[: self.pattern.standing]]
 
 
 def _require_no_short_bar(pattern: Pattern, own: Sequence[Places]) -> None:
@@ -274,6 +309,6 @@ def _real(place: complex) -> Place:
 
 
 @cache
-def group_of(pattern: Pattern) -> Group:
+def _group(pattern: Pattern) -> Group:
     """The equations of a pattern, the same ones every time."""
     return Group(pattern)

@@ -9,7 +9,13 @@ from bifurc.completeness import Level
 from linkages.closure.closure import Closure
 from linkages.dyads import generic
 from linkages.dyads.generic import UnfollowedError
-from linkages.dyads.group import Group, Pattern, all_assemblies, generic_of
+from linkages.dyads.group import (
+    Group,
+    Pattern,
+    all_assemblies,
+    generic_of,
+    group_of,
+)
 from linkages.dyads.slices import built_at_once, for_subject
 from linkages.files.bars import read_bars
 from linkages.mapping import map_linkage
@@ -90,6 +96,46 @@ def test_the_count_of_complex_assemblies_is_that_of_the_literature(name):
     assert found.count == count
 
 
+def renumbered(pattern, rng):
+    """The pattern with its pins and bodies in another order, and the new number of every
+    pin."""
+    standing = rng.permutation(pattern.standing)
+    others = pattern.standing + rng.permutation(pattern.pins - pattern.standing)
+    number = np.concatenate([standing, others])
+    order = rng.permutation(len(pattern.bodies))
+    bodies = [number[rng.permutation(pattern.bodies[k])].tolist() for k in order]
+    return pattern._replace(bodies=tuple(map(tuple, bodies))), number
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_the_numbers_of_pins_make_no_other_type(name):
+    rng = np.random.default_rng(28)
+    pattern, _ = KNOWN[name]
+    assert {group_of(renumbered(pattern, rng)[0]) for _ in range(20)} == {
+        group_of(pattern)
+    }
+
+
+@pytest.mark.parametrize("name", ["triad", "seven-bar", "prism on a sphere"])
+def test_assemblies_do_not_depend_on_the_numbers_of_pins(name):
+    rng = np.random.default_rng(28)
+    pattern, _ = KNOWN[name]
+    places = rng.normal(size=(pattern.pins, 2)) @ [1.0, 1j]
+    known = all_assemblies(
+        pattern,
+        [places[list(pins)] for pins in pattern.bodies],
+        places[: pattern.standing],
+    )
+    other, number = renumbered(pattern, rng)
+    there = places[np.argsort(number)]
+    again = all_assemblies(
+        other, [there[list(pins)] for pins in other.bodies], there[: pattern.standing]
+    )[:, number]
+    gaps = np.abs(known[:, None] - again[None]).max(axis=2)
+    assert len(known) == len(again) > 0
+    assert np.all(gaps.min(axis=1) < 1e-9)
+
+
 @pytest.mark.parametrize("seed", one_in(5, range(10)))
 def test_the_assemblies_are_the_same_from_whatever_generic_member(seed, monkeypatch):
     bars = bars_of_prism()
@@ -97,7 +143,7 @@ def test_the_assemblies_are_the_same_from_whatever_generic_member(seed, monkeypa
     known = assemblies_of_bars(bars, lengths)
 
     monkeypatch.setattr(generic, "SEED", 1000 + 10 * seed)
-    another = generic.find_generic(Group(pattern_of_bars(bars)), 24)
+    another = generic.find_generic(group_of(pattern_of_bars(bars)), 24)
     monkeypatch.setattr(Group, "generic", another)
     again = assemblies_of_bars(bars, lengths)
     assert len(known) == len(again) > 0

@@ -10,14 +10,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linkages.dyads.generic import SHIPPED, RealFamily, find_generic, name_of
-from linkages.dyads.group import Group, Pattern
+from linkages.dyads.generic import (
+    SHIPPED,
+    RealFamily,
+    find_generic,
+    name_of,
+    write_generic,
+)
+from linkages.dyads.group import Pattern, group_of
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.modules.assemblies import Module
 from linkages.structure.structure import Structure
 
 PRISM = [(0, 1), (0, 2), (1, 2), (0, 3), (1, 4), (2, 5), (3, 4), (3, 5), (4, 5)]
+LEG = 3  # of the prism
 K33 = [(i, j) for i in (0, 2, 4) for j in (1, 3, 5)]
 
 
@@ -75,11 +82,13 @@ def random_on_sphere(arcs, seed):
     return on_sphere(np.random.default_rng(seed).normal(size=(6, 3)), arcs)
 
 
-def group_of_bars(arcs, *, is_spherical):
-    """Bars between points, in a plane or on a sphere, of which the first one stands."""
+def group_of_bars(arcs, *, is_spherical=False, first=0):
+    """Bars between points, in a plane or on a sphere, of which one, the ``first``,
+    stands."""
+    arcs = [arcs[first], *arcs[:first], *arcs[first + 1 :]]
     order = list(dict.fromkeys(point for arc in arcs for point in arc))
     bodies = tuple(tuple(map(order.index, arc)) for arc in arcs[1:])
-    return Group(Pattern(bodies, len(arcs[0]), is_spherical))
+    return group_of(Pattern(bodies, len(arcs[0]), is_spherical))
 
 
 def family_of(mechanism):
@@ -91,25 +100,26 @@ def family_of(mechanism):
 # with reflections: Gallet, Grasegger, Legersky and Schicho 2021
 TYPES = {
     "platform on six legs": CommonType(family_of(random_platform(0)), 40),
-    "prism": CommonType(group_of_bars(PRISM, is_spherical=False), 24),
-    "K(3,3)": CommonType(group_of_bars(K33, is_spherical=False), 16),
+    "prism, a side of a triangle standing": CommonType(group_of_bars(PRISM), 24),
+    "prism, a leg standing": CommonType(group_of_bars(PRISM, first=LEG), 24),
+    "K(3,3)": CommonType(group_of_bars(K33), 16),
     "prism on a sphere": CommonType(group_of_bars(PRISM, is_spherical=True), 32),
+    "prism on a sphere, a leg standing": CommonType(
+        group_of_bars(PRISM, is_spherical=True, first=LEG), 32
+    ),
     "K(3,3) on a sphere": CommonType(group_of_bars(K33, is_spherical=True), 16),
 }
 
 
 def make() -> None:
     """Write the generic solutions of all types."""
-    arrays = {}
+    known = {}
     for name, one in TYPES.items():
         generic = find_generic(one.family, 2 * one.count)
         if generic.count != one.count:
             raise ArithmeticError(f"{name}: {generic.count} solutions are not all")
-        key = name_of(one.family.family)
-        arrays[f"{key}/parameters"] = generic.fibre.parameters
-        arrays[f"{key}/solutions"] = generic.fibre.solutions
-        arrays[f"{key}/trace"] = np.array(generic.trace)
-    np.savez_compressed(SHIPPED, **arrays)
+        known[name_of(one.family.family)] = generic
+    write_generic(SHIPPED, known)
 
 
 if __name__ == "__main__":
