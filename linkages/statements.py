@@ -18,6 +18,7 @@ ALL_ASSEMBLIES = (
     LinkageClaim.ALL_FOLLOWED,
     LinkageClaim.ALL_BUILT,
     LinkageClaim.ALL_OF_GROUPS,
+    LinkageClaim.REGULAR_OF_GROUPS,
 )
 
 

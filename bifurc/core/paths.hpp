@@ -245,6 +245,11 @@ public:
                 continue;
             }
             out.winding = circuit.winding;
+            // A place at e < t from which the path comes back has terms of lower powers, e / t of the largest.
+            if (circuit.pole && circuit.pole == before.pole && circuit.beyond * t.real() < paths::rest_at_infinity) {
+                out.end = PathEnd::at_infinity;
+                return out;
+            }
             if (t.real() < paths::rest_at_infinity && circuit.extent > paths::growth * before.extent) {
                 out.end = PathEnd::at_infinity;
                 return out;
@@ -269,11 +274,14 @@ private:
     enum class Advance { went, arrived, failed };
 
     // Round the end of a path: the mean of the points, how far they are from it, and after how many
-    // turns the path was back; none where it did not come back.
+    // turns the path was back; none where it did not come back. Where a power -``pole`` of the root of t
+    // that has this winding is the largest term, those of lower powers come to ``beyond`` of it.
     struct Circuit {
         int winding = 0;
         Point mean;
         double extent = 0.0;
+        int pole = 0;
+        double beyond = 0.0;
     };
 
     static double largest(const Point& point) {
@@ -424,9 +432,28 @@ private:
             for (const Point& corner : corners) {
                 for (std::size_t i = 0; i < corner.size(); ++i) out.extent = std::max(out.extent, rough_size(corner[i] - out.mean[i]));
             }
+            tell_pole(corners, out);
             return out;
         }
         return {};
+    }
+
+    // The powers of a Laurent series through the ``corners`` of a way round t = 0, by a sum of Fourier's.
+    static void tell_pole(const std::vector<Point>& corners, Circuit& out) {
+        const int count = static_cast<int>(corners.size()), lowest = 1 - count / 2;
+        std::vector<double> sizes;  // of the terms, from the lowest power on
+        for (int power = lowest; power <= count / 2; ++power) {
+            Point term(corners.front().size());
+            for (int k = 0; k < count; ++k) {
+                const double angle = -2.0 * std::numbers::pi * power * (k + 1) / count;
+                const Complex turn = std::polar(1.0 / count, angle);
+                for (std::size_t i = 0; i < term.size(); ++i) term[i] += turn * corners[k][i];
+            }
+            sizes.push_back(largest(term));
+        }
+        const auto most = std::max_element(sizes.begin(), sizes.end());
+        out.pole = std::max(0, -lowest - static_cast<int>(most - sizes.begin()));
+        for (auto size = sizes.begin(); size != most; ++size) out.beyond = std::max(out.beyond, *size / *most);
     }
 
     // Newton's method at the end, as long as its steps become shorter.

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Protocol, TypeAlias
 
 import numpy as np
 
 from bifurc.branch import Branch
+from bifurc.completeness import Scope
 from bifurc.decisions import is_start_solved
 from bifurc.equations.system import ScaledTape
 from bifurc.limits import Deadline, current_deadline, made_in_time, until
@@ -20,6 +21,7 @@ from linkages.closure import cut_at_limits
 from linkages.closure.system import ClosureSystem
 from linkages.closure.within_limits import brought_within_limits
 from linkages.dyads import slices as dyads
+from linkages.dyads.slices import DyadSlices
 from linkages.modules import assemblies
 from linkages.structure.structure import Structure
 from linkages.turns import whole_turns
@@ -41,6 +43,34 @@ class Source(Protocol):
 
     def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
         """What is said of the branches."""
+
+
+@dataclass(frozen=True, eq=False)
+class BesideAssemblies:
+    """All regular ``assemblies`` beside a ``source`` of motions; where that is None,
+    nothing is known of these."""
+
+    assemblies: DyadSlices
+    source: Source | None
+
+    @property
+    def starts(self) -> np.ndarray:
+        """Those of both."""
+        starts = self.assemblies.starts
+        if self.source is None:
+            return starts
+        return np.concatenate([starts, self.source.starts])
+
+    def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
+        """What both say."""
+        of_assemblies = self.assemblies(branches, seconds)
+        if self.source is None:
+            return of_assemblies
+        audit = self.source(branches, seconds)
+        of_motions = [
+            claim for claim in audit.claims if claim.scope is not Scope.ASSEMBLIES
+        ]
+        return replace(audit, claims=(*of_motions, *of_assemblies.claims))
 
 
 # The source of a problem of a structure, drawn with a generator beside so many random
@@ -77,7 +107,8 @@ def mechanism_seeds(
     with until(share):
         drawn = _drawn(problem, rng, count, share)
     lattice = problem.lattice
-    judge = _judge(problem, rng, count, deadline)
+    motions, regular = _sources(problem, rng, count, deadline)
+    judge = BesideAssemblies(regular, motions) if regular else motions
     starts = problem.reference[None]
     if judge is not None:
         starts = np.concatenate([starts, judge.starts])
@@ -91,7 +122,7 @@ def mechanism_seeds(
         solutions = lattice.homes(solutions)
     is_inside = problem.domain.are_inside(solutions)
     seeds = drawn.with_constructed(solutions[is_inside])
-    if judge is None:
+    if motions is None:
         seeds = replace(seeds, more=partial(_drawn, problem))
     seeds = replace(seeds, audit=judge)
     if lattice:
@@ -100,18 +131,22 @@ def mechanism_seeds(
     return seeds.with_constructed(_assemblies(problem))
 
 
-def _judge(
+def _sources(
     problem: ClosureSystem, rng: np.random.Generator, count: int, deadline: Deadline
-) -> Source | None:
+) -> tuple[Source | None, DyadSlices | None]:
     """The first of the sources that applies to the mechanism, and is made in a share of
-    the time before a ``deadline``; None where none is."""
+    the time before a ``deadline``; and one that knows of regular assemblies alone. None
+    where none is."""
+    regular: DyadSlices | None = None
     for for_subject in SOURCES:
         make = partial(for_subject, problem, problem.structure, rng, count)
         with until(deadline.share(JUDGING)):
             source = made_in_time(make)
-        if source is not None:
-            return source
-    return None
+        if isinstance(source, DyadSlices) and source.leaves_motions_open:
+            regular = source
+        elif source is not None:
+            return source, regular
+    return None, regular
 
 
 def _assemblies(problem: ClosureSystem) -> np.ndarray:

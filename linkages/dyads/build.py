@@ -28,13 +28,18 @@ Geometry: TypeAlias = PlaneGeometry | SpaceGeometry
 
 
 class Builder:
-    """Builds the mechanism of a ``structure`` by a ``plan``, in a ``geometry``."""
+    """Builds the mechanism of a ``structure`` by a ``plan``, in a ``geometry``.
+
+    ``singular``: how many complex configurations of larger groups were left out so far,
+    as they are of lower rank, or not isolated.
+    """
 
     def __init__(self, structure: Structure, geometry: Geometry, plan: Plan):
         self.structure = structure
         self.mechanism = structure.mechanism
         self.geometry = geometry
         self.plan = plan
+        self.singular = 0
         # the bodies of every pair, by number
         self.ends = [ends[:2] for ends in structure.groups.ends.values()]
 
@@ -135,9 +140,10 @@ class Builder:
                 pose = state.get(part, geometry.rest).after(inner[body])
                 own[part, contact.joint] = geometry.pin(pose, self._motion(contact))
         standing = [own[part, joint] for joint, part in group.standing.items()]
+        regular, singular = group.assemblies(own, standing)
+        self.singular += singular
         return [
-            tuple(geometry.held_by_pins(*ends) for ends in parts)
-            for parts in group.assemblies(own, standing)
+            tuple(geometry.held_by_pins(*ends) for ends in parts) for parts in regular
         ]
 
     def generic_count(self) -> GenericCount | None:

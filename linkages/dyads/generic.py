@@ -22,7 +22,7 @@ from platformdirs import user_cache_path
 
 from bifurc.limits import current_deadline
 from bifurc.paths.family import Family
-from bifurc.paths.follow import PathEnd, Paths, copy_of, follow_paths
+from bifurc.paths.follow import Paths, copy_of, follow_paths
 from bifurc.paths.monodromy import (
     Fibre,
     GenericSolutions,
@@ -89,15 +89,12 @@ class RealFamily(ABC):
         """The paths to all isolated solutions of the member with the parameters
         ``last`` (q,); where one is lost, from another generic member.
 
-        Raises `UnfollowedError` unless every path came to an isolated solution, or to
-        infinity.
+        Raises `UnfollowedError` unless every path came to a solution, or to infinity.
         """
         start = self.generic.fibre
         rng = np.random.default_rng(SEED)
         for attempt in reversed(range(ATTEMPTS)):
             paths = self._followed(start, last)
-            if np.any(paths.ends == PathEnd.SINGULAR):
-                raise UnfollowedError("some configurations are singular or move")
             if not np.any(paths.is_lost) or current_deadline().passed:
                 break
             _, moved = self.generic_member(rng, attempt)

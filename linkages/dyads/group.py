@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
-from itertools import chain
+from itertools import chain, combinations
 from operator import itemgetter
 from typing import Any, ClassVar, NamedTuple, TypeAlias
 
@@ -59,23 +59,30 @@ class Pattern(NamedTuple):
         return unknowns == equations and all(len(pins) > 1 for pins in self.bodies)
 
 
+class Assemblies(NamedTuple):
+    """All ``places`` (k, pins) of pins in regular assemblies, and how many of the complex
+    ones are ``singular``: of lower rank, or not isolated."""
+
+    places: np.ndarray
+    singular: int
+
+
 def all_assemblies(
     pattern: Pattern, own: Sequence[Places], standing: Places
-) -> np.ndarray:
-    """All places (k, pins) of the pins where bodies have their pins at the places
-    ``own``, and the first pins are at the places ``standing``.
-
-    Raises `UnfollowedError` where some are not isolated or paths were lost.
-    """
+) -> Assemblies:
+    """Where bodies have their pins at the places ``own``, and the first pins are at the
+    places ``standing``. Raises `UnfollowedError` where paths were lost."""
     numbering = _Numbering(pattern)
     own, standing = numbering.own(own), numbering.standing(standing)
     group = group_of(pattern)
     last = group.real_parameters(own, standing)
     paths = group.paths_to(last)
-    if np.any(paths.ends == PathEnd.AT_INFINITY):
-        _require_no_short_bar(group.pattern, own)
+    if not np.all(paths.is_regular):
+        _require_no_short_bar(group.pattern, own, standing)
     places = [group.places(end, last) for end in group.real_ends(paths)]
-    return np.array(places).reshape(-1, pattern.pins)[:, numbering.pins]
+    singular = int(np.count_nonzero(paths.ends == PathEnd.SINGULAR))
+    numbered = np.array(places).reshape(-1, pattern.pins)
+    return Assemblies(numbered[:, numbering.pins], singular)
 
 
 def generic_of(pattern: Pattern) -> GenericSolutions:
@@ -114,15 +121,20 @@ class _Numbering:
         return [complex(standing[pin]) for pin in self._order[: self.pattern.standing]]
 
 
-def _require_no_short_bar(pattern: Pattern, own: Sequence[Places]) -> None:
-    """Raise `UnfollowedError` where paths may come back that seem to end at infinity."""
-    seen = [_seen(pattern, _real(pins[0]), _real(pins[1])) for pins in own]
+def _require_no_short_bar(
+    pattern: Pattern, own: Sequence[Places], standing: Places
+) -> None:
+    """Raise `UnfollowedError` where paths may come back that seem to end at infinity, or
+    where assemblies are so near to one another that they seem to be singular."""
+    pairs = [(pins[0], pins[1]) for pins in own]
+    pairs += [(a, b) for a, b in combinations(standing, 2) if a != b]
+    seen = [_seen(pattern, _real(here), _real(there)) for here, there in pairs]
     squares = np.array([abs(there) ** 2 for there, _ in seen])
     if pattern.is_spherical:
         # of the sine of an arc: half a turn is as bad as none
         squares = np.append(4.0 * squares / (1.0 + squares) ** 2, 1.0)
     if is_short_bar(float(squares.min() / squares.max())):
-        raise UnfollowedError("a bar is so short that paths seem to end at infinity")
+        raise UnfollowedError("a bar is so short that paths seem to end elsewhere")
 
 
 # --- equations ------------------------------------------------------------------------

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -61,16 +61,20 @@ class PinnedGroup:
 
     def assemblies(
         self, own: Mapping[tuple[int, str], complex], standing: Sequence[complex]
-    ) -> Iterator[list[Ends]]:
+    ) -> tuple[list[list[Ends]], int]:
         """Where the first two pins of every part are in the part, and where they are in
-        each of the assemblies, from the places of the pins of parts and those that
-        stand. Raises `UnfollowedError`."""
+        each of the regular assemblies, from the places of the pins of parts and those
+        that stand; and how many complex ones are singular. Raises `UnfollowedError`."""
         pins = [[own[one, name] for name in self.joints[one]] for one in self.parts]
-        for places in all_assemblies(self.pattern, pins, standing):
-            yield [
+        found = all_assemblies(self.pattern, pins, standing)
+        regular = [
+            [
                 Ends(numbers[:2], places[list(pair[:2])].tolist())
                 for numbers, pair in zip(pins, self.pattern.bodies, strict=True)
             ]
+            for places in found.places
+        ]
+        return regular, found.singular
 
 
 def are_held_by_pins(plan: Plan, is_spherical: bool) -> bool:

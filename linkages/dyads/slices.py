@@ -61,7 +61,8 @@ class DyadSlices:
     ``misses_none``: a motion that is not among them is a small one. ``counts``: how
     many complex configurations there are at a value of every driver, or without one,
     where these were followed along paths, with the ``trace`` test of them; none where
-    dyads do.
+    dyads do. Without a driver so many of them may be ``singular``, which are left out, and
+    on motions of which nothing is known.
     """
 
     structure: Structure
@@ -71,13 +72,14 @@ class DyadSlices:
     misses_none: bool
     counts: tuple[int, ...] = ()
     trace: float = 0.0
+    singular: int = 0
 
     def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
         """How sure it is that no motion is missing: the search has traced one through
         every configuration in the slices."""
         nowhere = np.empty((0, len(self.structure.unknowns)))
         if not self.drivers:
-            has_all = bool(self.counts)
+            has_all = bool(self.counts) and not self.singular
             return Audit((self._claim_of_assemblies(),), nowhere, has_all)
         return Audit((self._claim_of_motions(), random_assemblies()), nowhere)
 
@@ -100,13 +102,19 @@ class DyadSlices:
         """That all assemblies of what nothing moves are here."""
         if not self.counts:
             return LinkageClaim.ALL_BUILT.claim(Scope.MOTIONS, Level.CERTIFIED)
+        followed = {"complex": self.counts[0], "trace": self.trace}
+        if self.singular:
+            return LinkageClaim.REGULAR_OF_GROUPS.claim(
+                Scope.ASSEMBLIES, None, singular=self.singular, **followed
+            )
         return LinkageClaim.ALL_OF_GROUPS.claim(
-            Scope.MOTIONS,
-            Level.CERTIFIED,
-            real=len(self.starts),
-            complex=self.counts[0],
-            trace=self.trace,
+            Scope.MOTIONS, Level.CERTIFIED, real=len(self.starts), **followed
         )
+
+    @property
+    def leaves_motions_open(self) -> bool:
+        """Whether nothing is said of motions, but of all regular assemblies."""
+        return bool(self.singular)
 
     def _moves(self) -> str:
         """On which motions a driver passes a slice, as text."""
@@ -131,12 +139,22 @@ def built_at_once(
     if geometry is None or follows_many_turns(structure):
         return None
     plan = make_plan(structure.mechanism, (), with_groups=True)
-    if plan is None or (plan.has_groups and not stands(problem, structure)):
+    if plan is None:
         return None
     try:
         return _built(Builder(structure, geometry, plan))
     except TooManyError:
         return None
+
+
+def pins_hold_all(structure: Structure) -> bool:
+    """Whether dyads and groups of bodies on pins build the mechanism of a ``structure``
+    that nothing moves: where these do not find all assemblies, no other paths do."""
+    geometry = _geometry(structure)
+    plan = make_plan(structure.mechanism, (), with_groups=True)
+    if geometry is None or not geometry.has_pins or plan is None:
+        return False
+    return are_held_by_pins(plan, geometry.is_spherical)
 
 
 def for_subject(
@@ -193,6 +211,7 @@ def _built(builder: Builder) -> DyadSlices | None:
         misses_none=True,
         counts=(count.ways,) if count else (),
         trace=count.trace if count else 0.0,
+        singular=builder.singular,
     )
 
 
@@ -349,6 +368,8 @@ def _points_at(
         try:
             states = builder.configurations(values)
         except DegenerateDyadError:
+            return None
+        if driver is not None and builder.singular:
             return None
         for poses in states:
             point = builder.unknowns(poses)

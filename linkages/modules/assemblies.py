@@ -12,6 +12,7 @@ from linkages.dyads.generic import UnfollowedError
 from linkages.dyads.slices import (
     DyadSlices,
     follows_many_turns,
+    pins_hold_all,
     stands,
     within_limits,
 )
@@ -33,6 +34,8 @@ class Module:
         self.structure = structure
         if follows_many_turns(structure):
             raise UnfollowedError("something follows many turns")
+        if pins_hold_all(structure):
+            raise UnfollowedError("it is built of dyads and of groups on pins")
         try:
             self.family = ClosureFamily(structure)
         except ValueError as error:
@@ -54,6 +57,8 @@ class Module:
         """All real configurations (k, n), angles between -pi and pi."""
         family = self.family
         paths = family.paths_to(family.given)
+        if np.any(paths.ends == PathEnd.SINGULAR):
+            raise UnfollowedError("some configurations are singular or move")
         if np.any(paths.ends == PathEnd.AT_INFINITY):
             _require_no_short_length(self.structure)
         return family.points(family.real_ends(paths))

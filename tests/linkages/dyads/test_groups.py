@@ -19,6 +19,9 @@ from linkages.dyads.group import (
 from linkages.dyads.slices import built_at_once, for_subject
 from linkages.files.bars import read_bars
 from linkages.mapping import map_linkage
+from linkages.mechanisms.joint import Joint, JointKind
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.statements import LinkageClaim
 from tests.linkages.modules.common_types import on_sphere
 from tests.samples import one_in
 
@@ -48,7 +51,9 @@ def lengths_of(bars, places):
 
 def assemblies_of_bars(bars, lengths):
     own = [(0j, complex(length)) for length in lengths[1:]]
-    return all_assemblies(pattern_of_bars(bars), own, [0j, complex(lengths[0])])
+    found = all_assemblies(pattern_of_bars(bars), own, [0j, complex(lengths[0])])
+    assert not found.singular
+    return found.places
 
 
 def bars_of_prism():
@@ -125,12 +130,12 @@ def test_assemblies_do_not_depend_on_the_numbers_of_pins(name):
         pattern,
         [places[list(pins)] for pins in pattern.bodies],
         places[: pattern.standing],
-    )
+    ).places
     other, number = renumbered(pattern, rng)
     there = places[np.argsort(number)]
     again = all_assemblies(
         other, [there[list(pins)] for pins in other.bodies], there[: pattern.standing]
-    )[:, number]
+    ).places[:, number]
     gaps = np.abs(known[:, None] - again[None]).max(axis=2)
     assert len(known) == len(again) > 0
     assert np.all(gaps.min(axis=1) < 1e-9)
@@ -156,8 +161,75 @@ def test_assemblies_that_move_are_not_said_to_be_all():
     # opposite sides of three parallelograms
     bars = bars_of_prism()
     places = np.array([0, 1, 0.3 + 0.8j, 0.5 - 1j, 1.5 - 1j, 0.8 - 0.2j])
-    with pytest.raises(UnfollowedError, match="singular or move"):
-        assemblies_of_bars(bars, lengths_of(bars, places))
+    own = [(0j, complex(length)) for length in lengths_of(bars, places)[1:]]
+    found = all_assemblies(pattern_of_bars(bars), own, [0j, 1.0 + 0j])
+    assert found.singular == 8
+    assert len(found.places) == 16  # as 1500 random starts of Newton's method
+
+
+# Directions of bodies in the fourth of the six assemblies of full rank of Innocenti's
+# seven-bar with the lengths of Roberts' cognates, four of which are complex (Sommese,
+# Verschelde and Wampler 2001; the tutorial `sevenbartut` of PHCpack)
+ROBERTS = [
+    -5.49340801920855e-01 - 8.35598398361888e-01j,
+    -9.74098087752273e-01 + 2.26125884049935e-01j,
+    1.78912046655936e-01 - 9.83865071827120e-01j,
+    4.72153176961024e-02 - 9.98884734979395e-01j,
+]
+ROBERTS_JOINTS = {
+    "O": ("frame", "crank"),
+    "P": ("frame", "rocker", "lever"),
+    "Q": ("frame", "arm"),
+    "A": ("crank", "plate"),
+    "B": ("rocker", "plate"),
+    "C": ("plate", "wing"),
+    "D": ("lever", "wing"),
+    "E": ("arm", "wing"),
+}
+
+
+def roberts_seven_bar():
+    plate, rocker, lever, wing = ROBERTS
+    ratio = (-0.11 + 0.49j) / 0.46
+    o, p = 0.0, 1.2 / ratio
+    b, d = p + 0.41 * rocker, p + abs(-0.11 + 0.49j) * lever
+    places = {
+        "O": o,
+        "P": p,
+        "Q": p + 1.2,
+        "A": b - 0.46 * plate,
+        "B": b,
+        "C": b + (-0.11 + 0.49j) * plate,
+        "D": d,
+        "E": d + 0.41 * ratio * wing,
+    }
+    return Mechanism(
+        tuple(
+            Joint(
+                name,
+                JointKind.REVOLUTE,
+                bodies,
+                (places[name].real, places[name].imag, 0.0),
+                (0.0, 0.0, 1.0),
+            )
+            for name, bodies in ROBERTS_JOINTS.items()
+        )
+    )
+
+
+def test_assemblies_of_full_rank_are_all_there_beside_a_motion():
+    """The cubic curve of the literature is one closed form, and two of the six other
+    solutions are real."""
+    atlas = map_linkage(roberts_seven_bar())
+    assert [form.branch.closed for form in atlas.forms] == [True]
+    assert len(atlas.rigid) == 2
+    (claim,) = (
+        one
+        for one in atlas.completeness.claims
+        if LinkageClaim.REGULAR_OF_GROUPS.is_kind_of(one)
+    )
+    assert claim.data["complex"] - claim.data["singular"] == 6
+    assert atlas.completeness.level is Level.CERTIFIED
 
 
 def test_what_moves_beside_a_bar_too_many_is_not_followed():
