@@ -137,8 +137,8 @@ def plot_joint_angles(
 
 
 def _note_emptiness(axes: Axes, atlas: Atlas) -> None:
-    """Say so where there is neither a form nor a near motion."""
-    if not shown_branches(atlas):
+    """Say so where nothing is drawn: marks of isolated solutions are in the legend."""
+    if not shown_branches(atlas) and not len(atlas.rigid) and not atlas.points:
         note_emptiness(axes, atlas)
 
 

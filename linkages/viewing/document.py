@@ -130,8 +130,8 @@ def _places_on_forms(atlas: Atlas) -> Document:
 
 
 def _note(atlas: Atlas) -> str:
-    """What the map says where there is no curve on it."""
-    if shown_branches(atlas) or atlas.surfaces:
+    """What the map says where there is nothing on it."""
+    if shown_branches(atlas) or atlas.surfaces or len(atlas.rigid):
         return ""
     return "; ".join(emptiness(atlas))
 
