@@ -61,7 +61,8 @@ def test_what_has_no_form_makes_a_document_as_well(atlas_of, name):
     assert len(document["assemblies"]) == len(atlas.rigid)
     assert len(document["near_motions"]) == len(atlas.near_motions)
     curves = [motion["curve"] for motion in document["near_motions"]]
-    assert bool(document["note"]) == (not atlas.surfaces and not any(curves))
+    is_drawn = atlas.surfaces or any(curves) or len(atlas.rigid)
+    assert bool(document["note"]) == (not is_drawn)
 
 
 def test_near_motions_are_curves_that_the_page_runs_along(atlas_of):
