@@ -12,7 +12,6 @@ import mpmath
 import numpy as np
 
 from bifurc.errors import ProblemError
-from bifurc.singular.locate import augmented_system
 
 Residual = Callable[[Sequence[mpmath.mpf]], Sequence[mpmath.mpf]]
 """F over mpmath numbers: n of them in, m out, right to whatever precision is set when
@@ -194,9 +193,51 @@ def gauss_newton_step(
     what is less than the share ``negligible`` of the largest is rounding."""
     bends = [derivatives.bend(u, vector) for vector in basis.T]
     value, jacobian = derivatives.value(u), derivatives.jacobian(u)
-    step = _least_squares(*augmented_system(value, jacobian, bends, basis), negligible)
+    step = _least_squares(*_augmented_system(value, jacobian, bends, basis), negligible)
     n, k = basis.shape
     return step[:n], step[n:].reshape(k, n).T
+
+
+def _augmented_system(
+    residual: np.ndarray,
+    jacobian: np.ndarray,
+    bends: Sequence[np.ndarray],
+    basis: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Matrix and right-hand side of a step for a point and the ``basis`` (n, k) of its
+    null space, from F (m,), F' (m, n) and F'' v (m, n) for each vector of that."""
+    # The columns v_1 ... v_k of V move across V only:
+    #
+    #     [ F'                            ] [ du   ]     [ F      ]
+    #     [ F'' v_1   F'                  ] [ dv_1 ]     [ F' v_1 ]
+    #     [   :             ...           ] [  :   ] = - [   :    ]
+    #     [ F'' v_k               F'      ] [ dv_k ]     [ F' v_k ]
+    #     [           V^T                 ]              [ 0      ]
+    #     [                 ...           ]              [ :      ]
+    #     [                       V^T     ]              [ 0      ]
+    n, k = basis.shape
+    m = len(jacobian)
+    rows = m + k * m + k * k
+    matrix = np.zeros((rows, n + k * n), dtype=jacobian.dtype)
+    right_side = np.zeros(rows, dtype=jacobian.dtype)
+    matrix[:m, :n] = jacobian
+    right_side[:m] = -residual
+    for j, bend in enumerate(bends):
+        null = _block(m, j, m)  # rows of F'' v_j
+        across = _block(m + k * m, j, k)  # rows of V^T
+        column = _block(n, j, n)  # columns of dv_j
+        matrix[null, :n] = bend
+        matrix[null, column] = jacobian
+        right_side[null] = -jacobian @ basis[:, j]
+        matrix[across, column] = basis.T
+    return matrix, right_side
+
+
+def _block(begin: int, number: int, size: int) -> slice:
+    """Block of a ``number`` among blocks of one ``size``, the first of which is at
+    ``begin``."""
+    start = begin + number * size
+    return slice(start, start + size)
 
 
 def _least_squares(

@@ -3,7 +3,6 @@ system."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -168,78 +167,59 @@ def _is_stagnant(moves: list[float], scale: float) -> bool:
 
 def _augmented_step(problem: System, u: np.ndarray, basis: np.ndarray) -> _Step | None:
     """The shortest step that solves the augmented system in the least-squares sense;
-    None where that is not finite."""
+    None where that is not finite.
+
+    Its vectors dv_j stand in rows [F'' v_j du + F' dv_j; V^T dv_j] each, with one matrix
+    A = [F'; V^T] before all of them. Where A is orthogonalised, what is left without any
+    dv is a system for du, with the same least squares; as many singular values as it has
+    are those of the whole, if du is measured together with the dv that it makes.
+    """
     n, k = basis.shape
-    matrix, right_side = _augmented_system(problem, u, basis)
-    if not (np.isfinite(matrix).all() and np.isfinite(right_side).all()):
+    jacobian = relative_jacobians(problem, u[None])[0]
+    residual = relative_residuals(problem, u[None])[0]
+    bends = hessian_at(problem, u) @ basis / problem.magnitude  # (m, n, k)
+    if not (np.isfinite(jacobian).all() and np.isfinite(bends).all()):
         return None
-    left, sigma, right = np.linalg.svd(matrix, full_matrices=False)
-    regular = sigma > ROUNDING * sigma[0]
-    shares = (left[:, regular].T @ right_side) / sigma[regular]
-    step = right[regular].T @ shares
+    turns = _Turns.of(jacobian, basis)
+    missed = jacobian @ basis  # (m, k), to be zero
+    rows = [jacobian, *(turns.left.T @ bends[:, :, j] for j in range(k))]
+    sides = [residual, *(turns.left.T @ missed[:, j] for j in range(k))]
+    along = [turns.inverse @ bends[:, :, j] for j in range(k)]  # -dv_j / du
+    metric = np.linalg.cholesky(np.eye(n) + sum(one.T @ one for one in along)).T
+    unit = np.linalg.inv(metric)
+    left, sigma, right = np.linalg.svd(np.vstack(rows) @ unit, full_matrices=False)
+    largest = max(sigma[0], turns.largest)
+    regular = sigma > ROUNDING * largest
+    shares = (left[:, regular].T @ -np.concatenate(sides)) / sigma[regular]
+    du = unit @ (right[regular].T @ shares)
+    dv = [-turns.inverse @ missed[:, j] - along[j] @ du for j in range(k)]
     return _Step(
-        du=step[:n],
-        dv=step[n:].reshape(k, n).T,
+        du=du,
+        dv=np.stack(dv, axis=1),
         rank=int(np.count_nonzero(regular)),
-        condition=float(sigma[0] / sigma[regular][-1]),
-        weak=right[sigma < WEAK * sigma[0]][:, :n],
+        condition=float(largest / sigma[regular].min(initial=turns.smallest)),
+        weak=(unit @ right[sigma < WEAK * largest].T).T,
     )
 
 
-def _augmented_system(
-    problem: System, u: np.ndarray, basis: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Matrix and right-hand side of a step for the point and its null space."""
-    hessian = hessian_at(problem, u) / problem.magnitude
-    return augmented_system(
-        relative_residuals(problem, u[None])[0],
-        relative_jacobians(problem, u[None])[0],
-        [hessian @ vector for vector in basis.T],
-        basis,
-    )
+class _Turns(NamedTuple):
+    """The matrix A = [F'; V^T] by its rows F': the ``left`` (m, r) null space of A, the
+    ``inverse`` (n, m) of least squares, and the ``largest`` and ``smallest`` of its
+    singular values that are not rounding."""
 
+    left: np.ndarray
+    inverse: np.ndarray
+    largest: float
+    smallest: float
 
-def augmented_system(
-    residual: np.ndarray,
-    jacobian: np.ndarray,
-    bends: Sequence[np.ndarray],
-    basis: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Matrix and right-hand side of a step for a point and the ``basis`` (n, k) of its
-    null space, from F (m,), F' (m, n) and F'' v (m, n) for each vector of that; numbers
-    may be of any kind."""
-    # The columns v_1 ... v_k of V move across V only:
-    #
-    #     [ F'                            ] [ du   ]     [ F      ]
-    #     [ F'' v_1   F'                  ] [ dv_1 ]     [ F' v_1 ]
-    #     [   :             ...           ] [  :   ] = - [   :    ]
-    #     [ F'' v_k               F'      ] [ dv_k ]     [ F' v_k ]
-    #     [           V^T                 ]              [ 0      ]
-    #     [                 ...           ]              [ :      ]
-    #     [                       V^T     ]              [ 0      ]
-    n, k = basis.shape
-    m = len(jacobian)
-    rows = m + k * m + k * k
-    matrix = np.zeros((rows, n + k * n), dtype=jacobian.dtype)
-    right_side = np.zeros(rows, dtype=jacobian.dtype)
-    matrix[:m, :n] = jacobian
-    right_side[:m] = -residual
-    for j, bend in enumerate(bends):
-        null = _block(m, j, m)  # rows of F'' v_j
-        across = _block(m + k * m, j, k)  # rows of V^T
-        column = _block(n, j, n)  # columns of dv_j
-        matrix[null, :n] = bend
-        matrix[null, column] = jacobian
-        right_side[null] = -jacobian @ basis[:, j]
-        matrix[across, column] = basis.T
-    return matrix, right_side
-
-
-def _block(begin: int, number: int, size: int) -> slice:
-    """Block of a ``number`` among blocks of one ``size``, the first of which is at
-    ``begin``."""
-    start = begin + number * size
-    return slice(start, start + size)
+    @staticmethod
+    def of(jacobian: np.ndarray, basis: np.ndarray) -> _Turns:
+        """Of F' (m, n) and V (n, k)."""
+        m = len(jacobian)
+        left, sigma, right = np.linalg.svd(np.vstack([jacobian, basis.T]))
+        rank = int(np.count_nonzero(sigma > ROUNDING * sigma[0]))
+        inverse = right[:rank].T / sigma[:rank] @ left[:m, :rank].T
+        return _Turns(left[:m, rank:], inverse, sigma[0], sigma[rank - 1])
 
 
 def _is_simple(problem: System, run: _Run, u: np.ndarray, reach: float) -> bool:
