@@ -26,6 +26,7 @@ from bifurc.search.seed_book import Fate, SeedBook, SeedFate, reach_of_places
 from bifurc.seeds import Audit
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import SingularPoint
+from bifurc.singular.prestress import is_held
 from bifurc.system import relative_gaps
 
 if TYPE_CHECKING:
@@ -84,6 +85,7 @@ class Findings:
         self.gaps_of_stops: list[float] = []
         self.audit: Audit | None = None
         self.awaits_audit = True
+        self._held: dict[bytes, bool] = {}
 
     @property
     def branches(self) -> list[Branch]:
@@ -399,6 +401,14 @@ class Findings:
         if known is not None:
             return known
         return SeedFate(Fate.RIGID, self.rigid.add(RigidAssembly(place, hidden)))
+
+    def is_held(self, u: np.ndarray) -> bool:
+        """Whether a stress or the bounds hold a singular solution (n,), which is told
+        once."""
+        key = u.tobytes()
+        if key not in self._held:
+            self._held[key] = is_held(self.problem, u)
+        return self._held[key]
 
     # --- all of them ------------------------------------------------------------------
 

@@ -15,6 +15,7 @@ from bifurc.decisions import (
     is_on_the_way,
     is_start_solved,
     may_be_crossed,
+    may_be_mobile,
     stops_short,
 )
 from bifurc.limits import CutOff, Deadline, cut_off_after
@@ -196,11 +197,28 @@ class Search:
         """Find the seeds that lie on components of dimension 2 and more."""
         book = self.findings.book
         if len(book.seeds.points):
+            values = self._values_of_mobile()
             share = self.run.deadline.share(SORTING)
             components = components_of_seeds(
-                self.problem, book.seeds.points, book.values, share
+                self.problem, book.seeds.points, values, share
             )
             self.findings.set_components(components)
+
+    def _values_of_mobile(self) -> np.ndarray:
+        """The singular values (k, n) at the seeds, infinite at those in a bound that are
+        held there, as a sheet that cannot fold as it is assigned; these are listed."""
+        book, n = self.findings.book, self.problem.n
+        values = book.values.copy()
+        if self.problem.domain.is_large:
+            return values
+        at_bounds = self.problem.domain.are_at_bounds(book.seeds.points)
+        at_bounds &= may_be_mobile(values[:, n - 1])
+        for number in np.flatnonzero(at_bounds).tolist():
+            if self.findings.is_held(book.seeds.points[number]):
+                fate = self.findings.add_assembly(book.seeds.points[number])
+                book.settle([number], fate)
+                values[number] = np.inf
+        return values
 
     def trace_seeds(self) -> None:
         """Trace from every seed that lies on nothing known, and from every half-branch

@@ -169,36 +169,50 @@ def _augmented_step(problem: System, u: np.ndarray, basis: np.ndarray) -> _Step 
     """The shortest step that solves the augmented system in the least-squares sense;
     None where that is not finite.
 
-    Its vectors dv_j stand in rows [F'' v_j du + F' dv_j; V^T dv_j] each, with one matrix
+    The vectors dv_j stand in rows [F'' v_j du + F' dv_j; V^T dv_j] each, with one matrix
     A = [F'; V^T] before all of them. Where A is orthogonalised, what is left without any
     dv is a system for du, with the same least squares; as many singular values as it has
     are those of the whole, if du is measured together with the dv that it makes.
     """
-    n, k = basis.shape
     jacobian = relative_jacobians(problem, u[None])[0]
     residual = relative_residuals(problem, u[None])[0]
-    bends = hessian_at(problem, u) @ basis / problem.magnitude  # (m, n, k)
+    bends = hessian_at(problem, u) @ basis / problem.magnitude
+    bends = np.moveaxis(bends, 2, 0)  # F'' v_j: (k, m, n)
     if not (np.isfinite(jacobian).all() and np.isfinite(bends).all()):
         return None
+    missed = (jacobian @ basis).T  # F' v_j: (k, m)
     turns = _Turns.of(jacobian, basis)
-    missed = jacobian @ basis  # (m, k), to be zero
-    rows = [jacobian, *(turns.left.T @ bends[:, :, j] for j in range(k))]
-    sides = [residual, *(turns.left.T @ missed[:, j] for j in range(k))]
-    along = [turns.inverse @ bends[:, :, j] for j in range(k)]  # -dv_j / du
-    metric = np.linalg.cholesky(np.eye(n) + sum(one.T @ one for one in along)).T
-    unit = np.linalg.inv(metric)
-    left, sigma, right = np.linalg.svd(np.vstack(rows) @ unit, full_matrices=False)
+    along = turns.inverse @ bends  # -dv_j / du: (k, n, n)
+    rows = np.concatenate([jacobian[None], turns.left.T @ bends], axis=None)
+    sides = np.concatenate([residual, (missed @ turns.left).ravel()])
+    unit = _unit_of_steps(along)
+    step = _least_squares(rows.reshape(-1, len(u)) @ unit, -sides, turns)
+    du = unit @ step.du
+    dv = -(missed @ turns.inverse.T + along @ du).T
+    return step._replace(du=du, dv=dv, weak=step.weak @ unit.T)
+
+
+def _unit_of_steps(along: np.ndarray) -> np.ndarray:
+    """The matrix (n, n) that takes vectors to steps du of a point which, together with
+    what they make of its null space, ``along`` (k, n, n), are as long as these."""
+    metric = np.eye(along.shape[1]) + np.einsum("kij,kil->jl", along, along)
+    unit: np.ndarray = np.linalg.inv(np.linalg.cholesky(metric).T)
+    return unit
+
+
+def _least_squares(matrix: np.ndarray, sides: np.ndarray, turns: _Turns) -> _Step:
+    """The shortest least-squares solution ``du`` (n,) of a system (r, n), which is one
+    with that of null spaces, without what it makes of these."""
+    left, sigma, right = np.linalg.svd(matrix, full_matrices=False)
     largest = max(sigma[0], turns.largest)
     regular = sigma > ROUNDING * largest
-    shares = (left[:, regular].T @ -np.concatenate(sides)) / sigma[regular]
-    du = unit @ (right[regular].T @ shares)
-    dv = [-turns.inverse @ missed[:, j] - along[j] @ du for j in range(k)]
+    shares = (left[:, regular].T @ sides) / sigma[regular]
     return _Step(
-        du=du,
-        dv=np.stack(dv, axis=1),
+        du=right[regular].T @ shares,
+        dv=np.empty((0, 0)),
         rank=int(np.count_nonzero(regular)),
         condition=float(largest / sigma[regular].min(initial=turns.smallest)),
-        weak=(unit @ right[sigma < WEAK * largest].T).T,
+        weak=right[sigma < WEAK * largest],
     )
 
 

@@ -7,6 +7,11 @@ isolated: w F + c |F|^2 has a strict minimum there for a large c (prestress stab
 Connelly and Whiteley 1996, SIAM J. Discrete Math. 9, for frameworks of bars). It is
 isolated as well where the forms have no common zero (second-order rigidity; Connelly
 1980, Adv. Math. 37), as the leading term of a curve through it would be one.
+
+In a bound that term leads inside, if anywhere, as the rates of cables and struts do
+(Roth and Whiteley 1981, Trans. AMS 265). By Farkas' lemma an unknown in a bound stands
+still along all flexes that do, where forces of the bounds, its own among them, are in
+balance along every flex.
 """
 
 from __future__ import annotations
@@ -16,21 +21,25 @@ from dataclasses import dataclass
 import numpy as np
 
 from bifurc.checks import check_finite, floats_of
-from bifurc.decisions import has_no_form, is_null, leaves_loose
+from bifurc.decisions import has_no_form, is_in_balance, is_null, leaves_loose
+from bifurc.domain import Domain
 from bifurc.errors import ProblemError
 from bifurc.numerics.singular_values import factors_of
+from bifurc.problem import Problem
 from bifurc.singular.second_order import common_lines
 from bifurc.system import System, hessian_at, relative_jacobians
 
+MOST_FORCE = 1e3  # of a bound, over the least that counts
 MOST_CUTS = 200  # through the cone of stresses, each of a flex along which a form falls
 
 
 @dataclass(frozen=True, eq=False)
 class SecondOrder:
     """What second order says of a solution: orthonormal ``flexes`` (k, n) and
-    ``stresses`` (s, m), and ``holding``, the stress (m,) whose form is positive for
-    every flex, where there is one, by a ``margin``: its smallest eigenvalue over the
-    size of the forms.
+    ``stresses`` (s, m); ``within`` (j, n), what the bounds of unknowns leave of the
+    flexes; and ``holding``, the stress (m,) whose form is positive for every one of
+    these, where there is one, by a ``margin``: its smallest eigenvalue over the size of
+    the forms.
 
     ``is_rigid``: whether this shows that the solution is isolated; None where second
     order does not decide, as where flexes go on to it.
@@ -38,22 +47,23 @@ class SecondOrder:
 
     flexes: np.ndarray
     stresses: np.ndarray
+    within: np.ndarray
     holding: np.ndarray | None
     margin: float
     is_rigid: bool | None
 
     @property
     def is_prestress_stable(self) -> bool:
-        """Whether a stress holds the solution against all flexes, if there are any."""
-        return self.holding is not None or not len(self.flexes)
+        """Whether a stress holds the solution against all flexes, if bounds leave any."""
+        return self.holding is not None or not len(self.within)
 
 
 def second_order_at(problem: System, point: np.ndarray) -> SecondOrder:
     """What second order says of a solution at ``point`` (n,).
 
     Singular values below 1e-7 of the magnitude of F' count as zero, and so do eigenvalues
-    of a form below 1e-6 of the largest form. Without flexes the solution is isolated by
-    first order. Raises `ProblemError` for a point of another
+    of a form below 1e-6 of the largest form. Without flexes within the bounds the solution
+    is isolated by first order. Raises `ProblemError` for a point of another
     shape or not finite.
 
     >>> import numpy as np
@@ -69,14 +79,24 @@ def second_order_at(problem: System, point: np.ndarray) -> SecondOrder:
         raise ProblemError("shape of the point", point.shape, f"({problem.n},)")
     check_finite("point", point)
     flexes, stresses = _flexes_and_stresses(problem, point)
-    if not len(flexes):
-        return SecondOrder(flexes, stresses, None, 0.0, True)
-    hessian = hessian_at(problem, point) / problem.magnitude
-    forms = np.einsum("wm,mij,ai,bj->wab", stresses, hessian, flexes, flexes)
+    within = _within_bounds(problem.domain, point, flexes)
+    if not len(within):
+        return SecondOrder(flexes, stresses, within, None, 0.0, True)
+    bends = within @ (hessian_at(problem, point) @ within.T) / problem.magnitude
+    forms = np.tensordot(stresses, bends, axes=1)
     weights, margin = positive_combination(forms)
-    if weights is not None:
-        return SecondOrder(flexes, stresses, weights @ stresses, margin, True)
-    return SecondOrder(flexes, stresses, None, margin, _have_no_common_zero(forms))
+    holding = None if weights is None else weights @ stresses
+    is_rigid = True if weights is not None else _have_no_common_zero(forms)
+    return SecondOrder(flexes, stresses, within, holding, margin, is_rigid)
+
+
+def is_held(problem: Problem, place: np.ndarray) -> bool:
+    """Whether a solution at a ``place`` (n,) at which F' is singular is there for
+    certain, and a stress or the bounds hold it, so that no motion passes it."""
+    if not problem.is_given_at(place):
+        return False
+    order = second_order_at(problem, place)
+    return bool(len(order.flexes)) and order.is_prestress_stable
 
 
 def _flexes_and_stresses(
@@ -87,6 +107,35 @@ def _flexes_and_stresses(
     factors = factors_of(relative_jacobians(problem, point[None])[0])
     rank = int(np.count_nonzero(~is_null(factors.sigma)))
     return factors.right[rank:], factors.left[:, rank:].T
+
+
+def _within_bounds(domain: Domain, point: np.ndarray, flexes: np.ndarray) -> np.ndarray:
+    """An orthonormal basis (j, n) of the flexes, of a basis (k, n), along which unknowns
+    stand still that are in a bound at a point (n,) and in the way of all others.
+
+    Forces of bounds (b,), none of which pulls, are found by a linear program: as many as
+    can be are positive at once.
+    """
+    from scipy.optimize import linprog  # few searches need it
+
+    to_low, to_high = np.abs(domain.bounds.T - point) <= domain.slack
+    pushed = np.concatenate([flexes[:, to_low], -flexes[:, to_high]], axis=1)
+    count = pushed.shape[1]
+    if not count or not len(flexes):
+        return flexes
+    # forces are what counts as one, up to 1, and more of it
+    balance = np.concatenate([pushed, pushed], axis=1)
+    bounds = [(0.0, 1.0)] * count + [(0.0, MOST_FORCE)] * count
+    goal = np.repeat([-1.0, 0.0], count)
+    program = linprog(goal, A_eq=balance, b_eq=np.zeros(len(flexes)), bounds=bounds)
+    if not program.success or not is_in_balance(np.abs(balance @ program.x).max()):
+        return flexes
+    is_pushed = program.x[:count] > 0.5
+    held = pushed[:, is_pushed]
+    left, sigma, _ = np.linalg.svd(held)
+    rank = int(np.count_nonzero(~is_null(sigma)))
+    within: np.ndarray = left[:, rank:].T @ flexes
+    return within
 
 
 def positive_combination(forms: np.ndarray) -> tuple[np.ndarray | None, float]:

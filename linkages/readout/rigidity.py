@@ -47,7 +47,7 @@ class Hold:
     @property
     def words(self) -> str:
         """By what it is known to be rigid."""
-        if not self.flexes:
+        if not len(self.order.within):
             return "first order"
         if self.order.is_prestress_stable:
             return "prestress"

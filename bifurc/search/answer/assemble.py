@@ -35,7 +35,6 @@ from bifurc.search.answer.doubts import (
     doubts_of,
     doubts_of_findings,
     doubts_of_near_misses,
-    is_held,
     loose_ends,
 )
 from bifurc.search.answer.meeting_points import meeting_points
@@ -98,7 +97,7 @@ def assemble_atlas(
         *doubts_of_findings(problem, findings, located),
     ]
     shaky = [point.point.u for point in points if point.kind is Kind.ISOLATED]
-    held = sum(is_held(problem, u) for u in [*shaky, *rigid])
+    held = sum(findings.is_held(u) for u in [*shaky, *rigid])
     gap = 0.0
     if near_motions and not is_mobile:
         gap = min(near.misclosure for near in near_motions)

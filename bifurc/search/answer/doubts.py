@@ -44,7 +44,7 @@ from bifurc.search.solutions import solutions_on_rims
 from bifurc.search.strands import missing_crossings
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
-from bifurc.singular.prestress import second_order_at
+from bifurc.singular.prestress import is_held
 from bifurc.surfaces.chart_atlas import Covering
 from bifurc.system import relative_gaps
 
@@ -189,7 +189,7 @@ def doubts_of_findings(
     missed, are_single = _missed_by(problem, assemblies)
     is_open = ~(is_known & are_single)
     for k in np.flatnonzero(is_open & is_known).tolist():
-        is_open[k] = not is_held(problem, assemblies[k].place)
+        is_open[k] = not findings.is_held(assemblies[k].place)
     if np.any(is_open):
         # what bends by one over the scale and misses so much is the root of it apart
         apart = np.maximum(hidden / problem.domain.scale, np.sqrt(missed))[is_open]
@@ -207,14 +207,6 @@ def doubts_of_findings(
         yield SearchDoubt.UNCHARTED.doubt(starts=off_charts)
     if findings.gaps_of_stops:
         yield SearchDoubt.SHORT_STOPS.doubt(amount=min(findings.gaps_of_stops))
-
-
-def is_held(problem: Problem, place: np.ndarray) -> bool:
-    """Whether a solution at a ``place`` (n,) at which F' is singular is there for
-    certain, and a stress holds it, so that no motion passes it."""
-    if not problem.is_given_at(place):
-        return False
-    return second_order_at(problem, place).holding is not None
 
 
 def _doubts_of_assumed_bounds(problem: Problem, findings: Findings) -> Iterator[Doubt]:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import linprog
 
 from bifurc import FunctionProblem, ProblemError, explore, second_order_at
 from bifurc.singular.prestress import positive_combination
@@ -101,3 +102,48 @@ def test_a_point_of_another_shape_is_refused():
         second_order_at(problem, np.zeros(3))
     with pytest.raises(ProblemError, match="point"):
         second_order_at(problem, np.array([0.0, np.nan]))
+
+
+def at_corner(function, bounds):
+    """At the origin, which is in those of the bounds that are 0."""
+    return second_order_at(FunctionProblem(function, bounds), np.zeros(len(bounds)))
+
+
+def test_bounds_hold_what_leads_out_of_them_to_first_order():
+    second = at_corner(lambda u: [u[0] + u[1], u[0] * u[1]], [(0, 2), (0, 2)])
+    assert len(second.flexes) == 1 and len(second.within) == 0
+    assert second.is_rigid and second.is_prestress_stable and second.holding is None
+
+
+def test_bounds_leave_the_flexes_that_lead_inside():
+    second = at_corner(lambda u: [u[0] + u[1] - u[2]], [(0, 2), (-2, 0), (-2, 2)])
+    assert len(second.flexes) == len(second.within) == 2
+
+
+def test_a_stress_holds_the_flexes_that_bounds_leave():
+    """The saddle is none where one of its unknowns stands still."""
+    bounds = [(-2, 2), (0, 2), (0, 2)]
+    second = at_corner(lambda u: [u[1] + u[2], u[0] ** 2 - u[1] ** 2], bounds)
+    assert len(second.flexes) == 2
+    assert np.abs(second.within) == pytest.approx(np.array([[1.0, 0.0, 0.0]]))
+    assert second.holding is not None
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_unknowns_move_that_one_flex_within_bounds_moves(seed):
+    """Against a linear program for each unknown."""
+    rng = np.random.default_rng(seed)
+    n, m = 9, 4
+    matrix = rng.normal(size=(m, n))
+    matrix[:, 5] = -matrix[:, :3] @ rng.uniform(0.5, 1.5, size=3)  # one way inside
+    signs = np.where(np.arange(n) < 7, 1.0, 0.0)
+    bounds = [(0, 2) if sign else (-2, 2) for sign in signs]
+    second = at_corner(lambda u: list(matrix @ np.array(u)), bounds)
+    limits = [(0.0, 1.0) if sign else (None, None) for sign in signs]
+    farthest = [
+        linprog(-np.eye(n)[k], matrix, np.zeros(m), matrix, np.zeros(m), limits).x[k]
+        for k in range(7)
+    ]
+    moves = np.abs(second.within[:, :7]).max(axis=0, initial=0.0) > 1e-9
+    assert moves.tolist() == (np.array(farthest) > 1e-9).tolist()
+    assert moves.any()
