@@ -24,6 +24,7 @@ from bifurc.checks import check_finite, floats_of
 from bifurc.decisions import has_no_form, is_in_balance, is_null, leaves_loose
 from bifurc.domain import Domain
 from bifurc.errors import ProblemError
+from bifurc.limits import is_time_over
 from bifurc.numerics.singular_values import factors_of
 from bifurc.problem import Problem
 from bifurc.singular.second_order import common_lines
@@ -82,9 +83,10 @@ def second_order_at(problem: System, point: np.ndarray) -> SecondOrder:
     within = _within_bounds(problem.domain, point, flexes)
     if not len(within):
         return SecondOrder(flexes, stresses, within, None, 0.0, True)
-    bends = within @ (hessian_at(problem, point) @ within.T) / problem.magnitude
-    forms = np.tensordot(stresses, bends, axes=1)
-    weights, margin = positive_combination(forms)
+    hessian = hessian_at(problem, point) / problem.magnitude
+    forms = np.tensordot(stresses, within @ (hessian @ within.T), axes=1)
+    inside = _products_inside(problem.domain, point, hessian, within)
+    weights, margin = positive_combination(forms, inside)
     holding = None if weights is None else weights @ stresses
     is_rigid = True if weights is not None else _have_no_common_zero(forms)
     return SecondOrder(flexes, stresses, within, holding, margin, is_rigid)
@@ -138,15 +140,40 @@ def _within_bounds(domain: Domain, point: np.ndarray, flexes: np.ndarray) -> np.
     return within
 
 
-def positive_combination(forms: np.ndarray) -> tuple[np.ndarray | None, float]:
+def _products_inside(
+    domain: Domain, point: np.ndarray, hessian: np.ndarray, within: np.ndarray
+) -> np.ndarray:
+    """The forms (p, j, j) of flexes, of a basis (j, n), that are products of rates into
+    the region of two unknowns in a bound at a point (n,), which F'' (m, n, n) couples."""
+    to_low, to_high = np.abs(domain.bounds.T - point) <= domain.slack
+    rates = (to_low * 1.0 - to_high) * within
+    moves = np.abs(rates).max(axis=0) > 0.0
+    is_coupled = np.any(hessian != 0.0, axis=0) & np.outer(moves, moves)
+    first, second = np.nonzero(np.triu(is_coupled))
+    products = np.einsum("ap,bp->pab", rates[:, first], rates[:, second])
+    symmetric: np.ndarray = 0.5 * (products + np.swapaxes(products, 1, 2))
+    return symmetric
+
+
+def positive_combination(
+    forms: np.ndarray, inside: np.ndarray | None = None
+) -> tuple[np.ndarray | None, float]:
     """Weights (s,) of the symmetric forms (s, k, k) whose sum is positive definite, and
-    its smallest eigenvalue, both over the size of the forms; None where no sum is."""
+    its smallest eigenvalue, both over the size of the forms; None where no sum is.
+
+    Where flexes lead to where some forms ``inside`` (p, k, k) are not negative, the sum
+    has to be positive there: it is the sum of a definite one and of such forms (Parrilo
+    2000).
+    """
     count, size = len(forms), float(np.abs(forms).max(initial=0.0))
     if not np.isfinite(size) or has_no_form(size):
         return None, 0.0
-    if count == 1:
+    if inside is None or not len(inside):
+        inside = np.empty((0, *forms.shape[1:]))
+    if count == 1 and not len(inside):
         return _sign_of_form(forms[0] / size)
-    return _by_cutting_planes(forms / size)
+    weights, margin = _by_cutting_planes(np.concatenate([forms / size, -inside]), count)
+    return (None if weights is None else weights[:count]), margin
 
 
 def _sign_of_form(form: np.ndarray) -> tuple[np.ndarray | None, float]:
@@ -157,20 +184,25 @@ def _sign_of_form(form: np.ndarray) -> tuple[np.ndarray | None, float]:
     return (None, 0.0) if leaves_loose(smallest) else (np.array([sign]), smallest)
 
 
-def _by_cutting_planes(forms: np.ndarray) -> tuple[np.ndarray | None, float]:
-    """Weights (s,) as of `positive_combination`. The smallest eigenvalue is concave in
-    them, and is maximised by linear programs over the directions along which the sum
-    was smallest so far."""
+def _by_cutting_planes(
+    forms: np.ndarray, count: int
+) -> tuple[np.ndarray | None, float]:
+    """Weights (s,) as of `positive_combination`, none but the first ``count`` negative.
+
+    The smallest eigenvalue is concave in them, and is maximised by linear programs over
+    the directions along which the sum was smallest so far.
+    """
     from scipy.optimize import linprog  # few searches need it
 
     cuts = np.eye(forms.shape[1])
     goal = np.append(np.zeros(len(forms)), -1.0)
-    bounds = [(-1.0, 1.0)] * len(forms) + [(None, None)]
+    bounds = [(-1.0, 1.0)] * count + [(0.0, 1.0)] * (len(forms) - count)
+    bounds.append((None, None))
     for _ in range(MOST_CUTS):
-        along = np.einsum("wab,ca,cb->cw", forms, cuts, cuts)
+        along = np.einsum("wab,ca,cb->cw", forms, cuts, cuts, optimize=True)
         rows = np.column_stack([-along, np.ones(len(cuts))])
         program = linprog(goal, A_ub=rows, b_ub=np.zeros(len(cuts)), bounds=bounds)
-        if not program.success or leaves_loose(float(program.x[-1])):
+        if not program.success or leaves_loose(program.x[-1]) or is_time_over():
             break
         weights = program.x[:-1]
         values, vectors = np.linalg.eigh(np.einsum("w,wab->ab", weights, forms))

@@ -2,12 +2,13 @@
 
 import json
 from dataclasses import replace
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 import pytest
 
 import linkages
+from bifurc import second_order_at
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
 from bifurc.system import jacobian_at
@@ -530,6 +531,18 @@ def test_an_assignment_survives_mirroring_and_json(tmp_path):
 
 # Abel et al. 2016, theorem 4: from flat a vertex folds as assigned where three creases of
 # one letter, within no half plane, and one of the other letter are among its creases
+def vertex_of(turns, letters):
+    """A vertex with creases in directions ``turns`` (k,), rad, assigned by letters."""
+    count = len(turns)
+    corners = np.transpose([np.cos(turns), np.sin(turns)]).tolist()
+    return {
+        "vertices_coords": [[0.0, 0.0], *corners],
+        "faces_vertices": [[0, 1 + k, 1 + (k + 1) % count] for k in range(count)],
+        "edges_vertices": [[0, 1 + k] for k in range(count)],
+        "edges_assignment": list(letters),
+    }
+
+
 @pytest.mark.parametrize(
     ("letters", "folds"),
     [("VVMMVMVV", True), ("VVVVMMMM", False)],
@@ -538,12 +551,38 @@ def test_a_vertex_of_eight_creases_leaves_the_flat_state_where_it_can(
     letters, folds, tmp_path
 ):
     turns = np.radians([0.0, 41.2, 81.3, 140.4, 190.1, 214.4, 272.4, 327.8])
-    corners = np.transpose([np.cos(turns), np.sin(turns)]).tolist()
-    content = {
-        "vertices_coords": [[0.0, 0.0], *corners],
-        "faces_vertices": [[0, 1 + k, 1 + (k + 1) % 8] for k in range(8)],
-        "edges_vertices": [[0, 1 + k] for k in range(8)],
-        "edges_assignment": list(letters),
-    }
-    drawn = drawn_place(map_of(read(tmp_path, content)))
-    assert drawn.name.split(" or ")[0] == ("surface 1" if folds else "S1")
+    drawn = drawn_place(map_of(read(tmp_path, vertex_of(turns, letters))))
+    there = "surface 1" if folds else "a rigid assembly"
+    assert drawn.name.split(" or ")[0] == there
+
+
+def has_birds_foot(turns, letters):
+    """Whether three creases that leave no half-plane free fold one way, and another one
+    folds the other way: a flat vertex folds as it is assigned if and only if it has such
+    (Abel, Cantarella, Demaine, Eppstein, Hull, Ku, Lang and Tachi 2016)."""
+    for one in combinations(range(len(turns)), 3):
+        own = {letters[k] for k in one}
+        gaps = np.diff([*turns[list(one)], turns[one[0]] + 2 * np.pi])
+        if len(own) == 1 and gaps.max() < np.pi and own != set(letters):
+            return True
+    return False
+
+
+def random_vertex(seed):
+    """Directions of 4 to 8 creases from a flat vertex, none next to another one, and
+    their letters."""
+    rng = np.random.default_rng(seed)
+    count = rng.integers(4, 9)
+    while True:
+        turns = np.sort(rng.uniform(0.0, 2 * np.pi, size=count))
+        gaps = np.diff([*turns, turns[0] + 2 * np.pi])
+        if gaps.min() > 0.05 and gaps.max() < np.pi - 0.05:
+            return turns, rng.choice(["V", "M"], size=count).tolist()
+
+
+@pytest.mark.parametrize("seed", one_in(25, range(1000)))
+def test_a_flat_vertex_is_held_unless_it_has_a_birds_foot(seed, tmp_path):
+    turns, letters = random_vertex(seed)
+    problem = Closure(read(tmp_path, vertex_of(turns, letters)))
+    second = second_order_at(problem, problem.reference)
+    assert second.is_prestress_stable != has_birds_foot(turns, letters)
