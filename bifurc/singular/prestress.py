@@ -31,6 +31,7 @@ from bifurc.singular.second_order import common_lines
 from bifurc.system import System, hessian_at, relative_jacobians
 
 MOST_FORCE = 1e3  # of a bound, over the least that counts
+HEAVIEST = 10.0  # product of rates, and smallest eigenvalue, over the largest stress
 MOST_CUTS = 200  # through the cone of stresses, each of a flex along which a form falls
 
 
@@ -196,8 +197,7 @@ def _by_cutting_planes(
 
     cuts = np.eye(forms.shape[1])
     goal = np.append(np.zeros(len(forms)), -1.0)
-    bounds = [(-1.0, 1.0)] * count + [(0.0, 1.0)] * (len(forms) - count)
-    bounds.append((None, None))
+    bounds = [(-1.0, 1.0)] * count + [(0.0, HEAVIEST)] * (len(goal) - count)
     for _ in range(MOST_CUTS):
         along = np.einsum("wab,ca,cb->cw", forms, cuts, cuts, optimize=True)
         rows = np.column_stack([-along, np.ones(len(cuts))])
