@@ -64,6 +64,8 @@ struct PathSettings {
     // Whether residuals are computed with twice the digits of doubles, as far from 1, and near singular
     // points, they are corrected to the last digits of the point with them only.
     bool is_precise;
+    // Whether all ends are known to be regular: then no path is led round its own.
+    bool ends_regular;
 };
 
 // F(x; p) = 0 with x the first unknowns of a tape and p the others, on the line of parameters
@@ -73,14 +75,13 @@ class PathSystem {
 public:
     using Complex = paths::Complex;
 
-    PathSystem(const Tape& tape, Index unknowns, View<const Complex> combinations, Vector<const Complex> first,
-               Vector<const Complex> last, Index order)
+    PathSystem(const Tape& tape, Index unknowns, View<const Complex> combinations, Index order)
         : tape_(tape),
           n_(unknowns),
           combinations_(combinations),
-          first_(first.begin(), first.end()),
-          last_(last.begin(), last.end()),
-          change_(last.size()),
+          first_(tape.unknowns() - unknowns),
+          last_(first_.size()),
+          change_(first_.size()),
           point_(tape.unknowns()),
           step_(tape.unknowns()),
           row_(unknowns),
@@ -88,11 +89,14 @@ public:
           precise_point_(tape.unknowns()),
           precise_values_(tape.slots()),
           sweep_(tape),
-          series_(tape, order) {
-        for (std::size_t i = 0; i < change_.size(); ++i) change_[i] = first[i] - last[i];
-    }
+          series_(tape, order) {}
 
     Index unknowns() const { return n_; }
+    void set_line(Vector<const Complex> first, Vector<const Complex> last) {
+        std::copy(first.begin(), first.end(), first_.begin());
+        std::copy(last.begin(), last.end(), last_.begin());
+        for (std::size_t i = 0; i < change_.size(); ++i) change_[i] = first_[i] - last_[i];
+    }
     void set_precise(bool is_precise) { is_precise_ = is_precise; }
 
     // F at a point and t, and its factored derivatives by x; false where these are singular.
@@ -210,7 +214,7 @@ public:
         steps_ = 0;
         if (!begin(out.point, 1.0)) return out;
         Circuit before;
-        double next_look = paths::near_end;
+        double next_look = settings_.ends_regular ? 0.0 : paths::near_end;
         Complex t = 1.0;
         while (true) {
             const Advance advance = step(out.point, t, 0.0, t.real() < next_look);
