@@ -173,12 +173,17 @@ class SparseFamily:
         deadline: Deadline,
     ) -> Fibre:
         """The solutions of a member with random coefficients, but zeros where those (q,)
-        of another one are zero; the ``generic`` ones where those are not all regular.
+        of another one are zero; the ``generic`` ones where there are as many, or those
+        are not all regular.
 
         Fewer paths lead from there, and those that still go to infinity do so because
         of what the coefficients are, and not which.
         """
-        if np.all(member):
+        left = iter((member != 0.0).tolist())
+        present = [[one for one in row if next(left)] for row in self.supports]
+        count = len(generic.solutions)
+        cells = MixedCells.of(present, rng, deadline, count)
+        if cells is None or cells.volume == count:
             return generic
         parameters = np.where(member == 0.0, 0.0, _on_unit_circle(rng, len(member)))
         paths = self.follow(generic, parameters, rng, deadline)
