@@ -167,7 +167,6 @@ def follow_paths(
     tolerance: float = TOLERANCE,
     farthest: float = np.inf,
     again: int = AGAIN,
-    ends_regular: bool = False,
 ) -> Paths:
     """The paths of solutions ``starts`` (k, n), all different, of the member with the
     parameters ``first`` (q,), or each of a member of its own (k, q), to that with
@@ -177,13 +176,12 @@ def follow_paths(
     smaller steps and with residuals of twice the digits, so often (``again``), and past
     what they pass too near to. None is begun after the ``deadline``. In homogeneous
     coordinates paths that end ``farthest`` times as far away as 1, or more, may count as
-    at infinity. ``ends_regular``: whether the last member is generic, so that no end has
-    to be looked at from all sides.
+    at infinity.
     """
     deadline = deadline or Deadline()
     shape = (len(starts), family.parameters)
     both = np.broadcast_to(first, shape), np.broadcast_to(last, shape)
-    way = _Way(family, *both, deadline, farthest, ends_regular)
+    way = _Way(family, *both, deadline, farthest)
     paths = _followed(way, starts, tolerance, is_precise=False)
     for attempt in range(again):
         doubtful = np.flatnonzero(_are_doubtful(paths))
@@ -310,7 +308,6 @@ class _Way(NamedTuple):
     last: np.ndarray
     deadline: Deadline
     farthest: float
-    ends_regular: bool
 
     def of(self, numbers: np.ndarray) -> _Way:
         """That of some of the paths, by their ``numbers`` (j,)."""
@@ -321,7 +318,7 @@ def _followed(
     way: _Way, starts: np.ndarray, tolerance: float, is_precise: bool
 ) -> Paths:
     """The paths of solutions ``starts`` (k, n), to a ``tolerance``."""
-    family, first, last, deadline, farthest, ends_regular = way
+    family, first, last, deadline, farthest = way
     points, rests, ends, windings, steps = family.tape.compiled.follow_paths(
         np.ascontiguousarray(starts, dtype=complex),
         np.ascontiguousarray(first, dtype=complex),
@@ -333,7 +330,7 @@ def _followed(
         family.coordinates,
         farthest,
         is_precise,
-        ends_regular,
+        family.has_regular_ends,
         deadline.left,
     )
     jacobians = family.jacobians(points, last)

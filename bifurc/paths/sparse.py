@@ -77,7 +77,8 @@ class SparseFamily:
             )
             for number, height in zip(numbers, heights, strict=True)
         ]
-        return Family(writer.tape(self._written(writer, unknowns, factors)), self.n)
+        outputs = self._written(writer, unknowns, factors)
+        return Family(writer.tape(outputs), self.n, has_regular_ends=True)
 
     @cached_property
     def projective(self) -> Family:
@@ -141,10 +142,7 @@ class SparseFamily:
             starts, heights = cells.starts(numbers)
             first = np.hstack([np.broadcast_to(numbers, heights.shape), heights])
             last = np.r_[numbers, np.zeros(self.coefficients)]
-            family = self.lowering
-            paths = follow_paths(
-                family, starts, first, last, deadline, ends_regular=True
-            )
+            paths = follow_paths(self.lowering, starts, first, last, deadline)
             if np.all(paths.is_regular):
                 return Fibre(numbers, paths.points)
         return None

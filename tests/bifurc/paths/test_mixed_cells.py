@@ -52,10 +52,7 @@ def test_their_volume_is_the_mixed_volume(seed):
 def cyclic(n):
     """Supports of the equations of cyclic n-roots (Bjorck and Froberg 1991)."""
     rows = [
-        [
-            tuple(int((j - start) % n < length) for j in range(n))
-            for start in range(n)
-        ]
+        [tuple(int((j - start) % n < length) for j in range(n)) for start in range(n)]
         for length in range(1, n)
     ]
     return [*rows, [(1,) * n, (0,) * n]]
