@@ -117,6 +117,13 @@ def exit_of_bounds(
     bounds: np.ndarray,
     slack: float,
 ) -> float | None: ...
+def mixed_cells(
+    exponents: np.ndarray,
+    sizes: np.ndarray,
+    lifts: np.ndarray,
+    most: int,
+    seconds: float,
+) -> tuple[int, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
 def null_vector(
     matrix: np.ndarray, along: np.ndarray, negligible: float, agreeing: float
 ) -> np.ndarray: ...
@@ -235,6 +242,7 @@ class Tape:
         places: int,
         farthest: float,
         is_precise: bool,
+        ends_regular: bool,
         seconds: float,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
     def project(

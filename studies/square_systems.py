@@ -30,7 +30,7 @@ from studies.study import Study, require_known
 
 DATA = Path(__file__).parents[1] / "data" / "square_systems.json"
 MOST = 2000  # paths
-LIMIT = 600.0  # s, for either program
+LIMIT = 3600.0  # s, for either program
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@
 #include "bifurc/core/numpy.hpp"
 #include "bifurc/core/returns.hpp"
 #include "bifurc/core/sheet_module.hpp"
+#include "bifurc/core/paths_bindings.hpp"
 #include "bifurc/core/singular_values.hpp"
 #include "bifurc/core/tape_bindings.hpp"
 #include "bifurc/core/turnings.hpp"
@@ -337,6 +338,7 @@ NB_MODULE(_core, module) {
         .def("roots", &numbers_of<&Brackets::roots>);
     module.def("exit_of_bounds", &exit_of, "pieces"_a, "centers"_a, "radii"_a, "periods"_a, "first"_a,
                "bounds"_a, "slack"_a);
+    module.def("mixed_cells", &bifurc::python::mixed_cells, "exponents"_a, "sizes"_a, "lifts"_a, "most"_a, "seconds"_a);
     module.def("null_vector", &null_vector, "matrix"_a, "along"_a, "negligible"_a, "agreeing"_a);
     module.def("returns", &returns_on, "pieces"_a, "centers"_a, "radii"_a, "periods"_a, "number"_a, "s"_a, "first"_a);
     module.def("roots_of_waves", &roots_of_waves, "coefficients"_a, "low"_a, "high"_a, "tolerance"_a);

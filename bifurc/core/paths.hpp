@@ -28,6 +28,7 @@ using Complex = std::complex<double>;
 constexpr double longest_share = 0.6;
 constexpr double shorter = 0.4;        // by which a step that failed is shortened
 constexpr double shortest = 1e-13;     // step, over the size of the rest or of the way
+constexpr double shortest_turn = 1e-3; // step in the logarithm, over the rest
 constexpr double contraction = 0.05;   // of a correction to the next, on an accepted step
 constexpr double rounding = 1e-9;      // a correction that may be one of rounding
 constexpr double exact = 1e-14;        // a correction after which no other is made
@@ -35,11 +36,14 @@ constexpr int last_corrections = 6;    // at the end of a path
 constexpr double far_away = 1e8;       // unknown beyond which a path runs to infinity
 // Where what is left of a path is less than this, it is led round its end, and again whenever it is
 // less by the factor; what is left at last is nothing.
-constexpr double near_end = 1e-2, nearer = 0.1, last_rest = 1e-13;
+constexpr double near_end = 1e-2, nearer = 0.2, last_rest = 1e-13;
 constexpr int corners = 8;             // of a way round the end
-constexpr int most_turns = 24;         // round the end until the path is where it was
+// Round the end until the path is where it was: at the first look, as nearer to it there are fewer other
+// singularities inside; and at any.
+constexpr int first_turns = 4, most_turns = 24;
+constexpr int steps_of_turn = 64;      // more are taken only beside other singularities, or where digits end
 constexpr double closed = 1e-7;        // gap of a way round the end that is closed
-constexpr double agreement = 1e-7;     // of two means, over their size
+constexpr double agreement = 1e-9;     // of two means, over their size
 constexpr double solved = 1e-10;       // residual of a mean, over 1 + its size
 constexpr double growth = 1.1;         // by which the way round an end at infinity grows
 // What is left of a path that has an end at infinity. Where parameters are of different sizes, a path
@@ -61,9 +65,20 @@ struct PathSettings {
     // interest.
     Index places;
     double farthest;
-    // Whether residuals are computed with twice the digits of doubles, as far from 1, and near singular
-    // points, they are corrected to the last digits of the point with them only.
+    // Whether residuals are computed with twice the digits of doubles from the start, and not only from where no
+    // step is short enough: far from 1, and near singular points, points are corrected to the last digits with
+    // them only.
     bool is_precise;
+    // Whether all ends are known to be regular: then no path is led round its own.
+    bool ends_regular;
+};
+
+// A place on a path: t, or its logarithm, in which a path round a singular end is smooth.
+struct PathPlace {
+    paths::Complex value;
+    bool is_logarithm = false;
+
+    paths::Complex t() const { return is_logarithm ? std::exp(value) : value; }
 };
 
 // F(x; p) = 0 with x the first unknowns of a tape and p the others, on the line of parameters
@@ -73,26 +88,28 @@ class PathSystem {
 public:
     using Complex = paths::Complex;
 
-    PathSystem(const Tape& tape, Index unknowns, View<const Complex> combinations, Vector<const Complex> first,
-               Vector<const Complex> last, Index order)
+    PathSystem(const Tape& tape, Index unknowns, View<const Complex> combinations, Index order)
         : tape_(tape),
           n_(unknowns),
           combinations_(combinations),
-          first_(first.begin(), first.end()),
-          last_(last.begin(), last.end()),
-          change_(last.size()),
+          first_(tape.unknowns() - unknowns),
+          last_(first_.size()),
+          change_(first_.size()),
           point_(tape.unknowns()),
-          step_(tape.unknowns()),
           row_(unknowns),
           equations_(tape.equations()),
           precise_point_(tape.unknowns()),
           precise_values_(tape.slots()),
           sweep_(tape),
-          series_(tape, order) {
-        for (std::size_t i = 0; i < change_.size(); ++i) change_[i] = first[i] - last[i];
-    }
+          series_(tape, order, unknowns),
+          series_of_logarithm_(tape, order, unknowns, Change::exponentially) {}
 
     Index unknowns() const { return n_; }
+    void set_line(Vector<const Complex> first, Vector<const Complex> last) {
+        std::copy(first.begin(), first.end(), first_.begin());
+        std::copy(last.begin(), last.end(), last_.begin());
+        for (std::size_t i = 0; i < change_.size(); ++i) change_[i] = first_[i] - last_[i];
+    }
     void set_precise(bool is_precise) { is_precise_ = is_precise; }
 
     // F at a point and t, and its factored derivatives by x; false where these are singular.
@@ -122,25 +139,21 @@ public:
         return lu.factor();
     }
 
-    // Taylor coefficients (order + 1, n) of the path through a point, in powers of t.
-    void series(Vector<const Complex> x, Complex t, const ComplexLu& lu, View<Complex> coefficients) {
-        place(x, t);
-        series_.start(point_);
+    // Taylor coefficients (order + 1, n) of the path through a point, in powers of t or of its logarithm, with the
+    // derivatives of where `linearize` was called last, and lu from there: next to it.
+    void series(Vector<const Complex> x, const PathPlace& place, const ComplexLu& lu, View<Complex> coefficients) {
+        SeriesSweep<Complex>& series = place.is_logarithm ? series_of_logarithm_ : series_;
+        const Complex pace = place.is_logarithm ? place.t() : 1.0;
+        for (std::size_t i = 0; i < change_.size(); ++i) series.set_rate(n_ + static_cast<Index>(i), pace * change_[i]);
+        series.start(sweep_);
         std::copy(x.begin(), x.end(), coefficients.row(0).begin());
         for (Index k = 1; k < coefficients.rows; ++k) {
-            series_.advance(k);
-            std::fill(step_.begin(), step_.end(), Complex(0.0));
-            if (k == 1) {
-                std::copy(change_.begin(), change_.end(), step_.begin() + n_);
-                series_.correct(k, step_);
-                std::fill(step_.begin(), step_.end(), Complex(0.0));
-            }
-            for (Index row = 0; row < tape_.equations(); ++row) equations_[row] = -series_.coefficient(row, k);
+            series.advance(k);
+            for (Index row = 0; row < tape_.equations(); ++row) equations_[row] = -series.coefficient(row, k);
             const Vector<Complex> solution = coefficients.row(k);
             combine(solution);
             lu.solve(solution);
-            std::copy(solution.begin(), solution.end(), step_.begin());
-            series_.correct(k, step_);
+            if (k + 1 < coefficients.rows) series.correct(k, solution);
         }
     }
 
@@ -176,10 +189,10 @@ private:
     Index n_;
     View<const Complex> combinations_;
     bool is_precise_ = false;
-    std::vector<Complex> first_, last_, change_, point_, step_, row_, equations_;
+    std::vector<Complex> first_, last_, change_, point_, row_, equations_;
     std::vector<TwofoldComplex> precise_point_, precise_values_;
     Sweep<Complex> sweep_;
-    SeriesSweep<Complex> series_;
+    SeriesSweep<Complex> series_, series_of_logarithm_;
 };
 
 class PathTracker {
@@ -192,9 +205,7 @@ public:
           settings_(settings),
           lu_(system.unknowns()),
           coefficients_(settings.order + 1, system.unknowns()),
-          correction_(system.unknowns()) {
-        system_.set_precise(settings.is_precise);
-    }
+          correction_(system.unknowns()) {}
 
     struct Outcome {
         Point point;
@@ -202,77 +213,42 @@ public:
         PathEnd end = PathEnd::no_start;
         int winding = 1;  // turns after which a path round its end is where it was
         int steps = 0;
+        bool is_over = false;
     };
 
     // From a solution at t = 1 towards t = 0.
     Outcome follow(Vector<const Complex> start) {
         Outcome out{{start.begin(), start.end()}};
         steps_ = 0;
-        if (!begin(out.point, 1.0)) return out;
+        set_precise(settings_.is_precise);
+        PathPlace place{1.0};
+        if (!begin(out.point, place)) return out;
+        const double near_end = settings_.ends_regular ? 0.0 : paths::near_end;
+        while (place.t().real() > near_end && !out.is_over) advance(out, place, 0.0);
         Circuit before;
-        double next_look = paths::near_end;
-        Complex t = 1.0;
-        while (true) {
-            const Advance advance = step(out.point, t, 0.0, t.real() < next_look);
-            out.rest = t.real();
-            out.steps = steps_;
-            if (advance == Advance::arrived) {
-                polish(out.point);
-                out.end = PathEnd::regular;
-                return out;
-            }
-            if (largest(out.point) > paths::far_away) {
-                out.end = PathEnd::at_infinity;
-                return out;
-            }
-            if (t.real() < paths::rest_outside && is_outside(out.point)) {
-                out.end = PathEnd::at_infinity;
-                return out;
-            }
-            if (advance == Advance::failed || steps_ >= settings_.most_steps || t.real() < paths::last_rest) {
-                out.end = advance == Advance::failed ? PathEnd::stuck : PathEnd::too_long;
-                return out;
-            }
-            if (t.real() >= next_look) continue;
-            next_look = paths::nearer * t.real();
-            const Circuit circuit = go_round(out.point, t.real());
-            if (!begin(out.point, t)) {
-                out.end = PathEnd::stuck;
-                return out;
-            }
-            if (!circuit.winding || circuit.winding != before.winding) {
-                before = circuit;
-                continue;
-            }
-            out.winding = circuit.winding;
-            // A place at e < t from which the path comes back has terms of lower powers, e / t of the largest.
-            if (circuit.pole && circuit.pole == before.pole && circuit.beyond * t.real() < paths::rest_at_infinity) {
-                out.end = PathEnd::at_infinity;
-                return out;
-            }
-            if (t.real() < paths::rest_at_infinity && circuit.extent > paths::growth * before.extent) {
-                out.end = PathEnd::at_infinity;
-                return out;
-            }
-            if (distance(circuit.mean, before.mean) < paths::agreement && is_solution(circuit.mean)) {
-                out.rest = 0.0;
-                out.point = circuit.mean;
-                Point regular = circuit.mean;
-                out.end = PathEnd::singular;
-                if (circuit.winding == 1 && is_corrected(regular, 0.0)) {
-                    polish(regular);
-                    out.point = regular;
-                    out.end = PathEnd::regular;
-                }
-                return out;
-            }
+        for (int turns = paths::first_turns; !out.is_over; turns += paths::first_turns) {
+            const double t = place.t().real();
+            const Circuit circuit = go_round(out.point, t, std::min(turns, paths::most_turns));
+            if (circuit.winding && circuit.winding == before.winding) judge(out, circuit, before);
             before = circuit;
+            if (out.is_over) break;
+            place = {t};
+            if (!begin(out.point, place)) {
+                finish(out, PathEnd::stuck);
+            } else if (trusted_length() >= t) {
+                advance(out, place, 0.0);
+            } else {
+                place = {std::log(t), true};
+                expand(out.point, place);
+                const Complex goal = std::log(paths::nearer * t);
+                while (place.value != goal && !out.is_over) advance(out, place, goal);
+            }
         }
+        out.steps = steps_;
+        return out;
     }
 
 private:
-    enum class Advance { went, arrived, failed };
-
     // Round the end of a path: the mean of the points, how far they are from it, and after how many
     // turns the path was back; none where it did not come back. Where a power -``pole`` of the root of t
     // that has this winding is the largest term, those of lower powers come to ``beyond`` of it.
@@ -283,6 +259,55 @@ private:
         int pole = 0;
         double beyond = 0.0;
     };
+
+    static void finish(Outcome& out, PathEnd end) {
+        out.end = end;
+        out.is_over = true;
+    }
+
+    // One step towards a place on the straight way; at t = 0 it is over, and where it cannot go on, or has gone
+    // far enough.
+    void advance(Outcome& out, PathPlace& place, Complex goal) {
+        const bool is_ahead = step(out.point, place, goal);
+        out.rest = place.t().real();
+        const bool is_short = out.rest < paths::rest_outside;
+        if (!is_ahead) {
+            finish(out, PathEnd::stuck);
+        } else if (out.rest == 0.0) {
+            polish(out.point);
+            finish(out, PathEnd::regular);
+        } else if (largest(out.point) > paths::far_away || (is_short && is_outside(out.point))) {
+            finish(out, PathEnd::at_infinity);
+        } else if (steps_ >= settings_.most_steps || out.rest < paths::last_rest) {
+            finish(out, PathEnd::too_long);
+        }
+    }
+
+    // Whether a path is over whose last two circuits have the same winding.
+    void judge(Outcome& out, const Circuit& circuit, const Circuit& before) {
+        out.winding = circuit.winding;
+        const bool has_grown = out.rest < paths::rest_at_infinity && circuit.extent > paths::growth * before.extent;
+        // A place at e < t from which the path comes back has terms of lower powers, e / t of the largest.
+        const bool is_at_pole = circuit.pole && circuit.pole == before.pole && circuit.beyond * out.rest < paths::rest_at_infinity;
+        if (has_grown || is_at_pole) {
+            finish(out, PathEnd::at_infinity);
+        } else if (distance(circuit.mean, before.mean) < paths::agreement && is_solution(circuit.mean)) {
+            out.rest = 0.0;
+            out.point = circuit.mean;
+            finish(out, PathEnd::singular);
+            Point regular = circuit.mean;
+            if (circuit.winding == 1 && is_corrected(regular, 0.0)) {
+                polish(regular);
+                out.point = regular;
+                out.end = PathEnd::regular;
+            }
+        }
+    }
+
+    void set_precise(bool is_precise) {
+        is_precise_ = is_precise;
+        system_.set_precise(is_precise);
+    }
 
     static double largest(const Point& point) {
         double size = 0.0;
@@ -331,12 +356,12 @@ private:
     // The largest first correction that is trusted.
     double trust() const { return 10.0 * settings_.tolerance; }
 
-    void expand(const Point& point, Complex t) { system_.series(point, t, lu_, coefficients_); }
+    void expand(const Point& point, const PathPlace& place) { system_.series(point, place, lu_, coefficients_); }
 
     // Corrects a start and expands the path there.
-    bool begin(Point& point, Complex t) {
-        if (!is_corrected(point, t)) return false;
-        expand(point, t);
+    bool begin(Point& point, const PathPlace& place) {
+        if (!is_corrected(point, place.t())) return false;
+        expand(point, place);
         return true;
     }
 
@@ -375,52 +400,49 @@ private:
         }
     }
 
-    // From a point whose series is known towards ``goal``. ``in_pieces``: near a goal that may be singular
-    // no more than a part of what is left is gone unless the series reaches it.
-    Advance step(Point& point, Complex& t, Complex goal, bool in_pieces) {
-        const Complex rest = goal - t;
+    // From a point whose series is known towards ``goal``; false where no step is short enough.
+    bool step(Point& point, PathPlace& place, Complex goal) {
+        const Complex rest = goal - place.value;
         const double length = std::abs(rest);
+        const double least = place.is_logarithm ? paths::shortest_turn : paths::shortest * std::max(1.0, 1.0 / length);
         double share = trusted_length() / length;
-        bool is_whole = share >= 1.0;
-        if (!is_whole && in_pieces) share = std::min(share, 1.0 - paths::nearer);
         Point ahead(point.size());
-        while (true) {
+        while (steps_ < settings_.most_steps) {
             ++steps_;
+            const bool is_whole = share >= 1.0;
             const Complex way = is_whole ? rest : share * rest;
-            const Complex place = is_whole ? goal : t + way;
+            const PathPlace next{is_whole ? goal : place.value + way, place.is_logarithm};
             predict(way, ahead);
-            if (is_corrected(ahead, place)) {
+            if (is_corrected(ahead, next.t())) {
                 point.swap(ahead);
-                t = place;
-                expand(point, t);
-                return is_whole ? Advance::arrived : Advance::went;
+                place = next;
+                expand(point, place);
+                return true;
             }
             share = paths::shorter * std::min(share, 1.0);
-            is_whole = false;
-            if (share < paths::shortest * std::max(1.0, 1.0 / length) || steps_ >= settings_.most_steps) return Advance::failed;
+            if (share > least) continue;
+            if (is_precise_) return false;
+            set_precise(true);
+            share = std::min(1.0, trusted_length() / length);
         }
+        return true;
     }
 
-    // Follows the path straight to another t; false where it cannot be followed.
-    bool go(Point& point, Complex& t, Complex goal) {
-        while (true) {
-            const Advance advance = step(point, t, goal, false);
-            if (advance == Advance::arrived) return true;
-            if (advance == Advance::failed || steps_ >= settings_.most_steps) return false;
-        }
-    }
-
-    // Follows the path on a polygon round t = 0, turn after turn, until it is back.
-    Circuit go_round(const Point& start, double radius) {
+    // Follows the path on a circle round t = 0, turn after turn, until it is back.
+    Circuit go_round(const Point& start, double radius, int most_turns) {
         Circuit out;
         Point point = start;
         std::vector<Point> corners;
-        Complex t = radius;
-        for (int turn = 1; turn <= paths::most_turns; ++turn) {
+        PathPlace place{std::log(radius), true};
+        const Complex side(0.0, 2.0 * std::numbers::pi / paths::corners);
+        if (!begin(point, place)) return {};
+        for (int turn = 1; turn <= most_turns; ++turn) {
+            const int most_steps = std::min(steps_ + paths::steps_of_turn, settings_.most_steps);
             for (int corner = 1; corner <= paths::corners; ++corner) {
-                const bool is_back = corner == paths::corners;
-                const double angle = 2.0 * std::numbers::pi * corner / paths::corners;
-                if (!go(point, t, is_back ? Complex(radius) : std::polar(radius, angle))) return {};
+                const Complex goal = place.value + side;
+                while (place.value != goal) {
+                    if (!step(point, place, goal) || steps_ >= most_steps) return {};
+                }
                 corners.push_back(point);
             }
             if (distance(point, start) > paths::closed) continue;
@@ -458,12 +480,7 @@ private:
 
     // Newton's method at the end, as long as its steps become shorter.
     void polish(Point& point) {
-        system_.set_precise(true);
-        converge(point);
-        system_.set_precise(settings_.is_precise);
-    }
-
-    void converge(Point& point) {
+        set_precise(true);
         double former = 1.0;
         for (int i = 0; i < paths::last_corrections; ++i) {
             Point better = point;
@@ -481,6 +498,7 @@ private:
     Matrix<Complex> coefficients_;
     Point correction_;
     int steps_ = 0;
+    bool is_precise_ = false;
 };
 
 }  // namespace bifurc

@@ -9,11 +9,11 @@
 
 namespace bifurc::series {
 
-// Of a * b.
+// Of a * b; only the coefficients of a from ``first`` to ``last`` have others of b that are not zero.
 template <class T>
-T product(const T* a, const T* b, Index k) {
-    T total = a[0] * b[k];
-    for (Index j = 1; j <= k; ++j) total += a[j] * b[k - j];
+T product(const T* a, const T* b, Index k, Index first, Index last) {
+    T total = a[first] * b[k - first];
+    for (Index j = first + 1; j <= last; ++j) total += a[j] * b[k - j];
     return total;
 }
 

@@ -62,7 +62,10 @@ constexpr int operation_count = 29;
 // How the derivative of an operation y of x = left comes about. ``rule`` is the slot of w or r.
 enum class Rule {
     leaf,          // no operand
-    linear,        // of constant coefficients
+    sum,           // y = left + right
+    difference,    // y = left - right
+    shifted,       // y' = left'
+    scaled,        // y' = c left'
     product,       // y = left * right
     quotient,      // y = left / right
     rate,          // y' = w x'
@@ -82,11 +85,11 @@ inline Rule rule_of(Operation operation) {
     switch (operation) {
         case Operation::unknown:
         case Operation::constant: return Rule::leaf;
-        case Operation::add:
-        case Operation::subtract:
-        case Operation::shift:
+        case Operation::add: return Rule::sum;
+        case Operation::subtract: return Rule::difference;
+        case Operation::shift: return Rule::shifted;
         case Operation::scale:
-        case Operation::over: return Rule::linear;
+        case Operation::over: return Rule::scaled;
         case Operation::multiply: return Rule::product;
         case Operation::divide: return Rule::quotient;
         case Operation::angle: return Rule::angle;
@@ -138,6 +141,8 @@ inline Complex atan2(const Complex& z, const Complex& x) {
 }
 
 }  // namespace functions
+
+inline bool is_linear(Rule rule) { return rule >= Rule::sum && rule <= Rule::scaled; }
 
 // What an operation makes of the values of its operands.
 template <class T>
@@ -194,6 +199,7 @@ public:
         : unknowns_(unknowns), instructions_(std::move(instructions)), outputs_(std::move(outputs)) {
         for (Index slot = 0; slot < slots(); ++slot) check(slot);
         for (Index output : outputs_) check_slot(output, slots());
+        for (const Instruction& instruction : instructions_) rules_.push_back(rule_of(instruction.operation));
         find_cones();
     }
 
@@ -202,6 +208,7 @@ public:
     Index slots() const { return static_cast<Index>(instructions_.size()); }
     Index output(Index equation) const { return outputs_[equation]; }
     const Instruction& operator[](Index slot) const { return instructions_[slot]; }
+    Rule rule(Index slot) const { return rules_[slot]; }
 
     // Slots of the values that an equation is made of, the last first.
     Vector<const Index> cone(Index equation) const { return cones_[equation]; }
@@ -260,7 +267,14 @@ public:
         const Instruction& instruction = instructions_[slot];
         if (is_overflow(slot, values[slot])) return {};
         const T& rule = values[instruction.rule];
-        switch (rule_of(instruction.operation)) {
+        switch (rules_[slot]) {
+            case Rule::sum: return {T(1.0), T(1.0)};
+            case Rule::difference: return {T(1.0), T(-1.0)};
+            case Rule::shifted: return {T(1.0), T(0.0)};
+            case Rule::scaled: {
+                const T factor(instruction.constant);
+                return {instruction.operation == Operation::scale ? factor : T(1.0) / factor, T(0.0)};
+            }
             case Rule::product: return {values[instruction.right], values[instruction.left]};
             case Rule::quotient: {
                 const T inverse = T(1.0) / values[instruction.right];
@@ -269,14 +283,6 @@ public:
             case Rule::rate: return {rule, T(0.0)};
             case Rule::inverse_rate: return {T(1.0) / rule, T(0.0)};
             case Rule::angle: return {values[instruction.right] / rule, -(values[instruction.left] / rule)};
-            default: break;
-        }
-        switch (instruction.operation) {
-            case Operation::add: return {T(1.0), T(1.0)};
-            case Operation::subtract: return {T(1.0), T(-1.0)};
-            case Operation::shift: return {T(1.0), T(0.0)};
-            case Operation::scale: return {T(instruction.constant), T(0.0)};
-            case Operation::over: return {T(1.0) / T(instruction.constant), T(0.0)};
             default: return {};
         }
     }
@@ -352,6 +358,7 @@ private:
 
     Index unknowns_;
     std::vector<Instruction> instructions_;
+    std::vector<Rule> rules_;
     std::vector<Index> outputs_;
     std::vector<Index> needed_;
     std::vector<std::vector<Index>> cones_, unknowns_of_;
@@ -366,6 +373,9 @@ template <class T>
 class Sweep {
 public:
     explicit Sweep(const Tape& tape) : tape_(tape), values_(tape.slots()) {}
+
+    Vector<const T> values() const { return values_; }
+    Vector<const Partials<T>> partials() const { return partials_; }
 
     T value(Index equation) const { return values_[tape_.output(equation)]; }
 
@@ -388,12 +398,23 @@ public:
             const Instruction& instruction = tape_[slot];
             const T adjoint = adjoints_[slot];
             adjoints_[slot] = T(0.0);
-            if (instruction.operation == Operation::unknown) {
-                visit(instruction.left, adjoint);
-                continue;
+            switch (tape_.rule(slot)) {
+                case Rule::leaf:
+                    if (instruction.operation == Operation::unknown) visit(instruction.left, adjoint);
+                    break;
+                case Rule::sum:
+                    adjoints_[instruction.left] += adjoint;
+                    adjoints_[instruction.right] += adjoint;
+                    break;
+                case Rule::difference:
+                    adjoints_[instruction.left] += adjoint;
+                    adjoints_[instruction.right] -= adjoint;
+                    break;
+                case Rule::shifted: adjoints_[instruction.left] += adjoint; break;
+                default:
+                    adjoints_[instruction.left] += adjoint * partials_[slot].left;
+                    if (Tape::has_right(instruction.operation)) adjoints_[instruction.right] += adjoint * partials_[slot].right;
             }
-            if (Tape::has_left(instruction.operation)) adjoints_[instruction.left] += adjoint * partials_[slot].left;
-            if (Tape::has_right(instruction.operation)) adjoints_[instruction.right] += adjoint * partials_[slot].right;
         }
     }
 
@@ -489,7 +510,7 @@ private:
     Cross cross_of(Index slot) const {
         const Instruction& instruction = tape_[slot];
         const T half(0.5);
-        switch (rule_of(instruction.operation)) {
+        switch (tape_.rule(slot)) {
             case Rule::product: return {instruction.left, instruction.right, T(1.0)};
             case Rule::quotient: return {slot, instruction.right, -partials_[slot].left};
             case Rule::rate: return {instruction.rule, instruction.left, half};
@@ -510,7 +531,7 @@ private:
                 bends(slot, entry) += partials.right * bends(instruction.right, entry);
             }
         }
-        if (rule_of(instruction.operation) == Rule::linear) return;
+        if (is_linear(tape_.rule(slot))) return;
         const Cross cross = cross_of(slot);
         Index entry = 0;
         for (Index i = 0; i < n; ++i) {
@@ -534,7 +555,7 @@ private:
         if (Tape::has_right(instruction.operation)) {
             for (Index j = 0; j < n; ++j) bend[j] += partials.right * bends(instruction.right, j);
         }
-        if (rule_of(instruction.operation) == Rule::linear) return;
+        if (is_linear(tape_.rule(slot))) return;
         const Cross cross = cross_of(slot);
         const T first = cross.factor * along[cross.first], second = cross.factor * along[cross.second];
         for (Index j = 0; j < n; ++j) {
@@ -550,70 +571,118 @@ private:
 
 // --- series ----------------------------------------------------------------------------------------
 
-// Taylor coefficients of all slots along a curve, one order after the other.
+// How unknowns change along a curve that are no coordinates of it.
+enum class Change { evenly, exponentially };
+
+// Taylor coefficients of all slots along a curve, one order after the other. Only so many of the unknowns are
+// ``free``; of the others the ``change`` is known.
 template <class T>
 class SeriesSweep {
 public:
-    SeriesSweep(const Tape& tape, Index order)
+    SeriesSweep(const Tape& tape, Index order, Index free, Change change = Change::evenly)
         : tape_(tape),
+          free_(free),
+          change_(change),
+          rates_(tape.unknowns()),
           coefficients_(tape.slots(), order + 1),
-          partials_(tape.slots()),
           steps_(tape.slots()),
-          is_overflow_(tape.slots()) {}
+          is_zero_(tape.slots()) {
+        for (Index slot = 0; slot < tape.slots(); ++slot) find_degree(slot, order);
+    }
 
     const T& coefficient(Index equation, Index k) const { return coefficients_(tape_.output(equation), k); }
 
-    void start(Vector<const T> point) {
-        std::vector<T> values(tape_.slots());
-        tape_.evaluate_all<T>(point, values);
+    // How fast an unknown that is not free changes at first.
+    void set_rate(Index unknown, const T& rate) { rates_[unknown] = rate; }
+
+    // From the point at which a sweep was linearized, to be kept as it is until the last coefficient.
+    void start(const Sweep<T>& sweep) {
+        const Vector<const T> values = sweep.values();
+        partials_ = sweep.partials().data();
         for (Index slot = 0; slot < tape_.slots(); ++slot) {
             coefficients_(slot, 0) = values[slot];
-            is_overflow_[slot] = tape_.is_overflow(slot, values[slot]);
-            partials_[slot] = tape_.partials<T>(slot, values);
+            is_zero_[slot] = tape_.is_overflow(slot, values[slot]);
         }
     }
 
-    // Coefficients k > 0 of all slots where those of the unknowns are 0.
+    // Coefficients k > 0 of all slots where those of the free unknowns are 0.
     void advance(Index k) {
-        for (Index slot = 0; slot < tape_.slots(); ++slot) coefficients_(slot, k) = next(slot, k);
+        for (Index slot = 0; slot < tape_.slots(); ++slot) {
+            if (k <= degrees_[slot]) coefficients_(slot, k) = is_zero_[slot] ? T(0.0) : next(slot, k);
+        }
     }
 
-    // Coefficients k of all slots once those of the unknowns are known: they depend on them
+    // Coefficients k of all slots once those of the free ``unknowns`` are known: they depend on them
     // linearly, by the first derivatives.
     void correct(Index k, Vector<const T> unknowns) {
-        for (Index slot = 0; slot < tape_.slots(); ++slot) {
-            const Instruction& instruction = tape_[slot];
-            T step(0.0);
-            if (instruction.operation == Operation::unknown) step = unknowns[instruction.left];
-            if (Tape::has_left(instruction.operation)) step = partials_[slot].left * steps_[instruction.left];
-            if (Tape::has_right(instruction.operation)) step += partials_[slot].right * steps_[instruction.right];
-            steps_[slot] = step;
-            coefficients_(slot, k) += step;
+        for (Index slot : moving_) {
+            coefficients_(slot, k) += steps_[slot] = change(slot, unknowns);
         }
     }
 
 private:
+    // The number of the last coefficient of a slot that is not zero; and whether it depends on free unknowns.
+    void find_degree(Index slot, Index order) {
+        const Instruction& instruction = tape_[slot];
+        const Operation operation = instruction.operation;
+        const Rule rule = tape_.rule(slot);
+        Index degree = 0;
+        bool is_moving = false;
+        if (operation == Operation::unknown) {
+            is_moving = instruction.left < free_;
+            degree = is_moving || change_ == Change::exponentially ? order : 1;
+        }
+        if (Tape::has_left(operation)) {
+            is_moving = is_moving_[instruction.left];
+            degree = degrees_[instruction.left];
+        }
+        if (Tape::has_right(operation)) {
+            const Index other = degrees_[instruction.right];
+            is_moving = is_moving || is_moving_[instruction.right];
+            degree = rule == Rule::product ? degree + other : std::max(degree, other);
+        }
+        if (degree && !is_linear(rule) && rule != Rule::product && rule != Rule::leaf) degree = order;
+        degrees_.push_back(std::min(degree, order));
+        is_moving_.push_back(is_moving);
+        if (is_moving) moving_.push_back(slot);
+    }
+
+    T change(Index slot, Vector<const T> unknowns) const {
+        const Instruction& instruction = tape_[slot];
+        switch (tape_.rule(slot)) {
+            case Rule::leaf: return unknowns[instruction.left];
+            case Rule::sum: return steps_[instruction.left] + steps_[instruction.right];
+            case Rule::difference: return steps_[instruction.left] - steps_[instruction.right];
+            case Rule::shifted: return steps_[instruction.left];
+            case Rule::product:
+            case Rule::quotient:
+            case Rule::angle:
+                return partials_[slot].left * steps_[instruction.left] + partials_[slot].right * steps_[instruction.right];
+            default: return partials_[slot].left * steps_[instruction.left];
+        }
+    }
+
     T next(Index slot, Index k) const {
-        if (is_overflow_[slot]) return T(0.0);
         const Instruction& instruction = tape_[slot];
         const T* const left = row(instruction.left);
         const T* const right = row(instruction.right);
-        switch (rule_of(instruction.operation)) {
-            case Rule::leaf: return T(0.0);
-            case Rule::product:
-                return left == right ? series::square(left, k) : series::product(left, right, k);
+        switch (tape_.rule(slot)) {
+            case Rule::leaf:
+                if (is_moving_[slot]) return T(0.0);
+                return k == 1 ? rates_[instruction.left] : row(slot)[k - 1] / static_cast<double>(k);
+            case Rule::sum: return left[k] + right[k];
+            case Rule::difference: return left[k] - right[k];
+            case Rule::shifted: return left[k];
+            case Rule::scaled: return left[k] * partials_[slot].left;
+            case Rule::product: {
+                if (left == right) return series::square(left, k);
+                const Index first = std::max<Index>(0, k - degrees_[instruction.right]);
+                return series::product(left, right, k, first, std::min(k, degrees_[instruction.left]));
+            }
             case Rule::quotient: return series::quotient(left, right, row(slot), k);
             case Rule::rate: return series::from_rate(row(instruction.rule), left, k);
             case Rule::inverse_rate: return series::from_inverse_rate(row(instruction.rule), left, row(slot), k);
-            case Rule::angle: return series::angle(left, right, row(instruction.rule), row(slot), k);
-            case Rule::linear: break;
-        }
-        switch (instruction.operation) {
-            case Operation::add: return left[k] + right[k];
-            case Operation::subtract: return left[k] - right[k];
-            case Operation::scale: return left[k] * T(instruction.constant);
-            case Operation::over: return left[k] / T(instruction.constant);
-            default: return left[k];
+            default: return series::angle(left, right, row(instruction.rule), row(slot), k);
         }
     }
 
@@ -621,17 +690,23 @@ private:
     const T* row(Index slot) const { return coefficients_.view().data + slot * coefficients_.columns(); }
 
     const Tape& tape_;
+    Index free_;
+    Change change_;
+    std::vector<T> rates_;
     Matrix<T> coefficients_;
-    std::vector<Partials<T>> partials_;
+    const Partials<T>* partials_ = nullptr;
     std::vector<T> steps_;
-    std::vector<bool> is_overflow_;
+    std::vector<char> is_zero_, is_moving_;
+    std::vector<Index> degrees_, moving_;
 };
 
 // Taylor coefficients (order + 1, m) of F along u(s) with coefficients ``curve`` (order + 1, n).
 template <class T>
 void series_along(const Tape& tape, View<const T> curve, View<T> out) {
-    SeriesSweep<T> sweep(tape, curve.rows - 1);
-    sweep.start(curve.row(0));
+    Sweep<T> first(tape);
+    SeriesSweep<T> sweep(tape, curve.rows - 1, tape.unknowns());
+    first.linearize(curve.row(0));
+    sweep.start(first);
     for (Index k = 0; k < curve.rows; ++k) {
         if (k > 0) {
             sweep.advance(k);
@@ -702,9 +777,10 @@ public:
     void series(Vector<const double> point, Vector<const double> tangent, const Factored& factored,
                 View<double> coefficients) const {
         const Index order = coefficients.rows - 1, n = unknowns(), m = equations();
-        SeriesSweep<double> sweep(tape_, order);
+        SeriesSweep<double> sweep(tape_, order, n);
         std::vector<double> right(m + 1), step(n);
-        sweep.start(in_units(point));
+        sweep_.linearize(in_units(point));
+        sweep.start(sweep_);
         std::copy(point.begin(), point.end(), coefficients.row(0).begin());
         for (Index k = 1; k <= order; ++k) {
             sweep.advance(k);

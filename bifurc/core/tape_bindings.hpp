@@ -242,7 +242,7 @@ inline void bind_tape(nb::module_& module) {
              arg("anchor"), arg("within"), arg("periods"), arg("bounds"), arg("length"), arg("is_sparse"))
         .def("follow_paths", &tape_follow_paths, arg("starts"), arg("first"), arg("last"), arg("combinations"),
              arg("order"), arg("tolerance"), arg("most_steps"), arg("places"), arg("farthest"), arg("is_precise"),
-             arg("seconds"))
+             arg("ends_regular"), arg("seconds"))
         .def("project", &tape_project, arg("units"), arg("weights"), arg("starts"), arg("noise"), arg("iterations"),
              arg("is_sparse"))
         .def("project_to_sphere", &tape_project_to_sphere, arg("units"), arg("weights"), arg("starts"),

@@ -22,13 +22,16 @@ class Family:
     There are as many equations as unknowns x, or more, of which generic combinations
     are followed. ``is_projective``: whether x, or the first so many ``places`` of them
     where these are not 0, are homogeneous coordinates, the first of which is zero at
-    infinity. Raises `ValueError` where there are fewer.
+    infinity. ``has_regular_ends``: whether paths lead to generic members only, so that no
+    end has to be looked at from all sides. Raises `ValueError` where there are fewer
+    equations.
     """
 
     tape: Tape
     n: int
     is_projective: bool = False
     places: int = 0
+    has_regular_ends: bool = False
 
     def __post_init__(self) -> None:
         if self.tape.m < self.n:

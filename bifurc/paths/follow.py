@@ -169,7 +169,8 @@ def follow_paths(
     again: int = AGAIN,
 ) -> Paths:
     """The paths of solutions ``starts`` (k, n), all different, of the member with the
-    parameters ``first`` (q,) to that with ``last`` (q,).
+    parameters ``first`` (q,), or each of a member of its own (k, q), to that with
+    ``last`` (q,).
 
     Paths that come to one regular end, and those that are lost, are followed again in
     smaller steps and with residuals of twice the digits, so often (``again``), and past
@@ -178,14 +179,16 @@ def follow_paths(
     at infinity.
     """
     deadline = deadline or Deadline()
-    way = _Way(family, first, last, deadline, farthest)
+    shape = (len(starts), family.parameters)
+    both = np.broadcast_to(first, shape), np.broadcast_to(last, shape)
+    way = _Way(family, *both, deadline, farthest)
     paths = _followed(way, starts, tolerance, is_precise=False)
     for attempt in range(again):
         doubtful = np.flatnonzero(_are_doubtful(paths))
         if not len(doubtful) or deadline.passed:
             break
         smaller = tolerance * SMALLER ** (attempt + 1)
-        others = _followed(way, starts[doubtful], smaller, is_precise=True)
+        others = _followed(way.of(doubtful), starts[doubtful], smaller, is_precise=True)
         paths.replace(doubtful, others, np.arange(len(doubtful)))
         for place in DETOURS[2 * attempt : 2 * attempt + 2]:
             _lead_round(way, starts, paths, tolerance, place)
@@ -212,11 +215,12 @@ def _lead_round(
     lost = np.flatnonzero(paths.is_lost)
     if not len(lost) or way.deadline.passed:
         return
-    middle = way.last + place * (way.first - way.last)
-    there = way._replace(last=middle)
+    straight = way.of(lost)
+    middle = straight.last + place * (straight.first - straight.last)
+    there = straight._replace(last=middle)
     before = _followed(there, starts[lost], tolerance, is_precise=True)
     lost, places = lost[before.is_regular], before.points[before.is_regular]
-    back = way._replace(first=middle)
+    back = straight._replace(first=middle).of(np.flatnonzero(before.is_regular))
     after = _followed(back, places, tolerance, is_precise=True)
     for own, number in enumerate(lost.tolist()):
         ends = paths.points[paths.is_regular]
@@ -295,14 +299,19 @@ def _newton_steps(
 
 
 class _Way(NamedTuple):
-    """From where to where the parameters of a ``family`` move, until which ``deadline``
-    paths are begun, and from where on they are of no interest."""
+    """From where to where (k, q) the parameters of a ``family`` move for each of k paths,
+    until which ``deadline`` these are begun, and from where on they are of no
+    interest."""
 
     family: Family
     first: np.ndarray
     last: np.ndarray
     deadline: Deadline
     farthest: float
+
+    def of(self, numbers: np.ndarray) -> _Way:
+        """That of some of the paths, by their ``numbers`` (j,)."""
+        return self._replace(first=self.first[numbers], last=self.last[numbers])
 
 
 def _followed(
@@ -321,6 +330,7 @@ def _followed(
         family.coordinates,
         farthest,
         is_precise,
+        family.has_regular_ends,
         deadline.left,
     )
     jacobians = family.jacobians(points, last)

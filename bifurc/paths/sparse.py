@@ -3,13 +3,8 @@
 The parameters of the family are the coefficients. Each polynomial has a constant besides
 its own monomials. So the solutions of all members are one irreducible variety, which a
 constant on each fibre parametrises, and every isolated solution of a member is the end
-of a path (Li and Wang 1996; Sommese and Wampler 2005, chapter 8). All polynomials but
-one, the `pencil`, leave a curve, which is irreducible where so many of them depend on
-more directions of the exponents than they are (Khovanskii 2016). The pencil has all
-unknowns among its monomials, and while its constant moves no solution grows faster than
-that: the sum of the solutions is linear in that constant, and of no part of them (the
-trace test, as in `bifurc.paths.monodromy`). Where the curve would not be irreducible
-another polynomial has all unknowns as well.
+of a path (Li and Wang 1996; Sommese and Wampler 2005, chapter 8). Those of a generic
+member are as many as the volume of the mixed cells (`bifurc.paths.mixed_cells`).
 
 The first k polynomials leave nothing but what has the dimension n - k, if the next one
 is zero on no part of what the first k - 1 leave. Whether it is shows at the points that
@@ -20,15 +15,15 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from itertools import islice
 
 import numpy as np
 
 from bifurc.decisions import solves_all_equations
-from bifurc.equations.tape import TapeWriter
+from bifurc.equations.tape import Operation, TapeWriter
 from bifurc.limits import Deadline
 from bifurc.paths.family import Family, complex_normal, on_patch
 from bifurc.paths.follow import PathEnd, Paths, follow_paths, with_affine_ends
@@ -39,46 +34,26 @@ from bifurc.paths.homogeneous import (
     write_linear,
     write_monomial,
 )
-from bifurc.paths.monodromy import Fibre, GenericSolutions, solve_generic
+from bifurc.paths.mixed_cells import MixedCells
+from bifurc.paths.monodromy import Fibre
 
+TRIES = 3  # to follow all paths to generic solutions, each with other numbers
 FEW = 32  # paths that are followed faster than a generic member is solved
-
-
-class SolvedPolynomials(NamedTuple):
-    """The ``paths`` to all isolated solutions of polynomials, and by how much the test of
-    the generic ones from which they begin failed, ``trace``."""
-
-    paths: Paths
-    trace: float
 
 
 @dataclass(frozen=True)
 class SparseFamily:
     """n polynomials in n unknowns, each with the monomials of its support, the constant
-    first; the one with the number ``pencil`` has all unknowns. Parameters are all
-    coefficients, polynomial by polynomial."""
+    first. Parameters are all coefficients, polynomial by polynomial."""
 
     supports: tuple[tuple[Exponents, ...], ...]
-    pencil: int
 
     @staticmethod
     def of(polynomials: Sequence[Mapping[Exponents, complex]]) -> SparseFamily:
-        """The family with the monomials of ``polynomials``, and others that it needs."""
-        n = len(polynomials)
-        constant = {(0,) * n}
-        unknowns = {tuple(row) for row in np.eye(n, dtype=int).tolist()}
-        supports = [set(polynomial) | constant for polynomial in polynomials]
-        missing = [len(unknowns - support) for support in supports]
-        pencil = int(np.argmin(missing))
-        supports[pencil] |= unknowns
-        others = [k for k in range(n) if k != pencil]
-        while others:
-            reducible = _reducible_part([supports[k] for k in others])
-            if not len(reducible):
-                break
-            supports[others[reducible[0]]] |= unknowns
-        ordered = [(*constant, *sorted(support - constant)) for support in supports]
-        return SparseFamily(tuple(ordered), pencil)
+        """The family with the monomials of ``polynomials``, and constants."""
+        constant = (0,) * len(polynomials)
+        ordered = [(constant, *sorted(set(one) - {constant})) for one in polynomials]
+        return SparseFamily(tuple(ordered))
 
     @property
     def n(self) -> int:
@@ -86,11 +61,24 @@ class SparseFamily:
         return len(self.supports)
 
     @cached_property
-    def family(self) -> Family:
-        """The polynomials on a tape."""
-        writer = TapeWriter(self.n + self.coefficients)
-        unknowns = [writer.unknown(number) for number in range(self.n)]
-        return Family(writer.tape(self._written(writer, unknowns)), self.n)
+    def lowering(self) -> Family:
+        """The polynomials with each coefficient times exp(-h), h its height; the
+        parameters are all coefficients, and then all heights."""
+        writer = TapeWriter(self.n + 2 * self.coefficients)
+        unknowns, numbers, heights = (
+            [writer.unknown(number) for number in numbers]
+            for numbers in np.split(
+                np.arange(writer.n), [self.n, self.n + self.coefficients]
+            )
+        )
+        factors = [
+            writer.multiply(
+                number, writer.apply(Operation.EXP, writer.negative(height))
+            )
+            for number, height in zip(numbers, heights, strict=True)
+        ]
+        outputs = self._written(writer, unknowns, factors)
+        return Family(writer.tape(outputs), self.n, has_regular_ends=True)
 
     @cached_property
     def projective(self) -> Family:
@@ -99,29 +87,33 @@ class SparseFamily:
         parameters, is 1."""
         size = self.n + 1
         writer = TapeWriter(size + self.coefficients + size)
-        first, *unknowns = (writer.unknown(number) for number in range(size))
-        outputs = self._written(writer, unknowns, first)
-        of_plane = map(writer.unknown, range(size + self.coefficients, writer.n))
+        slots = map(writer.unknown, range(writer.n))
+        first, *unknowns = islice(slots, size)
+        numbers = list(islice(slots, self.coefficients))
+        outputs = self._written(writer, unknowns, numbers, first)
+        of_plane = list(slots)
         height = write_linear(writer, of_plane, [first, *unknowns])
         outputs.append(writer.subtract(height, writer.constant(1.0)))
         return Family(writer.tape(outputs), size, is_projective=True)
 
     def _written(
-        self, writer: TapeWriter, unknowns: Sequence[int], first: int | None = None
+        self,
+        writer: TapeWriter,
+        unknowns: Sequence[int],
+        coefficients: Sequence[int],
+        first: int | None = None,
     ) -> list[int]:
-        """The slots of the polynomials in slots ``unknowns`` (n), with the coefficients
-        after them; homogeneous with another one."""
+        """The slots of the polynomials in slots ``unknowns`` (n), with these slots of
+        ``coefficients``; homogeneous with another one."""
         slots = [*unknowns] if first is None else [*unknowns, first]
-        number = len(slots)
-        outputs = []
+        factors, outputs = iter(coefficients), []
         for support in self.supports:
             degree = max(map(sum, support))
             total = writer.constant(0.0)
             for exponents in support:
                 powers = (*exponents, degree - sum(exponents))[: len(slots)]
-                term = write_monomial(writer, writer.unknown(number), slots, powers)
+                term = write_monomial(writer, next(factors), slots, powers)
                 total = writer.add(total, term)
-                number += 1
             outputs.append(total)
         return outputs
 
@@ -129,13 +121,6 @@ class SparseFamily:
     def coefficients(self) -> int:
         """The number of coefficients."""
         return sum(map(len, self.supports))
-
-    @cached_property
-    def constants(self) -> np.ndarray:
-        """The numbers (n,) of the parameters that are constants."""
-        sizes = [len(support) for support in self.supports]
-        first: np.ndarray = np.cumsum([0, *sizes[:-1]])
-        return first
 
     def member(self, polynomials: Sequence[Mapping[Exponents, complex]]) -> np.ndarray:
         """The parameters (q,) of ``polynomials``."""
@@ -146,16 +131,21 @@ class SparseFamily:
 
     def generic_solutions(
         self, rng: np.random.Generator, deadline: Deadline, most: int
-    ) -> GenericSolutions:
-        """Those of a member with random coefficients; more than ``most`` are not
-        looked for."""
-        start = complex_normal(rng, self.n)
-        parameters = complex_normal(rng, self.family.parameters)
-        parameters[self.constants] -= self.family.residuals(start[None], parameters)[0]
-        moving = int(self.constants[self.pencil])
-        return solve_generic(
-            self.family, start, parameters, rng, deadline, most, moving
-        )
+    ) -> Fibre | None:
+        """Those of a member with random coefficients; None where there are more than
+        ``most``, or not all were found."""
+        for _ in range(TRIES):
+            cells = MixedCells.of(self.supports, rng, deadline, most)
+            if cells is None:
+                return None
+            numbers = _on_unit_circle(rng, self.coefficients)
+            starts, heights = cells.starts(numbers)
+            first = np.hstack([np.broadcast_to(numbers, heights.shape), heights])
+            last = np.r_[numbers, np.zeros(self.coefficients)]
+            paths = follow_paths(self.lowering, starts, first, last, deadline)
+            if np.all(paths.is_regular):
+                return Fibre(numbers, paths.points)
+        return None
 
     def solve(
         self,
@@ -163,16 +153,15 @@ class SparseFamily:
         rng: np.random.Generator,
         deadline: Deadline,
         most: int,
-    ) -> SolvedPolynomials | None:
-        """The isolated solutions of ``polynomials`` of the family; None where the trace
-        test failed, or there are more than ``most`` generic ones."""
+    ) -> Paths | None:
+        """The paths to all isolated solutions of ``polynomials`` of the family; None
+        where there are more than ``most`` generic ones, or not all were found."""
         generic = self.generic_solutions(rng, deadline, most)
-        if not generic.are_all or generic.trace is None or generic.count > most:
+        if generic is None:
             return None
         member = self.member(polynomials)
-        starts = self._with_zeros_of(generic.fibre, member, rng, deadline)
-        paths = self.follow(starts, member, rng, deadline)
-        return SolvedPolynomials(paths, generic.trace)
+        starts = self._with_zeros_of(generic, member, rng, deadline)
+        return self.follow(starts, member, rng, deadline)
 
     def _with_zeros_of(
         self,
@@ -182,15 +171,22 @@ class SparseFamily:
         deadline: Deadline,
     ) -> Fibre:
         """The solutions of a member with random coefficients, but zeros where those (q,)
-        of another one are zero; the ``generic`` ones where those are not all regular.
+        of another one are zero; the ``generic`` ones where there are as many, or those
+        are not all regular.
 
         Fewer paths lead from there, and those that still go to infinity do so because
         of what the coefficients are, and not which.
         """
-        chosen = complex_normal(rng, len(member))
-        parameters = np.where(member == 0.0, 0.0, chosen)
+        left = iter((member != 0.0).tolist())
+        present = [[one for one in row if next(left)] for row in self.supports]
+        count = len(generic.solutions)
+        cells = MixedCells.of(present, rng, deadline, count)
+        if cells is None or cells.volume == count:
+            return generic
+        parameters = np.where(member == 0.0, 0.0, _on_unit_circle(rng, len(member)))
         paths = self.follow(generic, parameters, rng, deadline)
-        if not np.all(paths.is_regular | (paths.ends == PathEnd.AT_INFINITY)):
+        is_at_end = paths.is_regular | (paths.ends == PathEnd.AT_INFINITY)
+        if not np.all(is_at_end) or paths.far():
             return generic
         return Fibre(parameters, paths.regular)
 
@@ -207,6 +203,12 @@ class SparseFamily:
         first, last = (np.r_[one, plane] for one in (starts.parameters, member))
         paths = follow_paths(self.projective, places, first, last, deadline)
         return with_affine_ends(self.projective, paths)
+
+
+def _on_unit_circle(rng: np.random.Generator, count: int) -> np.ndarray:
+    """Complex numbers of size 1."""
+    numbers: np.ndarray = np.exp(2j * np.pi * rng.random(count))
+    return numbers
 
 
 def have_curves(
@@ -251,21 +253,7 @@ def paths_to_isolated(
         paths = paths_from_powers(polynomials, rng, deadline)
         if not paths.lost:
             return paths
-    solved = SparseFamily.of(polynomials).solve(polynomials, rng, deadline, most)
-    return None if solved is None else solved.paths
-
-
-def _reducible_part(supports: Sequence[Collection[Exponents]]) -> np.ndarray:
-    """Polynomials (k,), by number, that keep a curve from being irreducible of which n - 1
-    generic ones with these ``supports`` are the equations; none where it is."""
-    rng = np.random.default_rng(0)
-    exponents = [np.array(list(support), dtype=float) for support in supports]
-    rows = np.array([rng.normal(size=len(one)) @ one for one in exponents])
-    left, values, right = np.linalg.svd(rows)
-    if np.isclose(values[-1], 0.0):
-        return np.flatnonzero(~np.isclose(left[:, -1], 0.0))
-    heights = [np.abs(one @ right[-1]).max() for one in exponents]
-    return np.flatnonzero(np.isclose(heights, 0.0))
+    return SparseFamily.of(polynomials).solve(polynomials, rng, deadline, most)
 
 
 def paths_from_powers(

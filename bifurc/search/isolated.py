@@ -33,9 +33,8 @@ class IsolatedSolutions:
 
     ``points`` (k, n) are solutions in the units of the user, all real ones of full
     rank, and ``singular`` (j, n) ends of paths, next to real ones or not. ``real``
-    and ``complex`` count those of full rank, angles up to whole turns, ``trace`` is the
-    test of the generic ones. ``has_curves``: whether complex ones are not isolated;
-    None where that is not known.
+    and ``complex`` count those of full rank, angles up to whole turns. ``has_curves``:
+    whether complex ones are not isolated; None where that is not known.
     """
 
     points: np.ndarray
@@ -43,7 +42,6 @@ class IsolatedSolutions:
     real: int
     complex: int
     paths: Paths
-    trace: float
     has_curves: bool | None
 
     def claim(self, inside: int, are_on_curves: AreOnCurves | None = None) -> Claim:
@@ -56,7 +54,6 @@ class IsolatedSolutions:
             "complex": self.complex,
             "inside": inside,
             "paths": len(self.paths.ends),
-            "trace": self.trace,
         }
         if lost:
             reasons = ", ".join(self.paths.reasons())
@@ -85,14 +82,14 @@ def isolated_solutions(
     seed: int = SEED,
 ) -> IsolatedSolutions | None:
     """Those of as many polynomials as coordinates, with angles at all whole turns within
-    ``bounds`` (n, 2); None where the trace test failed, or where there are more than
-    ``most`` complex ones. The generic system is that of a ``seed``."""
+    ``bounds`` (n, 2); None where a generic system has more than ``most``, or not all of
+    these were found. The generic system is that of a ``seed``."""
     family = SparseFamily.of(system.polynomials)
     rng = np.random.default_rng(seed)
-    solved = family.solve(system.polynomials, rng, deadline, most)
-    if solved is None or deadline.passed:
+    paths = family.solve(system.polynomials, rng, deadline, most)
+    if paths is None or deadline.passed:
         return None
-    paths, has_curves = solved.paths, None
+    has_curves = None
     if not paths.lost:
         has_curves = have_curves(system.polynomials, rng, deadline, most)
     regular = paths.regular
@@ -106,7 +103,6 @@ def isolated_solutions(
         real=len(real),
         complex=count,
         paths=paths,
-        trace=solved.trace,
         has_curves=has_curves,
     )
 
