@@ -127,7 +127,7 @@ public:
 
     // Adds a chart with a polygon, and cuts that and those of the charts on its sheet that overlap it.
     void add(Vector<const double> center, View<const double> basis, const FittingDisk& disk, ConvexPolygon polygon) {
-        const auto others = on_sheet(center, basis, disk.is_clear, front_.overlaps(center, basis, disk.radius));
+        const auto others = on_sheet(center, basis, disk, front_.overlaps(center, basis, disk.radius));
         front_.add(center, basis, disk.radius, disk.is_clear, std::move(polygon), others);
         heights_.push_back(disk.height);
     }
@@ -188,7 +188,7 @@ private:
             const double distance = std::hypot(other.position[0], other.position[1]);
             if (distance < cover::too_close * front_.radius(other.number)) close.push_back(other);
         }
-        return !on_sheet(center, basis, true, std::move(close)).empty();
+        return !on_sheet(center, basis, {0.0, 0.0, true}, std::move(close)).empty();
     }
 
     bool is_beside_bounds(Vector<const double> center, double radius) const {
@@ -198,20 +198,27 @@ private:
         return false;
     }
 
-    // Those of the charts whose centres are on the sheet of a solution: above its plane the sheet leads to them.
-    std::vector<Overlap> on_sheet(Vector<const double> center, View<const double> basis, bool is_clear,
+    // Those of the charts whose centres are on the sheet of a solution, with a disk of a radius: above the plane of
+    // the larger disk the sheet leads to the other centre.
+    std::vector<Overlap> on_sheet(Vector<const double> center, View<const double> basis, const FittingDisk& disk,
                                   std::vector<Overlap> others) {
         std::vector<Index> open;
         for (std::size_t i = 0; i < others.size(); ++i) {
-            if (!(is_clear && front_.is_clear(others[i].number))) open.push_back(static_cast<Index>(i));
+            if (!(disk.is_clear && front_.is_clear(others[i].number))) open.push_back(static_cast<Index>(i));
         }
         if (open.empty()) return others;
         const auto count = static_cast<Index>(open.size());
-        Matrix<double> centers(count, n_), planes(count * n_, 2), positions(count, 2), ends(count, n_);
+        Matrix<double> centers(count, n_), goals(count, n_), planes(count * n_, 2), positions(count, 2), ends(count, n_);
         for (Index i = 0; i < count; ++i) {
-            std::copy(center.begin(), center.end(), centers.row(i).begin());
-            std::copy_n(basis.data, 2 * n_, planes.row(i * n_).data());
-            const auto& position = others[open[i]].position;
+            const Index other = others[open[i]].number;
+            const bool is_larger = front_.radius(other) > disk.radius;
+            const Vector<const double> from = is_larger ? front_.center(other) : center;
+            const Vector<const double> to = is_larger ? center : front_.center(other);
+            const View<const double> plane = is_larger ? front_.basis(other) : basis;
+            const auto position = front_.gap(to, from, plane).position;
+            std::copy(from.begin(), from.end(), centers.row(i).begin());
+            std::copy(to.begin(), to.end(), goals.row(i).begin());
+            std::copy_n(plane.data, 2 * n_, planes.row(i * n_).data());
             std::copy(position.begin(), position.end(), positions.row(i).begin());
         }
         std::vector<double> reached(count);
@@ -224,7 +231,7 @@ private:
             }
             // off the surface redundant equations contradict one another, and their least squares move an end a
             // little along it
-            const auto gap = front_.gap(front_.center(others[open[i]].number), ends.row(i), basis);
+            const auto gap = front_.gap(goals.row(i), ends.row(i), plane_of(planes, i, n_));
             const double moved = std::hypot(gap.position[0], gap.position[1]) + cover::same * scale_;
             is_elsewhere[open[i]] = !(gap.height < moved);
         }
