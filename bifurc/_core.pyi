@@ -292,9 +292,6 @@ def follow_rays(
     positions: np.ndarray,
     shares: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
-def tangent_plane(
-    equations: object, center: np.ndarray, near: np.ndarray, negligible: float
-) -> tuple[np.ndarray, np.ndarray, float]: ...
 def clip(
     vertices: np.ndarray,
     labels: np.ndarray,

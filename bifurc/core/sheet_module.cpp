@@ -217,19 +217,6 @@ nb::tuple follow_rays(const nb::capsule& equations, double scale, const Table& c
     return nb::make_tuple(ends.release(), reached.release(), passed.release(), are_there.release());
 }
 
-// (basis (n, 2), normal (n), cosine): `TangentPlane`.
-nb::tuple tangent_plane(const nb::capsule& equations, const Doubles& center, const Table& near, double negligible) {
-    const Equations& own = equations_in(equations);
-    check_unknowns("center", center.shape(0), own.unknowns());
-    check_unknowns("near", near.shape(0), own.unknowns());
-    check_unknowns("near", near.shape(1), 2);
-    const TangentPlane plane = TangentPlanes(own).at(numpy::view(center), numpy::view(near), negligible);
-    numpy::Array<double> basis({own.unknowns(), 2}), normal({own.unknowns()});
-    basis.fill({plane.basis.view().data, static_cast<std::size_t>(2 * own.unknowns())});
-    normal.fill(plane.normal);
-    return nb::make_tuple(basis.release(), normal.release(), plane.cosine);
-}
-
 // --- the front of a covering ---------------------------------------------------------------------------------
 
 using Labels = numpy::VectorIn<std::int64_t>;
@@ -381,7 +368,6 @@ void bind_sheets(nb::module_& module) {
     module.def("slopes_above", &slopes_above, arg("equations"), arg("points"), arg("planes"));
     module.def("follow_rays", &follow_rays, arg("equations"), arg("scale"), arg("centers"), arg("planes"),
                arg("positions"), arg("shares"));
-    module.def("tangent_plane", &tangent_plane, arg("equations"), arg("center"), arg("near"), arg("negligible"));
     module.def("clip", &clip, arg("vertices"), arg("labels"), arg("normal"), arg("offset"), arg("label"));
     module.def("octagon", &octagon, arg("radius"));
     nb::enum_<Placement>(module, "Placement")

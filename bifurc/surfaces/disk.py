@@ -7,11 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc import _core
-from bifurc.decisions import is_null
 from bifurc.numerics.binary_forms import unit_vectors
-from bifurc.numerics.corrector import compiled_equations
-from bifurc.problem import Problem
 
 # Largest height of the surface above a disk, over its radius.
 BEND = 0.16
@@ -24,7 +20,9 @@ RIM = unit_vectors(np.pi / 4 * np.arange(8))
 class TangentPlane(NamedTuple):
     """The plane ``basis`` (n, 2) at a solution ``center`` (n,), and the unit vector
     ``normal`` (n,) across the surface along which F' is the weakest: another sheet may
-    be near there. It is zero where no equation is left."""
+    be near there. It is zero where no equation is left. Where the null space is larger, at
+    singular points, the plane is the part of it that is turned as little as possible
+    against that of the chart from which it was reached."""
 
     center: np.ndarray
     basis: np.ndarray
@@ -45,21 +43,3 @@ class Disk(NamedTuple):
     radius: float
     is_clear: bool
     height: float = 0.0
-
-
-def tangent_plane_at(
-    problem: Problem, center: np.ndarray, near: np.ndarray
-) -> tuple[TangentPlane, float]:
-    """The tangent plane of a surface at a solution ``center`` (n,), turned as little as
-    possible against the basis ``near`` (n, 2), and the smallest cosine between the two.
-
-    Where the null space is larger, at singular points, the part of it that is nearest to
-    ``near`` is taken.
-    """
-    basis, normal, cosine = _core.tangent_plane(
-        compiled_equations(problem),
-        center,
-        np.ascontiguousarray(near),
-        negligible=is_null.threshold,
-    )
-    return TangentPlane(center, basis, normal), cosine

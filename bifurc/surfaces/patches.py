@@ -150,8 +150,8 @@ class Patches:
         self.radii = radii
         values, is_there = self._values(problem, charts, numbers)
         self.heights: np.ndarray = self.stencil.fit @ values
-        beside = (self.stencil.beside @ values).reshape(len(numbers), -1)
-        self.misfits = np.linalg.norm(beside, axis=1) / np.sqrt(values.shape[1])
+        beside = self.stencil.beside @ values
+        self.misfits = np.linalg.norm(beside, axis=(1, 2)) / np.sqrt(values.shape[1])
         for k in np.flatnonzero(~is_there.all(axis=1)).tolist():
             self._fit_some(k, values[k], np.tile(is_there[k], 3))
 
@@ -181,8 +181,9 @@ class Patches:
         slopes -= self.planes[each]
         heights /= self.radii[each, None]
         columns = np.stack([heights, slopes[:, :, 0], slopes[:, :, 1]])
-        values = columns.reshape(3, len(numbers), -1, problem.n)
-        return np.concatenate(values, axis=1), is_there.reshape(len(numbers), -1)
+        shape = len(numbers), len(rays) * len(shares)
+        values = np.concatenate(columns.reshape(3, *shape, problem.n), axis=1)
+        return values, is_there.reshape(shape)
 
     def lifted(self, rows: np.ndarray, positions: np.ndarray) -> np.ndarray:
         """Points (k, s, n) of the graphs in these ``rows`` (k,) above positions (k, s,
