@@ -1,6 +1,7 @@
 """Compiled parts of bifurc: `bifurc/core`."""
 
 from collections.abc import Callable
+from enum import Enum
 
 import numpy as np
 
@@ -299,9 +300,6 @@ def follow_rays(
     positions: np.ndarray,
     shares: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
-def tangent_plane(
-    equations: object, center: np.ndarray, near: np.ndarray, negligible: float
-) -> tuple[np.ndarray, np.ndarray, float]: ...
 def clip(
     vertices: np.ndarray,
     labels: np.ndarray,
@@ -309,50 +307,77 @@ def clip(
     offset: float,
     label: int,
 ) -> tuple[np.ndarray, np.ndarray]: ...
+def octagon(radius: float) -> tuple[np.ndarray, np.ndarray]: ...
 
-class Front:
+class Placement(Enum):
+    """What becomes of a place at which a chart is wanted."""
+
+    FITS = ...
+    COVERED = ...
+    UNFIT = ...
+    BESIDE_BOUNDS = ...
+    TIGHT = ...
+
+class Growth(Enum):
+    """Why no more charts were made."""
+
+    COMPLETE = ...
+    OUT_OF_TIME = ...
+    UNDECIDED = ...
+    CHART_LIMIT = ...
+    DOUBT = ...
+
+# placement, center, basis, normal, largest, radius, is_clear, height
+_Candidate = tuple[
+    Placement, np.ndarray, np.ndarray, np.ndarray, float, float, bool, float
+]
+
+class Cover:
     """The charts of a surface that is being covered: `bifurc.surfaces.covering`."""
 
     def __init__(
         self,
+        equations: object,
+        scale: float,
         periods: np.ndarray,
-        height: float,
+        bounds: np.ndarray,
         agree: float,
-        on_disk: float,
-        towards: float,
+        largest: float,
+        smallest: float,
+        bend: float,
+        flat: float,
+        negligible: float,
     ) -> None: ...
     def __len__(self) -> int: ...
-    def overlaps(
-        self, center: np.ndarray, basis: np.ndarray, radius: float
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
+    @property
+    def undecided(self) -> int: ...
+    def grow(
+        self, charts: int, undecided: int, seconds: float
+    ) -> tuple[Growth, tuple[_Candidate, int, np.ndarray] | None]: ...
+    def candidate(
+        self, center: np.ndarray, near: np.ndarray, radius: float
+    ) -> _Candidate: ...
+    def disk(
+        self,
+        center: np.ndarray,
+        basis: np.ndarray,
+        normal: np.ndarray,
+        largest: float,
+        smallest: float,
+    ) -> tuple[float, bool, float] | None: ...
     def add(
         self,
         center: np.ndarray,
         basis: np.ndarray,
         radius: float,
         is_clear: bool,
+        height: float,
         vertices: np.ndarray,
         labels: np.ndarray,
-        numbers: np.ndarray,
-        positions: np.ndarray,
-        heights: np.ndarray,
     ) -> None: ...
-    def next_open(self) -> tuple[int, np.ndarray] | None: ...
-    def add_dead_end(self, chart: int, direction: np.ndarray) -> None: ...
+    def refuse(self, chart: int, direction: np.ndarray, is_unfit: bool) -> None: ...
+    def holes(self) -> np.ndarray: ...
     def charts(
         self, first: int, count: int
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
     def polygon(self, chart: int) -> tuple[np.ndarray, np.ndarray]: ...
-
-def fitting_disk(
-    equations: object,
-    scale: float,
-    center: np.ndarray,
-    basis: np.ndarray,
-    normal: np.ndarray,
-    largest: float,
-    smallest: float,
-    bend: float,
-    agree: float,
-    negligible: float,
-) -> tuple[float, bool] | None: ...

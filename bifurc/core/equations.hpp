@@ -77,12 +77,12 @@ public:
 
     void fill(View<const double> points, bool has_jacobians, Values& values) const override {
         values.reserve(points.rows, system_.equations(), has_jacobians);
-        for (Index k = 0; k < points.rows; ++k) {
-            if (has_jacobians) system_.linearize(points.row(k), values.residual(k), values.jacobian(k));
-            else system_.residual(points.row(k), values.residual(k));
-            divide(values.residual(k));
-            if (has_jacobians) divide({values.jacobian(k).data, static_cast<std::size_t>(system_.equations() * system_.unknowns())});
-        }
+        const Index count = points.rows, m = system_.equations();
+        const View<double> residuals{values.residual(0).data(), count, m};
+        const View<double> jacobians{values.jacobian(0).data, has_jacobians ? count * m : 0, unknowns()};
+        linearize_all<S>(system_, points, residuals, jacobians);
+        divide({residuals.data, static_cast<std::size_t>(count * m)});
+        divide({jacobians.data, static_cast<std::size_t>(jacobians.rows * unknowns())});
     }
 
     void bend(Vector<const double> point, View<const double> directions, View<double> out) const override {

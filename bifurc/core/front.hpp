@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -17,6 +19,20 @@ namespace bifurc {
 struct ConvexPolygon {
     std::vector<std::array<double, 2>> vertices;
     std::vector<Index> labels;
+
+    // The octagon around a circle, which nothing has cut yet.
+    static ConvexPolygon octagon(double radius) {
+        constexpr double eighth = std::numbers::pi / 4.0;
+        const double size = radius / std::cos(eighth / 2.0);
+        ConvexPolygon out;
+        for (int i = 0; i < 8; ++i) {
+            out.vertices.push_back({size * std::cos(eighth * (i + 0.5)), size * std::sin(eighth * (i + 0.5))});
+            out.labels.push_back(outline);
+        }
+        return out;
+    }
+
+    static constexpr Index outline = -1;  // label of an edge that nothing has cut yet
 
     // Cuts off what is not normal . y <= offset; the edge along the cut gets ``label``.
     void clip(const std::array<double, 2>& normal, double offset, Index label) {
@@ -78,6 +94,11 @@ struct FrontLimits {
 
 class Front {
 public:
+    struct Place {
+        std::array<double, 2> position;
+        double height;
+    };
+
     Front(Vector<const double> periods, const FrontLimits& limits)
         : n_(static_cast<Index>(periods.size())), periods_(periods.begin(), periods.end()), limits_(limits), offset_(n_) {}
 
@@ -111,8 +132,7 @@ public:
         const Index number = count();
         for (const Overlap& other : overlaps) {
             cut(polygon, radius, other.position, other.height, radii_[other.number], other.number);
-            squared_distance(center, this->center(other.number), std::numeric_limits<double>::infinity());
-            const auto [position, height] = place(this->basis(other.number));
+            const auto [position, height] = gap(center, this->center(other.number), this->basis(other.number));
             cut(polygons_[other.number], radii_[other.number], position, height, radius, number);
             open_.push_back(other.number);
         }
@@ -136,15 +156,25 @@ public:
         return {};
     }
 
+    // Whether a polygon has a vertex in a direction, outside the disk by more than a share of the radius.
+    bool is_open_towards(Index chart, const std::array<double, 2>& direction, double share) const {
+        const auto& vertices = polygons_[chart].vertices;
+        return std::any_of(vertices.begin(), vertices.end(), [&](const std::array<double, 2>& vertex) {
+            const double size = std::hypot(vertex[0], vertex[1]);
+            return is_towards(vertex, direction, size) && size > (1.0 + share) * radii_[chart];
+        });
+    }
+
+    // Where a point lies in a plane about another one, and how high above it.
+    Place gap(Vector<const double> point, Vector<const double> from, View<const double> basis) {
+        squared_distance(point, from, std::numeric_limits<double>::infinity());
+        return place(basis);
+    }
+
     // No other chart can be made from this one in a direction.
     void add_dead_end(Index chart, const std::array<double, 2>& direction) { dead_ends_[chart].push_back(direction); }
 
 private:
-    struct Place {
-        std::array<double, 2> position;
-        double height;
-    };
-
     // |a - b|^2 with periodic unknowns to within half a period, and the difference; no more of it than up to
     // where it is seen to be more than ``most``.
     double squared_distance(Vector<const double> a, Vector<const double> b, double most) {
@@ -213,8 +243,12 @@ private:
     bool is_dead_end(Index chart, const std::array<double, 2>& vertex, double size) const {
         const auto& directions = dead_ends_[chart];
         return std::any_of(directions.begin(), directions.end(), [&](const std::array<double, 2>& direction) {
-            return vertex[0] * direction[0] + vertex[1] * direction[1] >= limits_.towards * size;
+            return is_towards(vertex, direction, size);
         });
+    }
+
+    bool is_towards(const std::array<double, 2>& vertex, const std::array<double, 2>& direction, double size) const {
+        return vertex[0] * direction[0] + vertex[1] * direction[1] >= limits_.towards * size;
     }
 
     Index n_;

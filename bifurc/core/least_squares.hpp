@@ -157,16 +157,15 @@ inline void solve_by_rank(View<double> matrix, Vector<double> right, Vector<doub
     std::vector<Index> order(columns);
     std::iota(order.begin(), order.end(), Index{0});
     std::fill(solution.begin(), solution.end(), 0.0);
-    std::vector<double> sums(columns);  // one a column, row by row: these lie in one piece
+    std::vector<double> sums(columns), squares(columns);  // one a column, row by row: these lie in one piece
     Index rank = 0;
     double first = 0.0;
+    for (Index i = 0; i < rows; ++i) {
+        for (Index j = 0; j < columns; ++j) squares[j] += matrix(i, j) * matrix(i, j);
+    }
     for (Index k = 0; k < std::min(rows, columns); ++k) {
-        std::fill(sums.begin() + k, sums.end(), 0.0);
-        for (Index i = k; i < rows; ++i) {
-            for (Index j = k; j < columns; ++j) sums[j] += matrix(i, j) * matrix(i, j);
-        }
-        const Index best = std::max_element(sums.begin() + k, sums.end()) - sums.begin();
-        const double norm = std::sqrt(sums[best]);
+        const Index best = std::max_element(squares.begin() + k, squares.end()) - squares.begin();
+        const double norm = std::sqrt(squares[best]);
         first = std::max(first, norm);
         if (norm <= negligible * first) break;
         std::swap(order[k], order[best]);
@@ -184,10 +183,14 @@ inline void solve_by_rank(View<double> matrix, Vector<double> right, Vector<doub
         for (Index j = k + 1; j < columns; ++j) {
             sums[j] *= scale;
             matrix(k, j) -= sums[j];
+            squares[j] = 0.0;
         }
         for (Index i = k + 1; i < rows; ++i) {
             const double entry = matrix(i, k);
-            for (Index j = k + 1; j < columns; ++j) matrix(i, j) -= sums[j] * entry;
+            for (Index j = k + 1; j < columns; ++j) {
+                matrix(i, j) -= sums[j] * entry;
+                squares[j] += matrix(i, j) * matrix(i, j);
+            }
         }
         double dot = right[k];
         for (Index i = k + 1; i < rows; ++i) dot += matrix(i, k) * right[i];

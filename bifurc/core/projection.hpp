@@ -1,7 +1,9 @@
 // Many starts at once, onto the solutions of a system.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "bifurc/core/system.hpp"
@@ -14,6 +16,7 @@ constexpr double least_damping = 1e-14;
 constexpr double smallest_factor = 1e-8;
 constexpr int most_failures = 12;
 constexpr double nothing_left = 1e-14;  // a step on a sphere after which no other is made
+constexpr Index together = 32;          // starts on a sphere whose derivatives are taken at once
 constexpr double settled = 1e-6;        // over the radius: a step so short that does not shrink is rounding
 }  // namespace projection
 
@@ -66,33 +69,46 @@ void project(const S& system, View<double> points, Vector<double> gaps, double n
 template <DenseSystem S>
 void project_to_sphere(const S& system, View<double> points, Vector<const double> center, double radius,
                        int iterations, Vector<double> gaps, Vector<double> last_steps) {
-    const Index n = system.unknowns(), m = system.equations();
-    std::vector<double> residual(m), right(m + 1), step(n);
-    Matrix<double> matrix(m + 1, n);
-    for (Index start = 0; start < points.rows; ++start) {
-        const Vector<double> point = points.row(start);
-        double size = 0.0;
-        for (int iteration = 0; iteration < iterations; ++iteration) {
-            const double before = size;
-            system.linearize(point, residual, matrix.view().first_rows(m));
-            double square = 0.0;
-            for (Index j = 0; j < n; ++j) {
-                matrix(m, j) = (point[j] - center[j]) / radius;
-                square += matrix(m, j) * matrix(m, j);
+    const Index n = system.unknowns(), m = system.equations(), together = projection::together;
+    std::vector<double> right(m + 1), step(n);
+    std::vector<Index> moving;
+    Matrix<double> at(together, n), residuals(together, m), jacobians(together * m, n), matrix(m + 1, n);
+    std::fill(last_steps.begin(), last_steps.end(), 0.0);
+    for (Index begin = 0; begin < points.rows; begin += together) {
+        moving.resize(std::min(together, points.rows - begin));
+        std::iota(moving.begin(), moving.end(), begin);
+        for (int iteration = 0; iteration < iterations && !moving.empty(); ++iteration) {
+            const auto count = static_cast<Index>(moving.size());
+            for (Index i = 0; i < count; ++i) std::copy_n(points.row(moving[i]).data(), n, at.row(i).data());
+            linearize_all<S>(system, at.view().first_rows(count), residuals.view().first_rows(count),
+                             jacobians.view().first_rows(count * m));
+            std::size_t left = 0;
+            for (Index i = 0; i < count; ++i) {
+                const Index start = moving[i];
+                const Vector<double> point = points.row(start);
+                const double before = last_steps[start];
+                std::copy_n(jacobians.row(i * m).data(), m * n, matrix.view().data);
+                double square = 0.0;
+                for (Index j = 0; j < n; ++j) {
+                    matrix(m, j) = (point[j] - center[j]) / radius;
+                    square += matrix(m, j) * matrix(m, j);
+                }
+                for (Index row = 0; row < m; ++row) right[row] = -residuals(i, row);
+                right[m] = 0.5 * radius * (1.0 - square);
+                solve_by_rank(matrix, right, step);
+                const double size = length(step);
+                const double cut = std::min(1.0, radius / (3.0 * size + 1e-300));
+                for (Index j = 0; j < n; ++j) point[j] += cut * step[j];
+                last_steps[start] = size;
+                const bool is_rounding = iteration > 0 && size >= before && size < projection::settled * radius;
+                if (!(size < projection::nothing_left || is_rounding)) moving[left++] = start;
             }
-            for (Index row = 0; row < m; ++row) right[row] = -residual[row];
-            right[m] = 0.5 * radius * (1.0 - square);
-            solve_by_rank(matrix, right, step);
-            size = length(step);
-            const double cut = std::min(1.0, radius / (3.0 * size + 1e-300));
-            for (Index j = 0; j < n; ++j) point[j] += cut * step[j];
-            const bool is_rounding = iteration > 0 && size >= before && size < projection::settled * radius;
-            if (size < projection::nothing_left || is_rounding) break;
+            moving.resize(left);
         }
-        system.residual(point, residual);
-        gaps[start] = length(residual);
-        last_steps[start] = size;
     }
+    Matrix<double> left(points.rows, m);
+    linearize_all<S>(system, points, left, {nullptr, 0, n});
+    for (Index start = 0; start < points.rows; ++start) gaps[start] = length(left.row(start));
 }
 
 }  // namespace bifurc

@@ -27,6 +27,7 @@ constexpr double steep = 0.3;    // smallest cosine between a ray and the sheet 
 constexpr double shortest = 5e-4;  // step along a ray, over its length
 constexpr int most_steps = 60;
 constexpr double tiny = 1e-300;
+constexpr double rounding = 1e-12;  // of a share of a ray
 constexpr double any_rank = 1e-15;  // entry of a factor, over the largest, that is rounding
 constexpr double full_rank = 1e-6;  // entry on the diagonal of a factor, over the largest, that is not
 }  // namespace sheet
@@ -303,6 +304,7 @@ private:
         before_.resize(count, n_);
         straight_.resize(count * n_);
         steps_.assign(count, 1.0);
+        std::fill(out_.are_there.begin(), out_.are_there.end(), false);
         for (Index ray = 0; ray < count; ++ray) {
             at_.t[ray] = 0.0;
             before_.t[ray] = -1.0;
@@ -430,26 +432,56 @@ private:
         const double begin = at_.t[ray];
         for (Index k = 0; k < s; ++k) {
             const double share = bundle_.shares[k];
-            if (begin < share && share <= end_.t[i]) on_cubic(at_, ray, end_, i, share, out_.passed.row(ray * s + k));
+            if (!(begin < share && share <= end_.t[i])) continue;
+            const Vector<double> point = out_.passed.row(ray * s + k);
+            if (const double* known = known_at((share - begin) / (end_.t[i] - begin), i)) {
+                std::copy_n(known, n_, point.data());
+                out_.are_there[ray * s + k] = true;
+            } else {
+                on_cubic(at_, ray, end_, i, share, point);
+            }
         }
         before_.put(ray, at_, ray);
         at_.put(ray, end_, i);
     }
 
-    // Corrects the places that were passed.
+    // The solution (n) that is known at a share of the arc to end number i; none where none is.
+    const double* known_at(double share, Index i) const {
+        if (std::abs(share - 1.0) < sheet::rounding) return end_.points.row(i).data();
+        const auto arc = std::find(some_.begin(), some_.end(), i) - some_.begin();
+        for (std::size_t k = 0; k < sheet::inner.size(); ++k) {
+            if (std::abs(share - sheet::inner[k]) < sheet::rounding) {
+                return corrected_.data() + (arc * sheet::inner.size() + k) * n_;
+            }
+        }
+        return nullptr;
+    }
+
+    // Corrects the places that were passed and are not known.
     void finish() {
         const auto s = static_cast<Index>(bundle_.shares.size());
         for (Index ray = 0; ray < bundle_.centers.rows; ++ray) {
             out_.reached[ray] = at_.t[ray];
             std::copy(at_.points.row(ray).begin(), at_.points.row(ray).end(), out_.ends.row(ray).begin());
         }
-        if (s == 0) return;
-        corrector_.correct(out_.passed, [&](Index i) { return plane(i / s); }, corrections_);
+        some_.clear();
         for (Index i = 0; i < out_.passed.rows; ++i) {
-            out_.are_there[i] = is_solved(corrections_[i]) && corrections_[i].contraction() < sheet::contraction &&
-                                at_.t[i / s] >= bundle_.shares[i % s];
+            if (!out_.are_there[i]) some_.push_back(i);
+        }
+        const auto count = static_cast<Index>(some_.size());
+        corrected_.resize(count * n_);
+        const View<double> points{corrected_.data(), count, n_};
+        for (Index i = 0; i < count; ++i) copy_row(out_.passed.row(some_[i]), points.row(i));
+        corrector_.correct(points, [&](Index i) { return plane(some_[i] / s); }, corrections_);
+        for (Index i = 0; i < count; ++i) {
+            const Index k = some_[i];
+            copy_row(points.row(i), out_.passed.row(k));
+            out_.are_there[k] = is_solved(corrections_[i]) && corrections_[i].contraction() < sheet::contraction &&
+                                at_.t[k / s] >= bundle_.shares[k % s];
         }
     }
+
+    static void copy_row(Vector<const double> from, Vector<double> to) { std::copy(from.begin(), from.end(), to.begin()); }
 
     const Equations& equations_;
     Index n_;
@@ -471,9 +503,9 @@ struct DiskLimits {
     double largest, smallest, bend, agree, negligible;
 };
 
-// The radius of a disk, and whether other sheets are far from it.
+// The radius of a disk, how high the surface is above it, over the radius, and whether other sheets are far from it.
 struct FittingDisk {
-    double radius;
+    double radius, height;
     bool is_clear;
 };
 
@@ -486,7 +518,7 @@ constexpr Index rim = 8;  // places on the rim of a disk at which the surface is
 constexpr double aside = 0.2, contraction = 0.15, back = 0.3;
 // Change of F' across the plane up to the rim, over F', below which no sheet crosses in the disk, and entries,
 // over the largest, that are taken for zero there.
-constexpr double steady = 0.5, negligible = 1e-12;
+constexpr double steady = 0.7, negligible = 1e-12;
 }  // namespace disk
 
 // Disks about solutions. Not for two threads at once.
@@ -500,7 +532,9 @@ public:
           slopes_(equations),
           values_(n_),
           flat_(disk::rim + 2, n_),
-          points_(disk::rim + 2, n_) {
+          points_(disk::rim + 2, n_),
+          factor_(n_, n_),
+          at_rim_(n_, 2) {
         for (Index i = 0; i < disk::rim; ++i) {
             const double angle = std::numbers::pi / 4.0 * static_cast<double>(i);
             rim_(i, 0) = std::cos(angle);
@@ -518,8 +552,11 @@ public:
         for (double radius = limits.largest; radius >= limits.smallest;) {
             bool is_clear = look_straight_above(radius);
             double height = highest() / radius;
-            if (!is_clear && height < limits.bend) height = follow_to_rim(radius) ? highest() / radius : infinite;
-            if (height < limits.bend && planes_agree(limits)) return FittingDisk{radius, is_clear};
+            if (height < limits.bend) {
+                is_clear = is_clear && is_steady();
+                if (!is_clear) height = follow_to_rim(radius) ? highest() / radius : infinite;
+                if (height < limits.bend && planes_agree(limits, is_clear)) return FittingDisk{radius, height, is_clear};
+            }
             double shrink = 0.5;
             if (std::isfinite(height)) shrink = std::clamp(0.9 * limits.bend / height, 0.5, 0.8);
             radius *= shrink;
@@ -532,8 +569,8 @@ private:
 
     View<const double> rim_points() const { return {points_.view().data, disk::rim, n_}; }
 
-    // Finds solutions straight above the rim, and whether they are on the sheet through the centre: they are
-    // where Newton's method comes back to the centre, from beside it, and at once, as everywhere.
+    // Finds solutions straight above the rim, and whether Newton's method comes to them, and back to the centre from
+    // beside it, at once, as it does where no other sheet is near.
     bool look_straight_above(double radius) {
         double offset = 0.0;
         for (Index j = 0; j < n_; ++j) {
@@ -552,7 +589,7 @@ private:
             if (i < disk::rim && !(corrections_[i].gap < sheet::solved)) return false;
             if (i >= disk::rim && !(distance_from_center(i) <= disk::back * std::sqrt(offset))) return false;
         }
-        return is_steady();
+        return true;
     }
 
     double distance_from_center(Index i) const {
@@ -562,7 +599,8 @@ private:
     }
 
     // Whether F' across the plane is all along the rim much what it is at the centre: where another sheet
-    // crosses it changes its sign.
+    // crosses it changes its sign. With E for what it changes by, over F' there, v^T (1 + E) v is at least 1 -
+    // ``steady`` for unit vectors v, and no value is taken twice (Gale and Nikaido 1965, theorem 6).
     bool is_steady() {
         equations_.fill({center_.data(), 1, n_}, true, values_);
         const Index m = values_.equations();
@@ -583,7 +621,10 @@ private:
         }
         Matrix<double> changes(n_, disk::rim * n_);
         solver_.solve(disk::negligible, changes);
-        return largest_norm(changes) < disk::steady;
+        for (Index i = 0; i < disk::rim; ++i) {
+            if (!is_positive(changes, i * n_)) return false;
+        }
+        return true;
     }
 
     // F' without its part in the plane.
@@ -600,34 +641,23 @@ private:
         }
     }
 
-    // The largest spectral norm of the blocks (n, n) that stand side by side, or a bound on it on the same side
-    // of what is steady.
-    double largest_norm(const Matrix<double>& blocks) const {
-        double largest_square = 0.0;
-        Matrix<double> one_below_the_other(disk::rim * n_, n_);
-        for (Index i = 0; i < disk::rim; ++i) {
-            double square = 0.0;
-            for (Index row = 0; row < n_; ++row) {
-                for (Index j = 0; j < n_; ++j) {
-                    const double entry = blocks(row, i * n_ + j);
-                    one_below_the_other(i * n_ + row, j) = entry;
-                    square += entry * entry;
+    // Whether ``steady`` and the symmetric part of the block (n, n) from a column on are positive together, by
+    // Cholesky's factor.
+    bool is_positive(const Matrix<double>& blocks, Index first) {
+        for (Index i = 0; i < n_; ++i) {
+            for (Index j = 0; j <= i; ++j) {
+                double total = 0.5 * (blocks(i, first + j) + blocks(j, first + i));
+                if (i == j) total += disk::steady;
+                for (Index k = 0; k < j; ++k) total -= factor_(i, k) * factor_(j, k);
+                if (i > j) {
+                    factor_(i, j) = total / factor_(j, j);
+                } else {
+                    if (!(total > 0.0)) return false;  // nor is what is no number
+                    factor_(i, i) = std::sqrt(total);
                 }
             }
-            if (!std::isfinite(square)) return infinite;
-            largest_square = std::max(largest_square, square);
         }
-        const double frobenius = std::sqrt(largest_square), least = frobenius / std::sqrt(static_cast<double>(n_));
-        if (frobenius < disk::steady) return frobenius;
-        if (least >= disk::steady) return least;
-        SingularValues decomposition(n_, n_);
-        Matrix<double> values(SingularValues::lanes, n_);
-        double largest = 0.0;
-        for (Index begin = 0; begin < disk::rim; begin += SingularValues::lanes) {
-            decomposition.of({one_below_the_other.row(begin * n_).data(), SingularValues::lanes * n_, n_}, values);
-            for (Index lane = 0; lane < SingularValues::lanes; ++lane) largest = std::max(largest, values(lane, 0));
-        }
-        return largest;
+        return true;
     }
 
     // How far the solutions are from the plane, the farthest.
@@ -656,11 +686,13 @@ private:
     }
 
     // The columns of the slopes have 1 over the cosines between the planes as singular values.
-    bool planes_agree(const DiskLimits& limits) {
-        bool agree = true;
-        slopes_.at(rim_points(), [&](Index) { return basis_; }, limits.negligible,
-                   [&](Index, View<const double> slopes) { agree = agree && smallest_cosine(slopes) > limits.agree; });
-        return agree;
+    bool planes_agree(const DiskLimits& limits, bool has_values) {
+        if (!has_values) equations_.fill(rim_points(), true, values_);
+        for (Index i = 0; i < disk::rim; ++i) {
+            slopes_.solve(values_.jacobian(i), basis_, limits.negligible, at_rim_);
+            if (!(smallest_cosine(at_rim_) > limits.agree)) return false;
+        }
+        return true;
     }
 
     double smallest_cosine(View<const double> slopes) const {
@@ -681,7 +713,7 @@ private:
     Slopes slopes_;
     Values values_;
     LeastNorm solver_;
-    Matrix<double> flat_, points_;
+    Matrix<double> flat_, points_, factor_, at_rim_;
     SmallMatrix<double, disk::rim, 2> rim_{};
     std::vector<Correction> corrections_;
     Vector<const double> center_, normal_;

@@ -7,7 +7,7 @@
 
 #include "bifurc/core/deadline.hpp"
 #include "bifurc/core/equations_bindings.hpp"
-#include "bifurc/core/front.hpp"
+#include "bifurc/core/cover.hpp"
 #include "bifurc/core/rank_deflation.hpp"
 #include "bifurc/core/sheet.hpp"
 #include "bifurc/core/tape.hpp"
@@ -217,33 +217,6 @@ nb::tuple follow_rays(const nb::capsule& equations, double scale, const Table& c
     return nb::make_tuple(ends.release(), reached.release(), passed.release(), are_there.release());
 }
 
-// (basis (n, 2), normal (n), cosine): `TangentPlane`.
-nb::tuple tangent_plane(const nb::capsule& equations, const Doubles& center, const Table& near, double negligible) {
-    const Equations& own = equations_in(equations);
-    check_unknowns("center", center.shape(0), own.unknowns());
-    check_unknowns("near", near.shape(0), own.unknowns());
-    check_unknowns("near", near.shape(1), 2);
-    const TangentPlane plane = TangentPlanes(own).at(numpy::view(center), numpy::view(near), negligible);
-    numpy::Array<double> basis({own.unknowns(), 2}), normal({own.unknowns()});
-    basis.fill({plane.basis.view().data, static_cast<std::size_t>(2 * own.unknowns())});
-    normal.fill(plane.normal);
-    return nb::make_tuple(basis.release(), normal.release(), plane.cosine);
-}
-
-// (radius, is clear), or None.
-nb::object fitting_disk(const nb::capsule& equations, double scale, const Doubles& center, const Table& basis,
-                               const Doubles& normal, double largest, double smallest, double bend, double agree,
-                               double negligible) {
-    const Equations& own = equations_in(equations);
-    check_unknowns("center", center.shape(0), own.unknowns());
-    check_unknowns("basis", basis.shape(0), own.unknowns());
-    check_unknowns("normal", normal.shape(0), own.unknowns());
-    const DiskLimits limits{largest, smallest, bend, agree, negligible};
-    const auto disk = DiskFitter(own, scale).fit(numpy::view(center), numpy::view(basis), numpy::view(normal), limits);
-    if (!disk) return nb::none();
-    return nb::make_tuple(disk->radius, disk->is_clear);
-}
-
 // --- the front of a covering ---------------------------------------------------------------------------------
 
 using Labels = numpy::VectorIn<std::int64_t>;
@@ -279,63 +252,89 @@ nb::tuple clip(const Table& vertices, const Labels& labels, const Doubles& norma
     return arrays_of(polygon);
 }
 
-void check_plane(const Front& front, const Doubles& center, const Table& basis) {
-    check_unknowns("center", center.shape(0), front.unknowns());
-    check_unknowns("basis", basis.shape(0), front.unknowns());
+nb::tuple octagon(double radius) { return arrays_of(ConvexPolygon::octagon(radius)); }
+
+// A cover with the equations that it refers to.
+class OwnedCover : public Cover {
+public:
+    OwnedCover(const nb::capsule& equations, double scale, const Doubles& periods, const Table& bounds,
+               double agree, const DiskLimits& disks)
+        : Cover(equations_in(equations), scale, numpy::view(periods), numpy::view(bounds), agree, disks),
+          unknowns(equations_in(equations).unknowns()),
+          equations_(equations) {}
+
+    const Index unknowns;
+
+private:
+    nb::capsule equations_;
+};
+
+void check_plane(const OwnedCover& cover, const Doubles& center, const Table& basis) {
+    check_unknowns("center", center.shape(0), cover.unknowns);
+    check_unknowns("basis", basis.shape(0), cover.unknowns);
     check_unknowns("basis", basis.shape(1), 2);
 }
 
-// (numbers (k), positions (k, 2), heights (k), radii (k), are clear (k)): `Overlap`, and what charts these are.
-nb::tuple overlaps(Front& front, const Doubles& center, const Table& basis, double radius) {
-    check_plane(front, center, basis);
-    const std::vector<Overlap> found = front.overlaps(numpy::view(center), numpy::view(basis), radius);
-    const auto count = static_cast<Index>(found.size());
-    numpy::Array<std::int64_t> numbers({count});
-    numpy::Array<double> positions({count, 2}), heights({count}), radii({count});
-    numpy::Array<bool> are_clear({count});
-    for (Index i = 0; i < count; ++i) {
-        numbers.data()[i] = found[i].number;
-        std::copy(found[i].position.begin(), found[i].position.end(), positions.matrix().row(i).begin());
-        heights.data()[i] = found[i].height;
-        radii.data()[i] = front.radius(found[i].number);
-        are_clear.data()[i] = front.is_clear(found[i].number);
-    }
-    return nb::make_tuple(numbers.release(), positions.release(), heights.release(), radii.release(),
-                          are_clear.release());
-}
-
-void add_chart(Front& front, const Doubles& center, const Table& basis, double radius, bool is_clear,
-               const Table& vertices, const Labels& labels, const Labels& numbers, const Table& positions,
-               const Doubles& heights) {
-    check_plane(front, center, basis);
-    check_rows("positions", positions.shape(0), numbers.shape(0));
-    check_rows("heights", heights.shape(0), numbers.shape(0));
-    std::vector<Overlap> others;
-    for (std::size_t i = 0; i < numbers.shape(0); ++i) {
-        const Index number = numbers.data()[i];
-        if (number < 0 || number >= front.count()) throw nb::index_error("no such chart");
-        others.push_back({number, {positions.data()[2 * i], positions.data()[2 * i + 1]}, heights.data()[i]});
-    }
-    front.add(numpy::view(center), numpy::view(basis), radius, is_clear, polygon_of(vertices, labels), others);
-}
-
-// (chart, direction (2)), or None.
-nb::object next_open(Front& front) {
-    const auto found = front.next_open();
-    if (!found) return nb::none();
-    numpy::Array<double> direction({2});
-    direction.fill(found->second);
-    return nb::make_tuple(found->first, direction.release());
-}
-
-void add_dead_end(Front& front, Index chart, const Doubles& direction) {
-    if (chart < 0 || chart >= front.count()) throw nb::index_error("no such chart");
+Lead lead_of(const OwnedCover& cover, Index chart, const Doubles& direction) {
+    if (chart < 0 || chart >= cover.front().count()) throw nb::index_error("no such chart");
     check_unknowns("direction", direction.shape(0), 2);
-    front.add_dead_end(chart, {direction.data()[0], direction.data()[1]});
+    return {chart, {direction.data()[0], direction.data()[1]}};
+}
+
+// (placement, center (n), basis (n, 2), normal (n), largest, radius, is clear, height): `Candidate`.
+nb::tuple tuple_of(const Candidate& candidate) {
+    const auto n = static_cast<Index>(candidate.center.size());
+    numpy::Array<double> center({n}), basis({n, 2}), normal({n});
+    center.fill(candidate.center);
+    basis.fill({candidate.plane.basis.view().data, static_cast<std::size_t>(2 * n)});
+    normal.fill(candidate.plane.normal);
+    const FittingDisk& disk = candidate.disk;
+    return nb::make_tuple(candidate.placement, center.release(), basis.release(), normal.release(), candidate.largest,
+                          disk.radius, disk.is_clear, disk.height);
+}
+
+// (growth, None or (candidate, chart, direction (2))): `Cover::Stop`.
+nb::tuple grow(OwnedCover& cover, Index charts, Index undecided, double seconds) {
+    Deadline deadline(seconds, raise_signals);
+    const Cover::Stop stop = cover.grow(charts, undecided, deadline);
+    if (!stop.candidate) return nb::make_tuple(stop.growth, nb::none());
+    numpy::Array<double> direction({2});
+    direction.fill(stop.lead.direction);
+    return nb::make_tuple(stop.growth, nb::make_tuple(tuple_of(*stop.candidate), stop.lead.chart, direction.release()));
+}
+
+// (radius, is clear, height) between two radii, or None.
+nb::object disk_of(OwnedCover& cover, const Doubles& center, const Table& basis, const Doubles& normal, double largest,
+                   double smallest) {
+    check_plane(cover, center, basis);
+    check_unknowns("normal", normal.shape(0), cover.unknowns);
+    const auto disk = cover.disk(numpy::view(center), numpy::view(basis), numpy::view(normal), largest, smallest);
+    if (!disk) return nb::none();
+    return nb::make_tuple(disk->radius, disk->is_clear, disk->height);
+}
+
+nb::tuple candidate(OwnedCover& cover, const Doubles& center, const Table& near, double radius) {
+    check_plane(cover, center, near);
+    return tuple_of(cover.candidate(numpy::view(center), numpy::view(near), radius));
+}
+
+void add_chart(OwnedCover& cover, const Doubles& center, const Table& basis, double radius, bool is_clear,
+               double height, const Table& vertices, const Labels& labels) {
+    check_plane(cover, center, basis);
+    cover.add(numpy::view(center), numpy::view(basis), {radius, height, is_clear}, polygon_of(vertices, labels));
+}
+
+// (k, n): `Cover::holes`.
+nb::object holes(const OwnedCover& cover) {
+    const std::vector<double> points = cover.holes();
+    numpy::Array<double> out({static_cast<Index>(points.size()) / cover.unknowns, cover.unknowns});
+    out.fill(points);
+    return out.release();
 }
 
 // (centers (c, n), bases (c, n, 2), radii (c), are clear (c)) of ``count`` charts from number ``first`` on.
-nb::tuple charts(const Front& front, Index first, Index count) {
+nb::tuple charts(const OwnedCover& cover, Index first, Index count) {
+    const Front& front = cover.front();
     if (first < 0 || count < 0 || first + count > front.count()) throw nb::index_error("no such chart");
     const Index n = front.unknowns();
     numpy::Array<double> centers({count, n}), bases({count, n, 2}), radii({count});
@@ -350,9 +349,9 @@ nb::tuple charts(const Front& front, Index first, Index count) {
     return nb::make_tuple(centers.release(), bases.release(), radii.release(), are_clear.release());
 }
 
-nb::tuple polygon_at(const Front& front, Index chart) {
-    if (chart < 0 || chart >= front.count()) throw nb::index_error("no such chart");
-    return arrays_of(front.polygon(chart));
+nb::tuple polygon_at(const OwnedCover& cover, Index chart) {
+    if (chart < 0 || chart >= cover.front().count()) throw nb::index_error("no such chart");
+    return arrays_of(cover.front().polygon(chart));
 }
 
 }  // namespace
@@ -369,25 +368,47 @@ void bind_sheets(nb::module_& module) {
     module.def("slopes_above", &slopes_above, arg("equations"), arg("points"), arg("planes"));
     module.def("follow_rays", &follow_rays, arg("equations"), arg("scale"), arg("centers"), arg("planes"),
                arg("positions"), arg("shares"));
-    module.def("tangent_plane", &tangent_plane, arg("equations"), arg("center"), arg("near"), arg("negligible"));
     module.def("clip", &clip, arg("vertices"), arg("labels"), arg("normal"), arg("offset"), arg("label"));
-    nb::class_<Front>(module, "Front", "The charts of a surface that is being covered.")
+    module.def("octagon", &octagon, arg("radius"));
+    nb::enum_<Placement>(module, "Placement")
+        .value("FITS", Placement::fits)
+        .value("COVERED", Placement::covered)
+        .value("UNFIT", Placement::unfit)
+        .value("BESIDE_BOUNDS", Placement::beside_bounds)
+        .value("TIGHT", Placement::tight);
+    nb::enum_<Growth>(module, "Growth")
+        .value("COMPLETE", Growth::complete)
+        .value("OUT_OF_TIME", Growth::out_of_time)
+        .value("UNDECIDED", Growth::undecided)
+        .value("CHART_LIMIT", Growth::chart_limit)
+        .value("DOUBT", Growth::doubt);
+    nb::class_<OwnedCover>(module, "Cover", "The charts of a surface that is being covered.")
         .def(
             "__init__",
-            [](Front* place, const Doubles& periods, double height, double agree, double on_disk, double towards) {
-                new (place) Front(numpy::view(periods), {height, agree, on_disk, towards});
+            [](OwnedCover* place, const nb::capsule& equations, double scale, const Doubles& periods,
+               const Table& bounds, double agree, double largest, double smallest, double bend, double flat,
+               double negligible) {
+                new (place) OwnedCover(equations, scale, periods, bounds, agree,
+                                       {largest, smallest, bend, flat, negligible});
             },
-            arg("periods"), arg("height"), arg("agree"), arg("on_disk"), arg("towards"))
-        .def("__len__", &Front::count)
-        .def("overlaps", &overlaps, arg("center"), arg("basis"), arg("radius"))
-        .def("add", &add_chart, arg("center"), arg("basis"), arg("radius"), arg("is_clear"), arg("vertices"),
-             arg("labels"), arg("numbers"), arg("positions"), arg("heights"))
-        .def("next_open", &next_open)
-        .def("add_dead_end", &add_dead_end, arg("chart"), arg("direction"))
+            arg("equations"), arg("scale"), arg("periods"), arg("bounds"), arg("agree"), arg("largest"),
+            arg("smallest"), arg("bend"), arg("flat"), arg("negligible"))
+        .def("__len__", [](const OwnedCover& cover) { return cover.front().count(); })
+        .def_prop_ro("undecided", &OwnedCover::undecided)
+        .def("grow", &grow, arg("charts"), arg("undecided"), arg("seconds"))
+        .def("candidate", &candidate, arg("center"), arg("near"), arg("radius"))
+        .def("disk", &disk_of, arg("center"), arg("basis"), arg("normal"), arg("largest"), arg("smallest"))
+        .def("add", &add_chart, arg("center"), arg("basis"), arg("radius"), arg("is_clear"), arg("height"),
+             arg("vertices"), arg("labels"))
+        .def(
+            "refuse",
+            [](OwnedCover& cover, Index chart, const Doubles& direction, bool is_unfit) {
+                cover.refuse(lead_of(cover, chart, direction), is_unfit);
+            },
+            arg("chart"), arg("direction"), arg("is_unfit"))
+        .def("holes", &holes)
         .def("charts", &charts, arg("first"), arg("count"))
         .def("polygon", &polygon_at, arg("chart"));
-    module.def("fitting_disk", &fitting_disk, arg("equations"), arg("scale"), arg("center"), arg("basis"),
-               arg("normal"), arg("largest"), arg("smallest"), arg("bend"), arg("agree"), arg("negligible"));
 }
 
 }  // namespace bifurc::python

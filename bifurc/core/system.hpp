@@ -31,4 +31,22 @@ concept System = requires(const S& system, Vector<const double> point, Vector<co
 template <class S>
 concept DenseSystem = System<S> && std::same_as<typename S::Bordered, DenseBordered>;
 
+// F (k, m) at points (k, n), and F' (k * m, n) where there is room for it: at once where the system can do that.
+template <class S>
+void linearize_all(const S& system, View<const double> points, View<double> residuals, View<double> jacobians) {
+    if constexpr (requires { system.fill(points, residuals, jacobians); }) {
+        system.fill(points, residuals, jacobians);
+    } else {
+        const Index m = system.equations();
+        for (Index k = 0; k < points.rows; ++k) {
+            if (jacobians.rows == 0) {
+                system.residual(points.row(k), residuals.row(k));
+            } else {
+                const View<double> jacobian{jacobians.row(k * m).data(), m, jacobians.columns};
+                system.linearize(points.row(k), residuals.row(k), jacobian);
+            }
+        }
+    }
+}
+
 }  // namespace bifurc

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "bifurc/core/abreast.hpp"
 #include "bifurc/core/arrays.hpp"
 #include "bifurc/core/bordered.hpp"
 #include "bifurc/core/damped.hpp"
@@ -131,6 +132,7 @@ inline Complex cbrt(const Complex& z) {
 inline bool is_infinite(double x) { return std::isinf(x); }
 inline bool is_infinite(const Complex& z) { return std::isinf(z.real()) || std::isinf(z.imag()); }
 inline bool is_infinite(const Interval&) { return false; }
+inline bool is_infinite(const Abreast&) { return false; }  // where doubles end points are looked at one by one
 // The angle of the vector (x, z), analytic in both; by the larger of them, so that small
 // imaginary parts are kept.
 inline Complex atan2(const Complex& z, const Complex& x) {
@@ -181,6 +183,22 @@ T value_of(const Instruction& instruction, const T& left, const T& right) {
         case Operation::angle: return atan2(left, right);
         default: return T(instruction.constant);
     }
+}
+
+// Operations other than of arithmetic are made at one point after the other.
+template <>
+inline Abreast value_of(const Instruction& instruction, const Abreast& left, const Abreast& right) {
+    switch (instruction.operation) {
+        case Operation::add: return left + right;
+        case Operation::subtract: return left - right;
+        case Operation::multiply: return left * right;
+        case Operation::divide: return left / right;
+        case Operation::shift: return left + Abreast(instruction.constant);
+        case Operation::scale: return left * Abreast(instruction.constant);
+        case Operation::over: return left / Abreast(instruction.constant);
+        default: break;
+    }
+    return Abreast::both(left, right, [&](double one, double other) { return value_of(instruction, one, other); });
 }
 
 // --- the tape --------------------------------------------------------------------------------------
@@ -381,6 +399,11 @@ public:
 
     void evaluate(Vector<const T> point) { tape_.evaluate<T>(point, values_); }
 
+    // Whether all values on the way to those of the equations are finite.
+    bool are_finite() const {
+        return std::all_of(values_.begin(), values_.end(), [](const T& value) { return value.are_finite(); });
+    }
+
     // Values and partial derivatives of all operations.
     void linearize(Vector<const T> point) {
         partials_.resize(tape_.slots());
@@ -569,6 +592,69 @@ private:
     std::vector<T> adjoints_;
 };
 
+// --- many points ---------------------------------------------------------------------------------------
+
+// F and F' of one tape at many points.
+class ManyPoints {
+public:
+    explicit ManyPoints(const Tape& tape)
+        : tape_(tape), one_(tape), many_(tape), point_(tape.unknowns()), jacobian_(tape.equations(), tape.unknowns()) {}
+
+    // F (k, m) at points (k, n), and F' (k * m, n) where there is room for it.
+    void fill(View<const double> points, View<double> values, View<double> jacobians) {
+        Index begin = 0;
+        for (; begin + few <= points.rows; begin += std::min(Abreast::lanes, points.rows - begin)) {
+            const Index count = std::min(Abreast::lanes, points.rows - begin);
+            if (!fill_some(points, begin, count, values, jacobians)) fill_each(points, begin, count, values, jacobians);
+        }
+        fill_each(points, begin, points.rows - begin, values, jacobians);
+    }
+
+private:
+    static constexpr Index few = 2;  // points from which on it is worth while
+
+    // Whether that is done: derivatives are not taken abreast where a number on the way is not finite.
+    bool fill_some(View<const double> points, Index begin, Index count, View<double> values, View<double> jacobians) {
+        const Index m = tape_.equations(), n = tape_.unknowns();
+        for (Index j = 0; j < n; ++j) {
+            point_[j] = Abreast::each([&](Index lane) { return points(begin + std::min(lane, count - 1), j); });
+        }
+        const bool has_jacobians = jacobians.rows > 0;
+        if (has_jacobians) many_.linearize(point_);
+        else many_.evaluate(point_);
+        if (has_jacobians && !many_.are_finite()) return false;
+        for (Index row = 0; row < m; ++row) {
+            const Abreast value = many_.value(row);
+            for (Index lane = 0; lane < count; ++lane) values(begin + lane, row) = value.at[lane];
+        }
+        if (!has_jacobians) return true;
+        many_.jacobian(jacobian_);
+        for (Index row = 0; row < m; ++row) {
+            for (Index lane = 0; lane < count; ++lane) {
+                const Vector<double> out = jacobians.row((begin + lane) * m + row);
+                for (Index j = 0; j < n; ++j) out[j] = jacobian_(row, j).at[lane];
+            }
+        }
+        return true;
+    }
+
+    void fill_each(View<const double> points, Index begin, Index count, View<double> values, View<double> jacobians) {
+        const Index m = tape_.equations();
+        for (Index k = begin; k < begin + count; ++k) {
+            if (jacobians.rows == 0) one_.evaluate(points.row(k));
+            else one_.linearize(points.row(k));
+            for (Index row = 0; row < m; ++row) values(k, row) = one_.value(row);
+            if (jacobians.rows != 0) one_.jacobian({jacobians.row(k * m).data(), m, jacobians.columns});
+        }
+    }
+
+    const Tape& tape_;
+    Sweep<double> one_;
+    Sweep<Abreast> many_;
+    std::vector<Abreast> point_;
+    Matrix<Abreast> jacobian_;
+};
+
 // --- series ----------------------------------------------------------------------------------------
 
 // How unknowns change along a curve that are no coordinates of it.
@@ -726,7 +812,7 @@ public:
     using Damped = DenseDamped;
 
     TapeSystem(const Tape& tape, Vector<const double> units, Vector<const double> weights)
-        : tape_(tape), units_(units), weights_(weights), sweep_(tape), point_(tape.unknowns()) {}
+        : tape_(tape), units_(units), weights_(weights), sweep_(tape), many_(tape), point_(tape.unknowns()) {}
 
     Index unknowns() const { return tape_.unknowns(); }
     Index equations() const { return tape_.equations(); }
@@ -743,6 +829,22 @@ public:
         sweep_.jacobian(jacobian);
         for (Index row = 0; row < equations(); ++row) {
             for (Index j = 0; j < unknowns(); ++j) jacobian(row, j) *= weights_[row] * units_[j];
+        }
+    }
+
+    // Residuals (k, m) at points (k, n), and Jacobians (k * m, n) where there is room for them.
+    void fill(View<const double> points, View<double> residuals, View<double> jacobians) const {
+        points_.resize(points.rows * points.columns);
+        const View<double> in_units{points_.data(), points.rows, points.columns};
+        for (Index k = 0; k < points.rows; ++k) {
+            for (Index j = 0; j < points.columns; ++j) in_units(k, j) = units_[j] * points(k, j);
+        }
+        many_.fill(in_units, residuals, jacobians);
+        for (Index k = 0; k < points.rows; ++k) {
+            for (Index row = 0; row < equations(); ++row) residuals(k, row) = weighted(row, residuals(k, row));
+        }
+        for (Index k = 0; k < jacobians.rows; ++k) {
+            for (Index j = 0; j < unknowns(); ++j) jacobians(k, j) *= weights_[k % equations()] * units_[j];
         }
     }
 
@@ -826,13 +928,16 @@ private:
     }
 
     void fill(Vector<double> residual) const {
-        for (Index row = 0; row < equations(); ++row) {
-            const double value = weights_[row] * sweep_.value(row);
-            residual[row] = std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
-        }
+        for (Index row = 0; row < equations(); ++row) residual[row] = weighted(row, sweep_.value(row));
     }
 
-    mutable std::vector<double> point_;
+    double weighted(Index row, double value) const {
+        const double out = weights_[row] * value;
+        return std::isfinite(out) ? out : std::numeric_limits<double>::infinity();
+    }
+
+    mutable ManyPoints many_;
+    mutable std::vector<double> point_, points_;
 };
 
 // The same with a sparse F'.

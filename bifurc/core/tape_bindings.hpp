@@ -42,6 +42,10 @@ nb::object tape_values(const Tape& tape, const numpy::MatrixIn<T>& points) {
     check_unknowns("points", points.shape(1), tape.unknowns());
     const auto at = numpy::view(points);
     numpy::Array<T> out({at.rows, tape.equations()});
+    if constexpr (std::is_same_v<T, double>) {
+        ManyPoints(tape).fill(at, out.matrix(), {nullptr, 0, tape.unknowns()});
+        return out.release();
+    }
     Sweep<T> sweep(tape);
     for (Index i = 0; i < at.rows; ++i) {
         sweep.evaluate(at.row(i));
@@ -56,6 +60,11 @@ nb::object tape_jacobians(const Tape& tape, const numpy::MatrixIn<T>& points) {
     check_unknowns("points", points.shape(1), tape.unknowns());
     const auto at = numpy::view(points);
     numpy::Array<T> out({at.rows, tape.equations(), tape.unknowns()});
+    if constexpr (std::is_same_v<T, double>) {
+        Matrix<double> values(at.rows, tape.equations());
+        ManyPoints(tape).fill(at, values, out.matrix());
+        return out.release();
+    }
     Sweep<T> sweep(tape);
     for (Index i = 0; i < at.rows; ++i) {
         sweep.linearize(at.row(i));

@@ -52,12 +52,14 @@ TINY = 1e-300  # keeps a step of zero from being divided by
 class LocatedPoint(NamedTuple):
     """A point ``u`` (n,) where F = 0 and F' has the ``null_space`` (n, k), and an
     estimate of its ``error``, the distance to the exact point; ``is_confirmed`` unless
-    it was looked for in more digits and not found."""
+    it was looked for in more digits and not found. It ``is_isolated`` among those of its
+    kind where the equations for it and its null space have full rank."""
 
     u: np.ndarray
     null_space: np.ndarray
     error: float
     is_confirmed: bool = True
+    is_isolated: bool = False
 
 
 def locate_singular_point(
@@ -273,7 +275,7 @@ def _with_error(
             stretch = _hidden_stretch(problem, u, direction / size, nullity, reach)
             u = stretch.middle
             error = max(error, stretch.half_length)
-    return LocatedPoint(u, run.basis, error)
+    return LocatedPoint(u, run.basis, error, is_isolated=not len(run.weak))
 
 
 # --- after the iteration --------------------------------------------------------------

@@ -402,21 +402,23 @@ def _spread_directions(k: int) -> np.ndarray:
 def _without_duplicates(points: np.ndarray, radius: float) -> np.ndarray:
     """One of every cluster of points (k, n) on a sphere of ``radius`` that are joined by
     small gaps, the first."""
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
-
-    count = len(points)
-    if not count:
-        return points
     within = BESIDE * is_same_half_branch.threshold * radius
-    pairs = cKDTree(points).query_pairs(within, output_type="ndarray")
-    gaps = np.linalg.norm(points[pairs[:, 0]] - points[pairs[:, 1]], axis=1)
-    pairs = pairs[is_same_half_branch(gaps, radius)]
-    links = np.ones(len(pairs))
-    graph = csr_array((links, tuple(pairs.T)), shape=(count, count))
-    _, cluster = connected_components(graph, directed=False)
-    _, first = np.unique(cluster, return_index=True)
+    is_left = np.ones(len(points), dtype=bool)
+    first = []
+    for number in range(len(points)):
+        if not is_left[number]:
+            continue
+        first.append(number)
+        is_left[number] = False
+        waiting = [number]
+        while waiting:
+            left = np.flatnonzero(is_left)
+            gaps = np.linalg.norm(points[left] - points[waiting.pop()], axis=1)
+            near = left[gaps < within]
+            joined = near[is_same_half_branch(gaps[gaps < within], radius)]
+            is_left[joined] = False
+            if len(joined) < len(near):
+                waiting += joined.tolist()
     return points[first]
 
 

@@ -3,14 +3,14 @@
 The edge between two vertices is the curve above the straight line between them in the
 plane of one of the two charts, the same for both; along a bound it runs in that. So the
 cells divide the surface without gaps. In the plane of its chart a cell consists of
-sectors, from the centre to its edges: over each the ratio of areas, from the
-derivatives of the graph, is integrated by Gauss's rule along the edge and along the
-rays.
+sectors, from the centre to its edges. The graph above a disk is a polynomial
+(`bifurc.surfaces.patches`), and the ratio of areas is another one: over rays it is
+integrated exactly, along edges by Gauss's rule.
 
 The error of every cell comes of the same places, as null rules say it (Berntsen and
 Espelid 1991, Error estimation in automatic quadrature routines): the last coefficients in
-Legendre polynomials shrink at some rate, and what would come four degrees later at that
-rate is taken for the error of a rule that is exact far beyond.
+orthogonal polynomials shrink at some rate, and what would come next at that rate is taken
+for the error.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ from numpy.polynomial.legendre import leggauss, legvander
 from bifurc.problem import Problem
 from bifurc.surfaces.complex import Cells
 from bifurc.surfaces.graphs import Graphs, bounds_of
+from bifurc.surfaces.patches import Patches
 from bifurc.surfaces.polygon import BORDER, FlatCharts
 
-# Nodes along an edge and along a ray, at first, and where an area is not known well then.
-NODES = ((6, 5), (8, 7), (11, 10))
+# Degree of the polynomials that stand for the surface, and nodes along an edge, at first
+# and where an area is not known well then.
+RULES = ((10, 6), (14, 10), (18, 13))
 # Error of an area that is known well enough, over it.
 WELL_KNOWN = 1e-7
 # Error of an area by rounding, over it.
-ROUNDING = 1e-13
-# Points of an edge that others are interpolated between, at least, and powers of the
-# position in the polynomial that stands for the ratio of areas where the surface was
-# not followed.
-FEWEST_ON_EDGE = 3
-POWERS = np.array([(i, j) for i in range(6) for j in range(6 - i)])
+ROUNDING = 1e-11
+# Distance from the bounds, over the radius, from which on no cell leaves them, and places
+# along a ray at which it is seen.
+FAR, RAYS = 2.0, 5
 # Error of the area outside the bounds, in a cell that leaves them, over it.
 BLURRED = 3.0
 
@@ -78,12 +78,13 @@ def cell_sizes(
     nodes, in up to so many ``rounds``.
     """
     every = np.ones(len(charts.radii), dtype=bool)
-    sizes = _Measure(problem, charts, cells, metric, every).sizes(*NODES[0])
-    for nodes in NODES[1:rounds]:
+    degree, along = RULES[0]
+    sizes = _Measure(problem, charts, cells, metric, every, degree).sizes(along)
+    for degree, along in RULES[1:rounds]:
         among = sizes.are_vague()
         if not np.any(among):
             break
-        finer = _Measure(problem, charts, cells, metric, among).sizes(*nodes)
+        finer = _Measure(problem, charts, cells, metric, among, degree).sizes(along)
         sizes = sizes.with_part(finer, among)
     areas, errors, outside = sizes
     errors += ROUNDING * np.abs(areas)
@@ -94,19 +95,19 @@ def cell_sizes(
     return Sizes(areas, np.minimum(errors, np.abs(areas)), outside)
 
 
-class _Rays(NamedTuple):
-    """The ``integrals`` (e, r) of the ratio of areas along rays, of which each edge has r,
-    how far off the area is by each but the first, ``errors`` (e, r - 1), and what of it
-    lies ``outside`` the bounds (c,)."""
-
-    integrals: np.ndarray
-    errors: np.ndarray
-    outside: np.ndarray
+def _reaches(problem: Problem, charts: FlatCharts, cells: Cells) -> np.ndarray:
+    """How far (c,) cells reach from the centres of their charts."""
+    corners = cells.vertices[cells.begin]
+    positions = Graphs(problem, charts, cells.chart).positions(corners)
+    reaches = np.zeros(len(charts.radii))
+    np.maximum.at(reaches, cells.chart, np.linalg.norm(positions, axis=1))
+    return reaches
 
 
 class _Measure:
     """The edges and sectors of the cells ``among`` (c,) all, each edge taken once: it is
-    the curve above the plane of the first of all cells that have it."""
+    the curve above the plane of the first of all cells that have it. Polynomials of a
+    ``degree`` stand for the surface."""
 
     def __init__(
         self,
@@ -115,11 +116,11 @@ class _Measure:
         cells: Cells,
         metric: np.ndarray,
         among: np.ndarray,
+        degree: int,
     ):
         self._problem = problem
-        self._metric = metric
+        self._charts = charts
         self._count = len(charts.radii)
-        self._graphs = Graphs(problem, charts)
         pairs, first, edge = np.unique(
             cells.pairs, axis=0, return_index=True, return_inverse=True
         )
@@ -128,128 +129,94 @@ class _Measure:
         self._cells = cells.part(is_own)
         self._pairs = pairs[own]
         self._chart, self._label = cells.chart[first[own]], cells.label[first[own]]
+        numbers = np.union1d(self._cells.chart, self._chart)
+        reaches = _reaches(problem, charts, cells)[numbers]
+        self._patches = Patches(problem, charts, numbers, reaches, degree)
+        self._row = np.searchsorted(numbers, self._cells.chart)
+        self._row_of_curve = np.searchsorted(numbers, self._chart)
+        self._ratios = self._patches.ratios(metric)
 
-    def sizes(self, along: int, rays: int) -> Sizes:
-        """Areas, and errors by the quadrature, by nodes to which the surface was not
-        followed and by what lies outside the bounds; with so many nodes ``along`` an
-        edge and along ``rays``."""
+    def sizes(self, along: int) -> Sizes:
+        """Areas, and errors by the quadrature and by what lies outside the bounds, with so
+        many nodes ``along`` an edge."""
         nodes, weights = _gauss(along)
+        places = np.concatenate([[0.0], nodes, [1.0]])
         curves, are_known = self._curves(nodes)
         outline = self._outlines(curves)
-        places = np.concatenate([[0.0], nodes, [1.0]])
         rates = np.einsum("ij,ejk->eik", _differentiation(places), outline)
         turned = _cross(outline, rates)  # (e, along + 2)
-        of_rays = self._rays(outline[:, :-1], turned[:, 1:-1] * weights, rays)
-        at_ends = of_rays.integrals[self._cells.following, :1]
-        sectors = turned * np.concatenate([of_rays.integrals, at_ends], axis=1)
-        errors = self._sums(of_rays.errors) + BLURRED * of_rays.outside
-        errors += self._sums(_tails(sectors, places)[:, None])
-        errors += self._sums(_errors_of_edges(outline, places)[:, None])
-        errors[self._cells.chart[~are_known[self._edge]]] = np.inf
-        areas = self._sums(sectors[:, 1:-1] * weights)
-        return Sizes(areas, errors, of_rays.outside)
+        over_rays = self._patches.over_rays(self._row, outline, self._ratios.terms)
+        sectors = turned * over_rays
+        inside = turned[:, 1:-1] * weights
+        outside = self._outside(outline[:, 1:-1], inside)
+        off = 0.5 * self._ratios.errors[self._row] * np.abs(inside).sum(axis=1)
+        off += _tails(sectors, places) + _errors_of_edges(outline, places)
+        off[~are_known[self._edge]] = np.inf
+        areas = self._sums((sectors[:, 1:-1] * weights).sum(axis=1))
+        return Sizes(areas, self._sums(off) + BLURRED * outside, outside)
 
-    def _rays(self, ends: np.ndarray, turned: np.ndarray, nodes: int) -> _Rays:
-        """The rays from the centres to the beginning and the nodes of each edge, ``ends``
-        (e, r, 2), all but the first of each of a weight ``turned`` (e, r - 1), with so
-        many ``nodes``."""
-        count = ends.shape[1]
-        chart = np.repeat(self._cells.chart, count)
-        t, t_weights = _gauss(nodes)
-        flat = ends.reshape(-1, 2)
-        points, is_there = self._graphs.part(chart).along(flat, t)
-        ratio = self._ratios(chart, points)
-        gaps = _fill_cells(ratio, flat[:, None] * t[:, None], is_there, chart)
-        gaps = np.maximum(gaps, _tails(ratio, t)[:, None]).reshape(-1, count)[:, 1:]
-        ratio = ratio.reshape(-1, count, nodes)
-        weighted = t * t_weights * turned[:, :, None]
-        outside = ratio * self._are_outside(points).reshape(ratio.shape)
-        outside = outside[:, 1:] * weighted
-        outside[self._are_bent(turned)[self._cells.chart]] = 0.0
-        return _Rays(
-            integrals=ratio @ (t * t_weights),
-            errors=gaps * np.abs(weighted).sum(axis=2),
-            outside=self._sums(outside.sum(axis=2)),
-        )
+    def _outside(self, ends: np.ndarray, turned: np.ndarray) -> np.ndarray:
+        """What of the area of cells lies outside the bounds (c,), as places on rays to
+        ``ends`` (e, r, 2) of a weight ``turned`` (e, r) show it."""
+        some = np.flatnonzero(self._may_be_outside(turned))
+        t, t_weights = _gauss(RAYS)
+        flat = ends[some, :, None] * t[:, None]  # (e, r, t, 2)
+        flat = flat.reshape(len(some), ends.shape[1] * RAYS, 2)
+        points = self._patches.lifted(self._row[some], flat)
+        is_inside = self._problem.domain.are_inside(points.reshape(-1, self._problem.n))
+        ratios = self._patches.values(self._row[some], flat, self._ratios.terms)
+        ratios[is_inside.reshape(ratios.shape)] = 0.0
+        weights = (turned[some, :, None] * (t * t_weights)).reshape(ratios.shape)
+        sums = np.zeros(len(turned))
+        sums[some] = (ratios * weights).sum(axis=1)
+        return self._sums(sums)
 
-    def _are_bent(self, turned: np.ndarray) -> np.ndarray:
-        """Which cells (c,) are differences of sectors, some of which are turned (e, k)
-        backwards, as one beside a bound that bends."""
-        are_back = turned.min(axis=1) < 0.0
-        are_bent: np.ndarray = self._sums(are_back[:, None]) > 0
-        return are_bent
-
-    def _are_outside(self, points: np.ndarray) -> np.ndarray:
-        """Which points (k, s, n) lie outside the bounds (k, s)."""
-        flat = points.reshape(-1, self._problem.n)
-        are_outside: np.ndarray = ~self._problem.domain.are_inside(flat)
-        return are_outside.reshape(points.shape[:2])
-
-    def _ratios(self, chart: np.ndarray, points: np.ndarray) -> np.ndarray:
-        """Areas on the surface at its points (k, s, n), over those in the planes of
-        charts (k,): (k, s)."""
-        graphs = self._graphs.part(np.repeat(chart, points.shape[1]))
-        slopes = graphs.slopes(points.reshape(-1, self._problem.n))
-        slopes *= self._metric[:, None]
-        squares = np.linalg.det(np.swapaxes(slopes, 1, 2) @ slopes)
-        ratios: np.ndarray = np.sqrt(squares).reshape(points.shape[:2])
-        return ratios
+    def _may_be_outside(self, turned: np.ndarray) -> np.ndarray:
+        """Which edges (e,) are those of cells next to bounds; none of cells that are
+        differences of sectors, some of which are ``turned`` (e, r) backwards, as one beside
+        a bound that bends."""
+        is_back = (turned.min(axis=1) < 0.0).astype(float)
+        is_bent = self._sums(is_back)[self._cells.chart] > 0.0
+        bounds = self._problem.domain.bounds
+        rooms = np.abs(bounds - self._patches.centers[:, :, None]).min(axis=(1, 2))
+        is_next = (rooms < FAR * self._patches.radii)[self._row]
+        may_be: np.ndarray = is_next & ~is_bent
+        return may_be
 
     def _sums(self, values: np.ndarray) -> np.ndarray:
-        """Sums (c,) over each cell of values (e, k) at its edges."""
-        sums = values.sum(axis=1)
-        return np.bincount(self._cells.chart, sums, minlength=self._count)
+        """Sums (c,) over each cell of values (e,) at its edges."""
+        return np.bincount(self._cells.chart, values, minlength=self._count)
 
     def _curves(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Points (u, k, n) of all edges, from the vertex of the lower number on, and
-        whether they are known (u,): between those to which the surface was followed
-        others are interpolated."""
-        vertices, n, count = self._cells.vertices, self._problem.n, len(nodes)
-        begin, end = vertices[self._pairs.T]
+        whether they are known (u,)."""
+        begin, end = self._cells.vertices[self._pairs.T]
         chord = self._problem.domain.difference(end, begin)
-        points = begin[:, None] + nodes[:, None] * chord[:, None]
-        shape = points.shape
-        chart = np.repeat(self._chart, count)
-        graphs = self._graphs.part(chart)
-        positions = graphs.positions(points.reshape(-1, n))
-        points, is_there = graphs.above(positions)
-        label = np.repeat(self._label, count)
-        border = np.flatnonzero(label <= BORDER)
-        points[border], is_there[border] = self._graphs.part(chart[border]).onto_bounds(
-            positions[border], bounds_of(label[border], n)
+        straight = begin[:, None] + nodes[:, None] * chord[:, None]
+        charts = np.repeat(self._chart, len(nodes))
+        graphs = Graphs(self._problem, self._charts, charts)
+        positions = graphs.positions(straight.reshape(-1, self._problem.n))
+        positions = positions.reshape(*straight.shape[:2], 2)
+        points = self._patches.lifted(self._row_of_curve, positions)
+        are_known = np.isfinite(self._patches.misfits[self._row_of_curve])
+        border = np.flatnonzero(self._label <= BORDER)
+        points[border], are_known[border] = self._on_bounds(border, positions[border])
+        return points, are_known
+
+    def _on_bounds(
+        self, edges: np.ndarray, positions: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Points (b, k, n) on the bounds along which ``edges`` (b,) run, next to positions
+        (b, k, 2) in the planes of their charts, and whether all are there (b,)."""
+        n, shape = self._problem.n, positions.shape[:2]
+        charts, labels = np.repeat(
+            [self._chart[edges], self._label[edges]], shape[1], 1
         )
-        points = points.reshape(shape)
-        return points, self._fill_edges(points, is_there.reshape(shape[:2]), nodes)
-
-    def _fill_edges(
-        self, points: np.ndarray, is_there: np.ndarray, nodes: np.ndarray
-    ) -> np.ndarray:
-        """Interpolate ``points`` (u, k, n) of edges that are not there, inside the
-        bounds, and whether all are known then (u,)."""
-        are_known = is_there.all(axis=1)
-        is_inner = self._label > BORDER
-        can_be_filled = is_inner & (is_there.sum(axis=1) >= FEWEST_ON_EDGE)
-        for k in np.flatnonzero(~are_known & can_be_filled):
-            begin, end = self._cells.vertices[self._pairs[k]]
-            points[k] = self._between(points[k], is_there[k], nodes, (begin, end))
-        are_filled: np.ndarray = are_known | can_be_filled
-        return are_filled
-
-    def _between(
-        self,
-        points: np.ndarray,
-        are_known: np.ndarray,
-        nodes: np.ndarray,
-        ends: tuple[np.ndarray, np.ndarray],
-    ) -> np.ndarray:
-        """Points (k, n) at ``nodes`` (k,) of the polynomial through those of them that
-        ``are_known`` (k,) and through both ``ends`` (n,)."""
-        places = np.concatenate([[0.0], nodes[are_known], [1.0]])
-        known = np.concatenate([ends[0][None], points[are_known], ends[1][None]])
-        offsets = self._problem.domain.difference(known, ends[0])
-        through = np.linalg.solve(np.vander(places), offsets)
-        between: np.ndarray = ends[0] + np.vander(nodes, len(places)) @ through
-        return between
+        graphs = Graphs(self._problem, self._charts, charts)
+        flat = positions.reshape(-1, 2)
+        points, is_there = graphs.onto_bounds(flat, bounds_of(labels, n))
+        are_there = np.all(is_there.reshape(shape), axis=1)
+        return points.reshape(*shape, n), np.asarray(are_there)
 
     def _outlines(self, curves: np.ndarray) -> np.ndarray:
         """Positions (e, k + 2, 2) of the beginning, the nodes and the end of each edge in
@@ -261,7 +228,7 @@ class _Measure:
         begin, end = cells.vertices[cells.begin], cells.vertices[cells.end]
         points = np.concatenate([begin[:, None], inner, end[:, None]], axis=1)
         count = points.shape[1]
-        graphs = self._graphs.part(np.repeat(cells.chart, count))
+        graphs = Graphs(self._problem, self._charts, np.repeat(cells.chart, count))
         return graphs.positions(points.reshape(-1, n)).reshape(-1, count, 2)
 
 
@@ -272,31 +239,6 @@ def _errors_of_edges(outline: np.ndarray, places: np.ndarray) -> np.ndarray:
     off = _tails(np.swapaxes(outline, 1, 2), places)
     errors: np.ndarray = lengths * np.linalg.norm(off, axis=1)
     return errors
-
-
-def _fill_cells(
-    ratio: np.ndarray, positions: np.ndarray, is_there: np.ndarray, chart: np.ndarray
-) -> np.ndarray:
-    """Put values of a polynomial that fits the others in the place of ratios (k, s)
-    that are not there, and how far off they may be (k, 1).
-
-    The rays (k,), with ``positions`` (k, s, 2), are those of cells of a ``chart`` (k,)
-    each, and every cell has a polynomial. Where too few are known it is infinite.
-    """
-    gaps = np.zeros((len(chart), 1))
-    for cell in np.unique(chart[~is_there.all(axis=1)]):
-        own = np.flatnonzero(chart == cell)
-        known = is_there[own]
-        y = positions[own] / np.abs(positions[own]).max()
-        terms = np.prod(y[:, :, None] ** POWERS, axis=3)
-        gaps[own] = np.inf
-        if known.sum() >= 2 * len(POWERS):
-            values = ratio[own]
-            fit = np.linalg.lstsq(terms[known], values[known], rcond=None)[0]
-            ratio[own] = np.where(known, values, terms @ fit)
-            misses = np.abs(terms[known] @ fit - values[known]).max()
-            gaps[own] = np.where(known.all(axis=1, keepdims=True), 0.0, misses)
-    return gaps
 
 
 def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:

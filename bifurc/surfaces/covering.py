@@ -16,15 +16,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
 
 from bifurc import _core
+from bifurc.decisions import is_null
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
-from bifurc.numerics.corrector import correct_normal
+from bifurc.numerics.corrector import compiled_equations
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.surfaces.area import Sizes, cell_sizes
@@ -40,10 +40,9 @@ from bifurc.surfaces.crossing_sheets import has_uncovered_crossing
 from bifurc.surfaces.disk import (
     AGREE,
     BEND,
+    FLAT,
     Disk,
     TangentPlane,
-    fitting_disk,
-    tangent_plane_at,
 )
 from bifurc.surfaces.other_sheets import solutions_across
 from bifurc.surfaces.polygon import BORDER, FlatCharts, Polygon, octagon
@@ -55,11 +54,6 @@ from bifurc.surfaces.singular_places import SingularPlaces
 STEEPEST, ROUNDING = 2 * BEND, 1e-9
 # Distance of that solution from the centre, over the radius.
 RIM = 1.1
-# Smallest cosine between tangent planes of a chart and the next one; less is another
-# sheet.
-SMOOTH = 0.9
-# Radius of a chart, over that of the one from which it was made, at most.
-GROWTH = 1.4
 # Radius over the largest one below which no chart is made next to a singular point, and
 # how far from that, over this radius.
 SMALLEST, NEXT_TO = 1.0 / 64, 16.0
@@ -72,22 +66,12 @@ TINIEST = 1e-8
 SMALLER, MENDING = 0.7, 6
 # In how many rounds areas are measured; in one only where more would not be worth while.
 ROUNDS, UNFINISHED = 3, (Covering.CHART_LIMIT, Covering.OUT_OF_TIME)
-# Distance of a centre from another one, over the radius there, that is not worth a
-# chart.
-TOO_CLOSE = 0.2
-# Distance, over the radius, beyond which a centre was corrected onto another sheet.
-TOO_FAR = 0.5
-# Relative residual above which a centre is no solution.
-SOLVED = 1e-10
-# Cosine between directions that lead to the same place.
-TOWARDS = 0.97
-# Share of the radius by which a vertex is outside the disk only by rounding, and by
-# which it shows a hole at the end.
-ON_DISK, HOLE = 1e-9, 1e-3
 # Distance, over the scale, below which the end of a ray is a solution that is known.
 SAME = 1e-7
 # Pairs of charts of which it is not known whether they are on one sheet, at most.
 MOST_UNDECIDED = 20
+
+Placement = _core.Placement
 
 
 def cover_surface(
@@ -213,35 +197,19 @@ class _Fit(NamedTuple):
         )
 
 
-class Placement(Enum):
-    """What became of a place at which a chart was wanted."""
+class _Candidate(NamedTuple):
+    """A solution ``center`` (n,) about which a chart is wanted, of at most the radius
+    ``largest``, with its tangent plane, ``basis`` (n, 2) and ``normal`` (n,) across the
+    surface, and the disk that fits it."""
 
-    MADE = "there is a chart now"
-    COVERED = "charts cover it already, although the polygon does not show it"
-    UNFIT = "no chart fits there: others may cover it later, else it is a hole"
-
-
-class _UnfitPlace(NamedTuple):
-    """A direction (2,) in the plane of a chart in which no chart fits."""
-
-    chart: int
-    direction: np.ndarray
-
-
-class _Overlaps(NamedTuple):
-    """Charts that overlap a disk: their ``numbers`` (k,), the ``positions`` (k, 2) of
-    their centres in its plane, and the ``heights`` (k,) above it, their ``radii`` (k,),
-    and whether other sheets ``are_clear`` of them (k,)."""
-
-    numbers: np.ndarray
-    positions: np.ndarray
-    heights: np.ndarray
-    radii: np.ndarray
-    are_clear: np.ndarray
-
-    def part(self, rows: np.ndarray) -> _Overlaps:
-        """The charts ``rows`` of these."""
-        return _Overlaps(*(column[rows] for column in self))
+    placement: _core.Placement
+    center: np.ndarray
+    basis: np.ndarray
+    normal: np.ndarray
+    largest: float
+    radius: float
+    is_clear: bool
+    height: float
 
 
 class _Charts(NamedTuple):
@@ -269,16 +237,19 @@ class _Cover:
 
     def _forget_charts(self) -> None:
         """Begin without charts."""
-        # in two disks of radius R that touch, bent by BEND, one centre lies up to 4
-        # BEND R above the other's plane
-        self._front = _core.Front(
-            self.problem.domain.periods,
-            height=3 * BEND,
+        domain = self.problem.domain
+        self._front = _core.Cover(
+            compiled_equations(self.problem),
+            domain.scale,
+            domain.periods,
+            np.ascontiguousarray(domain.bounds),
             agree=AGREE,
-            on_disk=ON_DISK,
-            towards=TOWARDS,
+            largest=self._largest,
+            smallest=SMALLEST * self._largest,
+            bend=BEND,
+            flat=FLAT,
+            negligible=is_null.threshold,
         )
-        self._unfit_places: list[_UnfitPlace] = []
         self._unfit_seeds: list[np.ndarray] = []
         # number of charts from which other sheets have been looked for
         self._looked_from = 0
@@ -298,7 +269,7 @@ class _Cover:
         self._forget_charts()
         for i, radius in enumerate(radii.tolist()):
             disk = Disk(radius, bool(charts.are_clear[i]))
-            self.add(charts.centers[i], charts.bases[i], disk)
+            self.add(self._plane(charts.centers[i], charts.bases[i]), disk)
 
     def _charts(self, first: int = 0) -> _Charts:
         """The charts from this number on."""
@@ -372,19 +343,21 @@ class _Cover:
         outcome = Covering.COMPLETE
         while len(waiting) and outcome is Covering.COMPLETE:
             seed, waiting = waiting[0], waiting[1:]
-            if self._start(seed) is Placement.MADE:
+            if self._start(seed):
                 outcome = self.grow(charts, deadline)
                 waiting = waiting[~self.are_covered(waiting)]
         return outcome
 
-    def _start(self, seed: np.ndarray) -> Placement:
-        """Make the first chart of a surface about a regular solution (n,)."""
+    def _start(self, seed: np.ndarray) -> bool:
+        """Make the first chart of a surface about a regular solution (n,), if one fits
+        and is wanted."""
         _, right = null_spaces(self.problem, seed[None])
-        plane = right[0, -2:].T
-        placement = self._make(seed, plane, self._largest)
+        plane = np.ascontiguousarray(right[0, -2:].T)
+        candidate = _Candidate(*self._front.candidate(seed, plane, self._largest))
+        placement = self._placed(candidate)
         if placement is Placement.UNFIT:
             self._unfit_seeds.append(seed)
-        return placement
+        return placement is Placement.FITS
 
     def look_across(self) -> np.ndarray:
         """Solutions (k, n) on other sheets, next to charts from which none were looked
@@ -402,39 +375,27 @@ class _Cover:
     def grow(self, charts: int, deadline: Deadline) -> Covering:
         """Add charts at open vertices until there are none, or until a limit is
         reached."""
-        while (place := self._front.next_open()) is not None:
-            if deadline.passed:
-                return Covering.OUT_OF_TIME
-            if self._undecided > MOST_UNDECIDED:
-                return Covering.UNDECIDED
-            if len(self._front) >= charts:
-                return Covering.CHART_LIMIT
-            i, direction = place
-            placement = self._make_next(i, direction)
-            if placement is not Placement.MADE:
-                self._front.add_dead_end(i, direction)
-            if placement is Placement.UNFIT:
-                self._unfit_places.append(_UnfitPlace(i, direction))
-        return Covering.COMPLETE
+        while True:
+            undecided = MOST_UNDECIDED - self._undecided
+            growth, doubt = self._front.grow(charts, undecided, deadline.left)
+            if doubt is None:
+                return Covering[growth.name]
+            candidate, chart, direction = doubt
+            placement = self._placed(_Candidate(*candidate))
+            if placement is not Placement.FITS:
+                is_unfit = placement is Placement.UNFIT
+                self._front.refuse(chart, direction, is_unfit)
 
     def judge(self) -> Covering:
         """What is known when no more charts are wanted: places at which none fits may
         still be uncovered by the charts next to them."""
         seeds = np.array(self._unfit_seeds).reshape(-1, self.problem.n)
-        holes = list(seeds[~self.are_covered(seeds)])
-        holes += [self._above(p) for p in self._unfit_places if self._is_hole(p)]
+        holes = [*seeds[~self.are_covered(seeds)], *self._front.holes()]
         if not all(self._has_a_reason(hole) for hole in holes):
             return Covering.UNFIT
-        if self._undecided:
+        if self._undecided + self._front.undecided:
             return Covering.UNDECIDED
         return Covering.SINGULAR if holes else Covering.COMPLETE
-
-    def _above(self, place: _UnfitPlace) -> np.ndarray:
-        """Where on the rim of a chart (n,) no other one fits."""
-        i, direction = place
-        (center,), (basis,), (radius,), _ = self._front.charts(i, 1)
-        above: np.ndarray = center + radius * basis @ direction
-        return above
 
     def _has_a_reason(self, hole: np.ndarray) -> bool:
         """Whether an isolated singular point lies next to a place (n,)."""
@@ -442,88 +403,48 @@ class _Cover:
         place = self._singular_places.next_to(hole, reach)
         return place is not None and not place.is_on_curve
 
-    def _is_hole(self, place: _UnfitPlace) -> bool:
-        """Whether the polygon of a chart has a vertex outside the disk there."""
-        vertices, _ = self._front.polygon(place.chart)
-        size = np.linalg.norm(vertices, axis=1)
-        is_there = vertices @ place.direction >= TOWARDS * size
-        *_, (radius,), _ = self._front.charts(place.chart, 1)
-        is_outside = size > (1.0 + HOLE) * radius
-        return bool(np.any(is_there & is_outside))
-
-    def _make_next(self, i: int, direction: np.ndarray) -> Placement:
-        """Make the chart about the solution above the rim of chart i, in a direction
-        (2,)."""
-        (center,), (basis,), (radius,), (is_clear,) = self._front.charts(i, 1)
-        start = center + radius * basis @ direction
-        if is_clear:
-            centers, gaps = correct_normal(self.problem, start[None], basis[None])
-            is_there = gaps[0] < SOLVED
-        else:
-            rim = (radius * direction)[None]
-            centers, are_reached = follow_sheets(
-                self.problem, center[None], basis[None], rim
-            )
-            is_there = are_reached[0]
-        distance = np.linalg.norm(centers[0] - start)
-        if not is_there or distance > TOO_FAR * radius:
-            return Placement.UNFIT
-        return self._make(centers[0], basis, GROWTH * radius)
-
-    def _make(self, center: np.ndarray, basis: np.ndarray, radius: float) -> Placement:
-        """Make the chart, of at most ``radius``, about a solution (n,) with a tangent
-        plane next to ``basis``."""
-        tangent_plane, cosine = tangent_plane_at(self.problem, center, basis)
-        plane = tangent_plane.basis
-        if cosine < SMOOTH:
-            return Placement.UNFIT
-        if self._is_close_to_a_center(center, plane):
-            return Placement.COVERED
-        disk = self._disk(tangent_plane, radius)
+    def _placed(self, candidate: _Candidate) -> _core.Placement:
+        """What becomes of a candidate that has to be looked at; the chart is made if one
+        fits."""
+        if candidate.placement in (Placement.COVERED, Placement.UNFIT):
+            return candidate.placement
+        plane = TangentPlane(candidate.center, candidate.basis, candidate.normal)
+        disk: Disk | None = Disk(*candidate[-3:])
+        if candidate.placement is Placement.TIGHT:
+            disk = self._small_disk(plane, candidate.largest)
         if disk is None:
             return Placement.UNFIT
         smallest = min(disk.radius, SMALLEST_BESIDE_BOUNDS * self._largest)
-        disk = disk_beside_bounds(self.problem, tangent_plane, disk, smallest)
-        self.add(center, plane, disk)
-        return Placement.MADE
+        disk = disk_beside_bounds(self.problem, plane, disk, smallest)
+        self.add(plane, disk)
+        return Placement.FITS
 
-    def _disk(self, plane: TangentPlane, radius: float) -> Disk | None:
-        """The disk of a chart, of at most ``radius``: a small one only where no
-        singular point is the reason, as in a neck."""
+    def _small_disk(self, plane: TangentPlane, radius: float) -> Disk | None:
+        """A disk of at most ``radius`` that is smaller than usual: only where no singular
+        point is the reason, as in a neck."""
         small = SMALLEST * self._largest
-        disk = fitting_disk(self.problem, plane, min(radius, self._largest), small)
-        if disk is not None:
-            return disk
         if self._singular_places.next_to(plane.center, NEXT_TO * small) is not None:
             return None
         tiniest = TINIEST * self.problem.domain.scale
-        return fitting_disk(self.problem, plane, min(radius, small), tiniest)
+        disk = self._front.disk(*plane, min(radius, small), tiniest)
+        return None if disk is None else Disk(*disk)
 
-    def _is_close_to_a_center(self, center: np.ndarray, basis: np.ndarray) -> bool:
-        """Whether a chart about ``center`` (n,) would be close to another one."""
-        near = self._near_charts(center, basis, self._largest)
-        distances = np.linalg.norm(near.positions, axis=1)
-        close = near.part(distances / near.radii < TOO_CLOSE)
-        same = self._on_sheet(center, basis, is_clear=True, near=close)
-        return len(same.numbers) > 0
-
-    # --- overlaps ---------------------------------------------------------------------
+    # --- adding -----------------------------------------------------------------------
 
     def add_all(self, atlas: ChartAtlas) -> None:
         """Add the charts of an atlas."""
         for i in range(len(atlas)):
             disk = Disk(float(atlas.radii[i]), is_clear=False)
-            self.add(atlas.centers[i], atlas.bases[i], disk)
+            self.add(self._plane(atlas.centers[i], atlas.bases[i]), disk)
 
-    def add(self, center: np.ndarray, basis: np.ndarray, disk: Disk) -> None:
+    def _plane(self, center: np.ndarray, basis: np.ndarray) -> TangentPlane:
+        """The plane of a chart that was made before."""
+        return TangentPlane(center, basis, np.zeros(self.problem.n))
+
+    def add(self, plane: TangentPlane, disk: Disk) -> None:
         """Add a chart and cut its polygon and those of all charts that overlap it."""
-        radius = disk.radius
-        plane = TangentPlane(center, basis, np.zeros(self.problem.n))
-        polygon = self._cut_by_bounds(octagon(radius), plane, radius)
-        near = self._near_charts(center, basis, radius)
-        others = self._on_sheet(center, basis, disk.is_clear, near)
-        charts = others.numbers, others.positions, others.heights
-        self._front.add(center, basis, radius, disk.is_clear, *polygon, *charts)
+        polygon = self._cut_by_bounds(octagon(disk.radius), plane, disk.radius)
+        self._front.add(plane.center, plane.basis, *disk, *polygon)
 
     def _cut_by_bounds(
         self, polygon: Polygon, plane: TangentPlane, radius: float
@@ -546,29 +467,3 @@ class _Cover:
                     label = BORDER - 2 * int(k) - side
                     polygon = polygon.clip(normal, room, label)
         return polygon
-
-    def _near_charts(
-        self, center: np.ndarray, basis: np.ndarray, radius: float
-    ) -> _Overlaps:
-        """The charts that overlap a disk about ``center`` (n,), or lie above it."""
-        return _Overlaps(*self._front.overlaps(center, basis, radius))
-
-    def _on_sheet(
-        self, center: np.ndarray, basis: np.ndarray, is_clear: bool, near: _Overlaps
-    ) -> _Overlaps:
-        """Those of the charts whose centres are on the sheet of the solution ``center``
-        (n,): above its plane ``basis`` the sheet leads to them."""
-        is_open = ~(near.are_clear & is_clear)
-        if not np.any(is_open):
-            return near
-        numbers = near.numbers[is_open]
-        starts = np.tile(center, (len(numbers), 1))
-        planes = np.tile(basis, (len(numbers), 1, 1))
-        ends, are_reached = follow_sheets(
-            self.problem, starts, planes, near.positions[is_open]
-        )
-        is_same = self._are_same(ends, self._charts().centers[numbers], planes)
-        self._undecided += int(np.count_nonzero(~are_reached))
-        is_on_sheet = np.ones(len(near.numbers), dtype=bool)
-        is_on_sheet[is_open] = ~are_reached | is_same
-        return near.part(is_on_sheet)

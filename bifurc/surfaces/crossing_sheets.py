@@ -59,6 +59,8 @@ def has_uncovered_crossing(problem: Problem, charts: ChartAtlas, agree: float) -
 def is_on_singular_curve(problem: Problem, located: LocatedPoint) -> bool:
     """Whether other singular points of the same kind are near one: on a curve of them,
     which may be as small as the smallest distance at which they are looked for."""
+    if located.is_isolated:
+        return False
     steps = problem.domain.scale * np.array(NEXT) + NEXT_TO_ERROR * located.error
     return any(_has_another_beside(problem, located, step) for step in steps.tolist())
 

@@ -7,24 +7,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc import _core
-from bifurc.decisions import is_null
 from bifurc.numerics.binary_forms import unit_vectors
-from bifurc.numerics.corrector import compiled_equations
-from bifurc.problem import Problem
 
 # Largest height of the surface above a disk, over its radius.
-BEND = 0.12
+BEND = 0.16
 # Smallest cosine between tangent planes of a disk and above its rim, and of charts that
 # may be neighbours.
-AGREE = 0.8
+FLAT, AGREE = 0.92, 0.8
 RIM = unit_vectors(np.pi / 4 * np.arange(8))
 
 
 class TangentPlane(NamedTuple):
     """The plane ``basis`` (n, 2) at a solution ``center`` (n,), and the unit vector
     ``normal`` (n,) across the surface along which F' is the weakest: another sheet may
-    be near there. It is zero where no equation is left."""
+    be near there. It is zero where no equation is left. Where the null space is larger, at
+    singular points, the plane is the part of it that is turned as little as possible
+    against that of the chart from which it was reached."""
 
     center: np.ndarray
     basis: np.ndarray
@@ -32,51 +30,16 @@ class TangentPlane(NamedTuple):
 
 
 class Disk(NamedTuple):
-    """The ``radius`` of a chart, and whether other sheets are far from it."""
+    """The ``radius`` of a chart, whether other sheets are far from it, and the ``height``
+    of the surface above it, over the radius, 0 where it was not looked at.
+
+    The surface stays close to it, and tangent planes agree. Other sheets are far from it
+    where solutions straight above the rim are those to which the sheet leads from the
+    centre: where Newton's method comes back to the centre, from beside it, and at once,
+    as everywhere, and F' across the plane is all along the rim much what it is at the
+    centre. Where another sheet crosses, it changes its sign.
+    """
 
     radius: float
     is_clear: bool
-
-
-def tangent_plane_at(
-    problem: Problem, center: np.ndarray, near: np.ndarray
-) -> tuple[TangentPlane, float]:
-    """The tangent plane of a surface at a solution ``center`` (n,), turned as little as
-    possible against the basis ``near`` (n, 2), and the smallest cosine between the two.
-
-    Where the null space is larger, at singular points, the part of it that is nearest to
-    ``near`` is taken.
-    """
-    basis, normal, cosine = _core.tangent_plane(
-        compiled_equations(problem),
-        center,
-        np.ascontiguousarray(near),
-        negligible=is_null.threshold,
-    )
-    return TangentPlane(center, basis, normal), cosine
-
-
-def fitting_disk(
-    problem: Problem, plane: TangentPlane, largest: float, smallest: float
-) -> Disk | None:
-    """The largest disk to which the surface stays close and where tangent planes agree,
-    with a radius between these two; None if there is none.
-
-    Other sheets are far from it where solutions straight above the rim are those to which
-    the sheet leads from the centre: where Newton's method comes back to the centre, from
-    beside it, and at once, as everywhere, and F' across the plane is all along the rim
-    much what it is at the centre. Where another sheet crosses, it changes its sign.
-    """
-    disk = _core.fitting_disk(
-        compiled_equations(problem),
-        problem.domain.scale,
-        plane.center,
-        np.ascontiguousarray(plane.basis),
-        plane.normal,
-        largest=largest,
-        smallest=smallest,
-        bend=BEND,
-        agree=AGREE,
-        negligible=is_null.threshold,
-    )
-    return None if disk is None else Disk(*disk)
+    height: float = 0.0

@@ -86,6 +86,17 @@ class Graphs:
         n)."""
         return slopes_above(self._problem, points, self._planes)
 
+    def heights(
+        self, positions: np.ndarray, points: np.ndarray, slopes: np.ndarray
+    ) -> np.ndarray:
+        """Heights (k, n) of the graphs above positions (k, 2), from their ``points`` (k, n)
+        and ``slopes`` (k, n, 2) next to them: a correction may move a point a little along
+        the plane."""
+        heights: np.ndarray = points - self.flat(positions)
+        aside = np.einsum("kij,ki->kj", self._planes, heights)
+        heights -= np.einsum("kij,kj->ki", slopes, aside)
+        return heights
+
     def onto_bounds(
         self, positions: np.ndarray, on_bound: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:

@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc import _core
-from bifurc.numerics.binary_forms import unit_vectors
 
 OUTLINE = -1  # label of an edge that nothing has cut yet
 BORDER = -2  # of one along the first bound; the others follow below it
@@ -37,9 +36,7 @@ class Polygon(NamedTuple):
 
 def octagon(radius: float) -> Polygon:
     """The octagon around the circle of ``radius``."""
-    angles = np.pi / 4 * (np.arange(8) + 0.5)
-    size = radius / np.cos(np.pi / 8)
-    return Polygon(size * unit_vectors(angles), np.full(8, OUTLINE))
+    return Polygon(*_core.octagon(radius))
 
 
 class FlatCharts(NamedTuple):

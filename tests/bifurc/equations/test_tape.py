@@ -199,3 +199,18 @@ def test_a_number_that_is_not_positive_has_no_power_that_is_an_unknown(base):
     writer = TapeWriter(1)
     tape = writer.tape([writer.power(writer.constant(base), writer.unknown(0))])
     assert np.isnan(tape.compiled.residuals(np.array([[1.5]]))).all()
+
+
+def test_many_points_at_once_have_the_bits_of_each_alone():
+    # of some the numbers on the way, or all derivatives, are not finite
+    def function(u):
+        x, y, z = u
+        grown = 1.0 / (1.0 + np.exp(x))
+        return [grown + y**3 / z, np.sin(x) * np.sqrt(y) - z, np.arctan2(y, z) * x]
+
+    problem = FunctionProblem(function, [(-2, 2)] * 3)
+    points = np.random.default_rng(0).uniform(-2, 2, (23, 3))
+    points[5, 0], points[9, 2], points[13, 1] = 1000.0, 0.0, 0.0
+    for values in (problem.residuals, problem.jacobians):
+        alone = np.concatenate([values(point[None]) for point in points])
+        assert np.array_equal(values(points), alone, equal_nan=True)
