@@ -55,7 +55,7 @@ class Module:
         family = self.family
         paths = family.paths_to(family.given)
         if np.any(paths.ends == PathEnd.AT_INFINITY):
-            _require_no_short_length(self.structure)
+            require_no_short_length(self.structure)
         return family.points(family.real_ends(paths))
 
 
@@ -88,7 +88,7 @@ def _assemblies(module: Module) -> DyadSlices:
     )
 
 
-def _require_no_short_length(structure: Structure) -> None:
+def require_no_short_length(structure: Structure) -> None:
     """Raise `UnfollowedError` where paths may come back that seem to end at infinity."""
     points = [
         variable.motion.point / structure.unit

@@ -43,6 +43,7 @@ from linkages.structure.structure import (
 Number: TypeAlias = Any
 Point: TypeAlias = Any  # three of them, in any sequence
 
+DRIVER = "driver"  # the block of its value
 ROTATION = 6  # numbers of an embedded rotation: two orthonormal vectors
 X_AXIS, Y_AXIS, ORIGIN = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
 OF_SINES = -0.5j  # the sine of x is this times exp(i x) - exp(-i x)
@@ -87,7 +88,8 @@ class Places:
 
 
 class ClosureFamily(RealFamily):
-    """The closures of a ``structure``.
+    """The closures of a ``structure``, with the unknown of the number ``driver``, if
+    there is one, at a value that is a parameter.
 
     Raises `ValueError` where they are more or fewer than the other unknowns, and for
     what is no polynomial: helical joints, ratios of coupled turns other than 1 and -1.
@@ -95,8 +97,8 @@ class ClosureFamily(RealFamily):
 
     most: ClassVar[int] = MOST_SOLUTIONS
 
-    def __init__(self, structure: Structure):
-        self.structure = structure
+    def __init__(self, structure: Structure, driver: int | None = None):
+        self.structure, self.driver = structure, driver
         self.placement = self._placement()
         self._require_square()
         _require_polynomials(structure)
@@ -132,6 +134,7 @@ class ClosureFamily(RealFamily):
         unknowns = len(structure.unknowns) - len(self.standing)
         unknowns -= 3 * len(structure.embedded)
         equations = sum(map(self.freedoms, self.closures))
+        equations += self.driver is not None
         if unknowns != equations:
             raise ValueError("it moves, or more holds it than has to")
 
@@ -223,6 +226,8 @@ class ClosureFamily(RealFamily):
             if closure.rod is not None and closure.rod.leg is not None:
                 parameters.add("leg", k, [closure.rod.length / structure.unit])
             parameters.add("target", k, self._given_target(closure))
+        if self.driver is not None:
+            parameters.add(DRIVER, 0, [1.0])
         return parameters
 
     def _locked(self, variable: Variable) -> list[float]:
@@ -312,7 +317,7 @@ class ClosureFamily(RealFamily):
         """Which parameters (q,) are targets."""
         are_targets = np.zeros(len(self.parameters.given), dtype=bool)
         for (name, _), place in self.parameters.blocks.items():
-            are_targets[place] |= name == "target"
+            are_targets[place] |= name in ("target", DRIVER)
         return are_targets
 
     @cached_property
@@ -326,6 +331,16 @@ class ClosureFamily(RealFamily):
     def given(self) -> np.ndarray:
         """The parameters (q,) of the structure."""
         return np.array(self.parameters.given, dtype=complex)
+
+    def given_at(self, value: complex) -> np.ndarray:
+        """The same with the driver at a value, an angle in rad."""
+        assert self.driver is not None
+        given = self.given
+        is_angle = self.structure.unknowns[self.driver].is_angle
+        given[self.parameters.blocks[DRIVER, 0]] = (
+            np.exp(1j * value) if is_angle else value
+        )
+        return given
 
     @cached_property
     def projection(self) -> Projection:
@@ -371,6 +386,8 @@ class ClosureFamily(RealFamily):
         chains = _Chains(self, x, p)
         for k, closure in enumerate(self.closures):
             p[self.parameters.blocks["target", k]] = chains.reached(k, closure)
+        if self.driver is not None:
+            p[self.parameters.blocks[DRIVER, 0]] = x[self.columns[self.driver].start]
         return x, p
 
 
@@ -637,7 +654,8 @@ class _Chains:
         return quaternion if is_spherical else [*quaternion, *place]
 
     def own_gaps(self) -> list[Number]:
-        """By how much the coordinates are none of angles and rotations."""
+        """By how much the coordinates are none of angles and rotations, and then the
+        driver is elsewhere."""
         gaps = []
         unknowns, places = self.structure.unknowns, self.family.columns
         for unknown, place in zip(unknowns, places, strict=True):
@@ -649,6 +667,9 @@ class _Chains:
             numbers = list(self.x[first : first + ROTATION])
             a, b = numbers[:3], numbers[3:]
             gaps += [_dot(a, a) - 1.0, _dot(b, b) - 1.0, _dot(a, b)]
+        if self.family.driver is not None:
+            (value,) = self._block(DRIVER, 0)
+            gaps.append(self.x[places[self.family.driver].start] - value)
         return gaps
 
 
