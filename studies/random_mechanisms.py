@@ -20,11 +20,9 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, NamedTuple
 
 import click
-import networkx as nx
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -528,9 +526,7 @@ class Curves:
         self.places = [
             np.linspace(0.0, branch.length, SAMPLES) for branch in self.branches
         ]
-        self.samples = [
-            self.poses(number, s) for number, s in enumerate(self.places)
-        ]
+        self.samples = [self.poses(number, s) for number, s in enumerate(self.places)]
         rows = [poses.rows for poses in self.samples]
         self.gaps = [np.linalg.norm(np.diff(one, axis=0), axis=1).max() for one in rows]
         self.trees = [cKDTree(one) for one in rows]
@@ -623,7 +619,9 @@ def draw(kind: str, seed: int, number: int) -> Mechanism:
             continue
 
 
-def compare(mechanism: Mechanism, number: int, budget: float, starts: int) -> Comparison:
+def compare(
+    mechanism: Mechanism, number: int, budget: float, starts: int
+) -> Comparison:
     """The map of a mechanism beside so many samples."""
     before = time.process_time()
     atlas = map_linkage(mechanism, settings=SearchSettings(budget=budget))

@@ -39,7 +39,7 @@ from bifurc.paths.homogeneous import (
     write_linear,
     write_monomial,
 )
-from bifurc.paths.monodromy import Fibre, GenericSolutions, solve_generic
+from bifurc.paths.monodromy import Effort, Fibre, GenericSolutions, solve_generic
 
 FEW = 32  # paths that are followed faster than a generic member is solved
 
@@ -153,9 +153,8 @@ class SparseFamily:
         parameters = complex_normal(rng, self.family.parameters)
         parameters[self.constants] -= self.family.residuals(start[None], parameters)[0]
         moving = int(self.constants[self.pencil])
-        return solve_generic(
-            self.family, start, parameters, rng, deadline, most, moving
-        )
+        effort = Effort.for_solutions(most, deadline)
+        return solve_generic(self.family, start, parameters, rng, effort, most, moving)
 
     def solve(
         self,

@@ -19,6 +19,8 @@ from bifurc.limits import current_deadline
 from bifurc.paths.family import Family
 from bifurc.paths.follow import PathEnd, Paths, copy_of, follow_paths
 from bifurc.paths.monodromy import (
+    PATHS_EACH,
+    Effort,
     Fibre,
     GenericSolutions,
     Projection,
@@ -40,6 +42,11 @@ class RealFamily(ABC):
 
     # complex solutions that are looked for: some seconds
     most: ClassVar[int]
+
+    @property
+    def most_paths(self) -> int:
+        """How many paths are followed at most to find them."""
+        return PATHS_EACH * self.most
 
     @property
     @abstractmethod
@@ -70,10 +77,23 @@ class RealFamily(ABC):
         for, and where the time is over.
         """
         name = name_of(self.family)
+        if name in _unknown:
+            raise UnfollowedError(_unknown[name])
         if name not in _known:
             shipped = _shipped().get(name)
-            _known[name] = shipped or find_generic(self, self.most)
+            try:
+                _known[name] = shipped or find_generic(self, self.most)
+            except UnfollowedError as error:
+                if not current_deadline().passed:
+                    _unknown[name] = str(error)
+                raise
         return _known[name]
+
+    @property
+    def is_regular(self) -> bool:
+        """Whether the solutions of a generic member are isolated."""
+        start, parameters = self.generic_member(np.random.default_rng(SEED), 0)
+        return self.family.is_regular(start, parameters)
 
     def paths_to(self, last: np.ndarray) -> Paths:
         """The paths to all isolated solutions of the member with the parameters
@@ -117,19 +137,7 @@ class RealFamily(ABC):
 
 
 _known: dict[str, GenericSolutions] = {}
-
-
-def generic_solutions(one: RealFamily) -> GenericSolutions:
-    """Those of one generic member: of a common type, known, or found.
-
-    Raises `UnfollowedError` where it moves, where there are more than are looked for,
-    and where the time is over.
-    """
-    name = name_of(one.family)
-    if name not in _known:
-        shipped = _shipped().get(name)
-        _known[name] = shipped or find_generic(one, one.most)
-    return _known[name]
+_unknown: dict[str, str] = {}  # why
 
 
 def find_generic(one: RealFamily, most: int) -> GenericSolutions:
@@ -139,17 +147,17 @@ def find_generic(one: RealFamily, most: int) -> GenericSolutions:
     Raises `UnfollowedError`.
     """
     deadline = current_deadline()
+    if not one.is_regular:
+        raise UnfollowedError("it moves, or more holds it than has to")
     for attempt in range(ATTEMPTS):
         rng = np.random.default_rng(SEED + attempt)
         start, parameters = one.generic_member(rng, attempt)
-        if not one.family.is_regular(start, parameters):
-            raise UnfollowedError("it moves, or more holds it than has to")
         generic = solve_generic(
             one.family,
             start,
             parameters,
             rng,
-            deadline,
+            Effort(deadline, one.most_paths),
             most,
             projection=one.projection,
         )

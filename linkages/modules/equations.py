@@ -51,6 +51,9 @@ FLAT = {ClosureKind.CYCLE: 3, ClosureKind.POINT: 2, ClosureKind.ROD: 1}
 # Complex ones of a generic member that are looked for. Types with more of them are at
 # hand, or are not followed.
 MOST_SOLUTIONS = 48
+# that are followed to find those of a driven mechanism, of which others are to be found
+# as well: some seconds
+MOST_DRIVEN_PATHS = 1500
 # Imaginary parts of the numbers of generic members that are tried, one after the other.
 # Along a chain of displacements products of numbers that are far from real become large;
 # from numbers that are nearly real paths pass near singular members.
@@ -88,8 +91,9 @@ class Places:
 
 
 class ClosureFamily(RealFamily):
-    """The closures of a ``structure``, with the unknown of the number ``driver``, if
-    there is one, at a value that is a parameter.
+    """The closures of a ``structure``, with a linear function of the unknowns of some
+    numbers, the ``drivers``, at a value that is a parameter: of the unknown itself where
+    there is one, and without any there is no such function.
 
     Raises `ValueError` where they are more or fewer than the other unknowns, and for
     what is no polynomial: helical joints, ratios of coupled turns other than 1 and -1.
@@ -97,8 +101,13 @@ class ClosureFamily(RealFamily):
 
     most: ClassVar[int] = MOST_SOLUTIONS
 
-    def __init__(self, structure: Structure, driver: int | None = None):
-        self.structure, self.driver = structure, driver
+    @property
+    def most_paths(self) -> int:
+        """How many paths are followed at most to find them."""
+        return MOST_DRIVEN_PATHS if self.drivers else super().most_paths
+
+    def __init__(self, structure: Structure, drivers: tuple[int, ...] = ()):
+        self.structure, self.drivers = structure, drivers
         self.placement = self._placement()
         self._require_square()
         _require_polynomials(structure)
@@ -134,7 +143,7 @@ class ClosureFamily(RealFamily):
         unknowns = len(structure.unknowns) - len(self.standing)
         unknowns -= 3 * len(structure.embedded)
         equations = sum(map(self.freedoms, self.closures))
-        equations += self.driver is not None
+        equations += bool(self.drivers)
         if unknowns != equations:
             raise ValueError("it moves, or more holds it than has to")
 
@@ -226,7 +235,7 @@ class ClosureFamily(RealFamily):
             if closure.rod is not None and closure.rod.leg is not None:
                 parameters.add("leg", k, [closure.rod.length / structure.unit])
             parameters.add("target", k, self._given_target(closure))
-        if self.driver is not None:
+        if self.drivers:
             parameters.add(DRIVER, 0, [1.0])
         return parameters
 
@@ -333,14 +342,22 @@ class ClosureFamily(RealFamily):
         return np.array(self.parameters.given, dtype=complex)
 
     def given_at(self, value: complex) -> np.ndarray:
-        """The same with the driver at a value, an angle in rad."""
-        assert self.driver is not None
+        """The same with the drivers at a value, a single angle in rad."""
         given = self.given
-        is_angle = self.structure.unknowns[self.driver].is_angle
-        given[self.parameters.blocks[DRIVER, 0]] = (
-            np.exp(1j * value) if is_angle else value
-        )
+        is_angle = self.structure.unknowns[self.drivers[0]].is_angle
+        is_turn = is_angle and len(self.drivers) == 1
+        at = np.exp(1j * value) if is_turn else value
+        given[self.parameters.blocks[DRIVER, 0]] = at
         return given
+
+    def driven(self, x: np.ndarray) -> Number:
+        """The linear function of coordinates x (n,) that is held."""
+        firsts = [self.columns[number].start for number in self.drivers]
+        value = x[firsts[0]]
+        weights = np.random.default_rng(len(firsts)).normal(size=len(firsts))
+        for weight, first in zip(weights[1:].tolist(), firsts[1:], strict=True):
+            value = value + weight * x[first]
+        return value
 
     @cached_property
     def projection(self) -> Projection:
@@ -386,8 +403,8 @@ class ClosureFamily(RealFamily):
         chains = _Chains(self, x, p)
         for k, closure in enumerate(self.closures):
             p[self.parameters.blocks["target", k]] = chains.reached(k, closure)
-        if self.driver is not None:
-            p[self.parameters.blocks[DRIVER, 0]] = x[self.columns[self.driver].start]
+        if self.drivers:
+            p[self.parameters.blocks[DRIVER, 0]] = self.driven(x)
         return x, p
 
 
@@ -655,7 +672,7 @@ class _Chains:
 
     def own_gaps(self) -> list[Number]:
         """By how much the coordinates are none of angles and rotations, and then the
-        driver is elsewhere."""
+        drivers are elsewhere."""
         gaps = []
         unknowns, places = self.structure.unknowns, self.family.columns
         for unknown, place in zip(unknowns, places, strict=True):
@@ -667,9 +684,9 @@ class _Chains:
             numbers = list(self.x[first : first + ROTATION])
             a, b = numbers[:3], numbers[3:]
             gaps += [_dot(a, a) - 1.0, _dot(b, b) - 1.0, _dot(a, b)]
-        if self.family.driver is not None:
+        if self.family.drivers:
             (value,) = self._block(DRIVER, 0)
-            gaps.append(self.x[places[self.family.driver].start] - value)
+            gaps.append(self.family.driven(self.x) - value)
         return gaps
 
 

@@ -27,7 +27,7 @@ from linkages.modules.assemblies import TIME, require_no_short_length
 from linkages.modules.equations import ClosureFamily
 from linkages.structure.structure import Structure
 
-MOST_COORDINATES = 10  # of a mechanism that is looked at: with more, paths take long
+MOST_COORDINATES = 14  # of a mechanism that is looked at: with more, paths take long
 MOST_DRIVERS = 2
 
 
@@ -44,17 +44,17 @@ class Motions:
             raise UnfollowedError("something follows many turns")
         numbers = range(len(structure.unknowns))
         try:
-            self.families = [ClosureFamily(structure, number) for number in numbers]
+            self.families = [ClosureFamily(structure, (number,)) for number in numbers]
         except ValueError as error:
             raise UnfollowedError(str(error)) from error
-        if any(family.n > MOST_COORDINATES for family in self.families):
+        if self.families[0].standing or self.families[0].n > MOST_COORDINATES:
             raise UnfollowedError("there are too many unknowns")
 
     def drivers(self, rng: np.random.Generator) -> list[int]:
         """A few unknowns, by number, that move on every motion, those with the least
         configurations at a value."""
         moving = np.ones(len(self.families), dtype=bool)
-        for family in self.families:
+        for family in self._of_all_motions():
             (value,) = complex_normal(rng, 1)
             given = family.given_at(value)
             points = self._paths(family, value).regular
@@ -65,15 +65,31 @@ class Motions:
             for number in np.flatnonzero(moving).tolist()
             if self.structure.unknowns[number].variable >= 0
         ]
-        counts = [family.generic.count for family in self.families]
-        return sorted(of_joints, key=lambda number: counts[number])[:MOST_DRIVERS]
+        counts = [self.families[number].generic.count for number in of_joints]
+        order = np.argsort(counts, kind="stable")[:MOST_DRIVERS]
+        return [of_joints[place] for place in order.tolist()]
+
+    def _of_all_motions(self) -> list[ClosureFamily]:
+        """Families of which on every motion one has a driver that moves: of every
+        unknown but those that stand still for generic lengths, and of all of these
+        together with another one."""
+        moving = [family for family in self.families if family.is_regular]
+        if not moving:
+            raise UnfollowedError("it moves, or more holds it than has to")
+        still = [one.drivers[0] for one in self.families if not one.is_regular]
+        if still:
+            together = (moving[0].drivers[0], *still)
+            moving.append(ClosureFamily(self.structure, together))
+        return moving
 
     def points(self, driver: int, place: float) -> np.ndarray:
         """All real configurations (k, n) within the limits with a driver at a place."""
         family = self.families[driver]
         points = family.points(family.real_ends(self._paths(family, place)))
         points[:, driver] = place
-        inside = [one for point in points for one in within_limits(self.structure, point)]
+        inside = [
+            one for point in points for one in within_limits(self.structure, point)
+        ]
         return np.array(inside).reshape(-1, len(self.families))
 
     def _paths(self, family: ClosureFamily, value: complex) -> Paths:
@@ -89,13 +105,8 @@ def _do_move(family: ClosureFamily, jacobian: np.ndarray) -> np.ndarray:
     derivatives (m, c) of the equations, the last of which holds the driver."""
     rates = np.abs(np.linalg.svd(jacobian[:-1])[2][-1])
     shares = rates / rates.max()
-    return np.array(
-        [
-            place.start < place.stop
-            and not is_singular_path_end(float(shares[place.start]))
-            for place in family.columns
-        ]
-    )
+    firsts = [place.start for place in family.columns]
+    return np.array([not is_singular_path_end(float(shares[k])) for k in firsts])
 
 
 def for_subject(
