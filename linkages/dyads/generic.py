@@ -46,7 +46,7 @@ class RealFamily(ABC):
     @property
     def most_paths(self) -> int:
         """How many paths are followed at most to find them."""
-        return PATHS_EACH * self.most
+        return ATTEMPTS * PATHS_EACH * self.most
 
     @property
     @abstractmethod
@@ -149,6 +149,7 @@ def find_generic(one: RealFamily, most: int) -> GenericSolutions:
     deadline = current_deadline()
     if not one.is_regular:
         raise UnfollowedError("it moves, or more holds it than has to")
+    effort = Effort(deadline, one.most_paths)
     for attempt in range(ATTEMPTS):
         rng = np.random.default_rng(SEED + attempt)
         start, parameters = one.generic_member(rng, attempt)
@@ -157,7 +158,7 @@ def find_generic(one: RealFamily, most: int) -> GenericSolutions:
             start,
             parameters,
             rng,
-            Effort(deadline, one.most_paths),
+            effort,
             most,
             projection=one.projection,
         )

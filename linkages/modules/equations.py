@@ -53,7 +53,7 @@ FLAT = {ClosureKind.CYCLE: 3, ClosureKind.POINT: 2, ClosureKind.ROD: 1}
 MOST_SOLUTIONS = 48
 # that are followed to find those of a driven mechanism, of which others are to be found
 # as well: some seconds
-MOST_DRIVEN_PATHS = 1500
+MOST_DRIVEN_PATHS = 1000
 # Imaginary parts of the numbers of generic members that are tried, one after the other.
 # Along a chain of displacements products of numbers that are far from real become large;
 # from numbers that are nearly real paths pass near singular members.
@@ -124,9 +124,9 @@ class ClosureFamily(RealFamily):
         variables = structure.mechanism.variables
         motions = [one.motion for one in variables if one.locked != 0.0]
         placement = Placement.of_chain(motions, structure.unit)
-        if placement.is_planar and not all(
-            one.is_turn or abs(placement.direction(one)[2]) == 0.0 for one in motions
-        ):
+        slides = [placement.direction(one) for one in motions if not one.is_turn]
+        leave_plane = placement.is_planar and any(abs(one[2]) > 0.0 for one in slides)
+        if leave_plane or (placement.is_spherical and slides):
             return Placement(np.zeros(3), np.eye(3), structure.unit)
         return placement
 

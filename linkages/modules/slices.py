@@ -27,7 +27,7 @@ from linkages.modules.assemblies import TIME, require_no_short_length
 from linkages.modules.equations import ClosureFamily
 from linkages.structure.structure import Structure
 
-MOST_COORDINATES = 14  # of a mechanism that is looked at: with more, paths take long
+MOST_COORDINATES = 12  # of a mechanism that is looked at: with more, paths take long
 MOST_DRIVERS = 2
 
 
