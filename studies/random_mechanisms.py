@@ -631,14 +631,14 @@ def compare(
     samples = bodies.closed(bodies.random(rng, starts))
     samples = samples.take(bodies.is_within_limits(samples, margin=1e-3))
     curves = Curves(atlas, bodies)
-    faults, followed = _faults(atlas, bodies, curves, samples)
+    faults, followed = faults_of(atlas, bodies, curves, samples)
     count = len(samples.shift)
     return Comparison(
         number, mechanism.name, atlas, seconds, tuple(faults), count, followed
     )
 
 
-def _faults(
+def faults_of(
     atlas: Atlas, bodies: Bodies, curves: Curves, samples: Poses
 ) -> tuple[list[str], int]:
     """What is wrong with an atlas, and how many curves were followed."""
