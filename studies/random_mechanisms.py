@@ -20,6 +20,7 @@ import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import click
@@ -278,9 +279,9 @@ class Bodies:
         if joint.kind in (R, U, S) or joint.locked == (0.0,):
             self.equal.append((point(first), point(second)))
         else:
-            for one in across:
-                nothing = self._add(first, 0.0 * one, False)
-                direction = self._add(first, one, False)
+            for vector in across:
+                nothing = self._add(first, 0.0 * vector, False)
+                direction = self._add(first, vector, False)
                 self.products.append((direction, nothing, point(first), point(second)))
         if joint.kind is U:
             other = np.array(joint.second_direction)
@@ -321,10 +322,9 @@ class Bodies:
     def _products(self, values: np.ndarray) -> np.ndarray:
         """The inner products (k, p) of differences of vectors (k, f, 3)."""
         a, b, c, d = self._factors
-        products: np.ndarray = (values[:, a] - values[:, b]) * (
-            values[:, c] - values[:, d]
-        )
-        return products.sum(axis=2)
+        first, second = values[:, a] - values[:, b], values[:, c] - values[:, d]
+        products: np.ndarray = (first * second).sum(axis=2)
+        return products
 
     @property
     def _factors(self) -> np.ndarray:
@@ -474,12 +474,10 @@ class Bodies:
             inside &= (slide > low + room) & (slide < high - room)
         return inside
 
-    @property
+    @cached_property
     def limits(self) -> dict[str, tuple[float, float]]:
         """Within which slides are followed."""
-        if "_limits" not in vars(self):
-            self._limits = Readout(self.mechanism).limits()
-        return self._limits
+        return Readout(self.mechanism).limits()
 
 
 def _frame_along(direction: Sequence[float] | None) -> tuple[np.ndarray, ...]:
@@ -543,17 +541,17 @@ class Curves:
 
     def holding(self, poses: Poses) -> np.ndarray:
         """Which forms hold which poses (k, forms)."""
-        held = [self._distances(k, poses.rows) for k in range(len(self.branches))]
-        return np.array(held).reshape(-1, len(poses.shift)).T < ON_FORM
+        distances = [self._distances(k, poses.rows) for k in range(len(self.branches))]
+        holding: np.ndarray = np.reshape(distances, (-1, len(poses.shift))).T < ON_FORM
+        return holding
 
     def _distances(self, form: int, rows: np.ndarray) -> np.ndarray:
         """How far positions (k, d) are from a form."""
-        if not len(rows):
-            return np.zeros(0)
+        distances: np.ndarray
         distances, nearest = self.trees[form].query(rows)
         length = self.branches[form].length
         step = length / (SAMPLES - 1)
-        near = distances < self.gaps[form]
+        near = distances < self.gaps[form]  # others are on other forms, or on none
         if not near.any():
             return distances
         s, rows = self.places[form][nearest[near]], rows[near]
@@ -575,7 +573,8 @@ class Curves:
 @dataclass(frozen=True)
 class Comparison:
     """A mechanism by its ``number``, its map and what the samples say of it: ``faults``,
-    none where it is right, and how many closed positions and curves were ``sampled`` and ``followed``."""
+    none where it is right, how many closed positions were ``sampled``, and how many
+    curves ``followed``."""
 
     number: int
     name: str

@@ -53,7 +53,7 @@ FLAT = {ClosureKind.CYCLE: 3, ClosureKind.POINT: 2, ClosureKind.ROD: 1}
 MOST_SOLUTIONS = 48
 # that are followed to find those of a driven mechanism, of which others are to be found
 # as well: some seconds
-MOST_DRIVEN_PATHS = 1000
+MOST_DRIVEN_PATHS = 600
 # Imaginary parts of the numbers of generic members that are tried, one after the other.
 # Along a chain of displacements products of numbers that are far from real become large;
 # from numbers that are nearly real paths pass near singular members.

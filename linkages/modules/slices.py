@@ -27,7 +27,7 @@ from linkages.modules.assemblies import TIME, require_no_short_length
 from linkages.modules.equations import ClosureFamily
 from linkages.structure.structure import Structure
 
-MOST_COORDINATES = 12  # of a mechanism that is looked at: with more, paths take long
+MOST_COORDINATES = 11  # of a mechanism that is looked at: with more, paths take long
 MOST_DRIVERS = 2
 
 
@@ -42,13 +42,15 @@ class Motions:
         self.structure = structure
         if follows_many_turns(structure):
             raise UnfollowedError("something follows many turns")
-        numbers = range(len(structure.unknowns))
         try:
-            self.families = [ClosureFamily(structure, (number,)) for number in numbers]
+            first = ClosureFamily(structure, (0,))
         except ValueError as error:
             raise UnfollowedError(str(error)) from error
-        if self.families[0].standing or self.families[0].n > MOST_COORDINATES:
+        if first.standing or first.n > MOST_COORDINATES:
             raise UnfollowedError("there are too many unknowns")
+        numbers = range(1, len(structure.unknowns))
+        others = [ClosureFamily(structure, (number,)) for number in numbers]
+        self.families = [first, *others]
 
     def drivers(self, rng: np.random.Generator) -> list[int]:
         """A few unknowns, by number, that move on every motion, those with the least
