@@ -105,20 +105,22 @@ class RealFamily(ABC):
         start = self.generic.fibre
         rng = np.random.default_rng(SEED)
         for attempt in reversed(range(ATTEMPTS)):
-            paths = self._followed(start, last)
+            paths = self.followed(start, last)
             if np.any(paths.ends == PathEnd.SINGULAR):
                 raise UnfollowedError("some configurations are singular or move")
             if not np.any(paths.is_lost) or current_deadline().passed:
                 break
             _, moved = self.generic_member(rng, attempt)
-            elsewhere = self._followed(start, moved)
+            elsewhere = self.followed(start, moved)
             if np.all(elsewhere.is_regular):
                 start = Fibre(moved, elsewhere.points)
         if np.any(paths.is_lost):
             raise UnfollowedError(f"paths were lost: {', '.join(paths.reasons())}")
         return paths
 
-    def _followed(self, start: Fibre, last: np.ndarray) -> Paths:
+    def followed(self, start: Fibre, last: np.ndarray) -> Paths:
+        """The paths from the solutions of one member to the one with the parameters
+        ``last`` (q,)."""
         solutions, first = start.solutions, start.parameters
         return follow_paths(self.family, solutions, first, last, current_deadline())
 

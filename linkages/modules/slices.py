@@ -15,6 +15,7 @@ from bifurc.decisions import is_singular_path_end
 from bifurc.limits import current_deadline, until
 from bifurc.paths.family import complex_normal
 from bifurc.paths.follow import PathEnd, Paths
+from bifurc.paths.monodromy import Fibre
 from bifurc.problem import Problem
 from linkages.dyads.generic import UnfollowedError
 from linkages.dyads.slices import (
@@ -51,6 +52,8 @@ class Motions:
         numbers = range(1, len(structure.unknowns))
         others = [ClosureFamily(structure, (number,)) for number in numbers]
         self.families = [first, *others]
+        # all configurations at a complex value of every one that moves
+        self.fibres: dict[tuple[int, ...], Fibre] = {}
 
     def drivers(self, rng: np.random.Generator) -> list[int]:
         """A few unknowns, by number, that move on every motion, those with the least
@@ -60,6 +63,7 @@ class Motions:
             (value,) = complex_normal(rng, 1)
             given = family.given_at(value)
             points = self._paths(family, value).regular
+            self.fibres[family.drivers] = Fibre(given, points)
             for jacobian in family.family.jacobians(points, given):
                 moving &= _do_move(family, jacobian)
         of_joints = [
@@ -85,9 +89,14 @@ class Motions:
         return moving
 
     def points(self, driver: int, place: float) -> np.ndarray:
-        """All real configurations (k, n) within the limits with a driver at a place."""
+        """All real configurations (k, n) within the limits with one of the `drivers` at
+        a place: each lies on a curve that has points at the complex value as well."""
         family = self.families[driver]
-        points = family.points(family.real_ends(self._paths(family, place)))
+        start = self.fibres[family.drivers]
+        paths = family.followed(start, family.given_at(place))
+        if not np.all(paths.is_regular):
+            paths = self._paths(family, place)
+        points = family.points(family.real_ends(paths))
         points[:, driver] = place
         inside = [
             one for point in points for one in within_limits(self.structure, point)
