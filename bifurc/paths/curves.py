@@ -36,7 +36,7 @@ from bifurc.paths.homogeneous import (
     write_homogeneous,
     write_linear,
 )
-from bifurc.paths.monodromy import Fibre, Projection, solve_generic, trace_of
+from bifurc.paths.monodromy import Effort, Fibre, Projection, solve_generic, trace_of
 from bifurc.paths.sparse import have_curves, paths_to_isolated
 
 QUIET = 6  # closed ways in a row that join no points
@@ -252,7 +252,7 @@ class CurveEquations:
                 start.solutions[0],
                 start.parameters,
                 rng,
-                deadline,
+                Effort.for_solutions(most, deadline),
                 most,
                 linear_in=self.n + 1,
                 projection=Projection(is_plane, ()),

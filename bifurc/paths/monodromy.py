@@ -86,6 +86,11 @@ class Effort:
     most: float = np.inf
     followed: int = 0
 
+    @staticmethod
+    def for_solutions(most: int, deadline: Deadline) -> Effort:
+        """What is usual where ``most`` solutions are looked for."""
+        return Effort(deadline, PATHS_EACH * most)
+
     @property
     def is_spent(self) -> bool:
         """Whether no further paths are to be followed."""
@@ -126,21 +131,21 @@ def solve_generic(
     start: np.ndarray,
     parameters: np.ndarray,
     rng: np.random.Generator,
-    deadline: Deadline | None = None,
+    effort: Effort | None = None,
     most: int = MOST_SOLUTIONS,
     linear_in: int | None = None,
     projection: Projection | None = None,
 ) -> GenericSolutions:
     """The solutions of the member with generic complex ``parameters`` (q,), of which
-    ``start`` (n,) is one; where there are more than ``most``, some of them, as where
-    that takes more than `PATHS_EACH` paths for each of these.
+    ``start`` (n,) is one; where there are more than ``most``, or the ``effort`` is spent,
+    some of them.
 
     ``linear_in``: a parameter, by number, while which moves alone the sum of all
     solutions is linear in it, and that of no part of them; without, it is asked of a
     curve that has further points, or of a ``projection`` of it. Raises `ValueError`
     where the start is no regular solution.
     """
-    effort = Effort(deadline or Deadline(), PATHS_EACH * most)
+    effort = effort or Effort.for_solutions(most, Deadline())
     fibre = Fibre(np.asarray(parameters, complex), np.asarray(start, complex)[None])
     _require_start(family, fibre)
     projection = projection or Projection(np.ones(family.parameters, dtype=bool), ())

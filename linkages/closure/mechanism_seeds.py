@@ -23,6 +23,7 @@ from linkages.closure.within_limits import brought_within_limits
 from linkages.dyads import slices as dyads
 from linkages.dyads.slices import DyadSlices
 from linkages.modules import assemblies
+from linkages.modules import slices as modules
 from linkages.structure.structure import Structure
 from linkages.turns import whole_turns
 from linkages.turns.whole_turns import TurnedEnds
@@ -85,6 +86,7 @@ SOURCES: tuple[ForSubject, ...] = (
     dyads.built_at_once,
     assemblies.for_subject,
     dyads.for_subject,
+    modules.for_subject,
     whole_turns.for_subject,
     cut_at_limits.for_subject,
 )

@@ -22,8 +22,10 @@ from platformdirs import user_cache_path
 
 from bifurc.limits import current_deadline
 from bifurc.paths.family import Family
-from bifurc.paths.follow import Paths, copy_of, follow_paths
+from bifurc.paths.follow import PathEnd, Paths, copy_of, follow_paths
 from bifurc.paths.monodromy import (
+    PATHS_EACH,
+    Effort,
     Fibre,
     GenericSolutions,
     Projection,
@@ -48,6 +50,11 @@ class RealFamily(ABC):
 
     # complex solutions that are looked for: some seconds
     most: ClassVar[int]
+
+    @property
+    def most_paths(self) -> int:
+        """How many paths are followed at most to find them."""
+        return ATTEMPTS * PATHS_EACH * self.most
 
     @property
     @abstractmethod
@@ -78,12 +85,25 @@ class RealFamily(ABC):
         for, and where the time is over.
         """
         name = name_of(self.family)
+        if name in _unknown:
+            raise UnfollowedError(_unknown[name])
         if name not in _known:
             known = _shipped().get(name) or kept(name, self.family)
-            _known[name] = known or find_generic(self, self.most)
+            try:
+                _known[name] = known or find_generic(self, self.most)
+            except UnfollowedError as error:
+                if not current_deadline().passed:
+                    _unknown[name] = str(error)
+                raise
             if known is None:
                 keep(name, _known[name])
         return _known[name]
+
+    @property
+    def is_regular(self) -> bool:
+        """Whether the solutions of a generic member are isolated."""
+        start, parameters = self.generic_member(np.random.default_rng(SEED), 0)
+        return self.family.is_regular(start, parameters)
 
     def paths_to(self, last: np.ndarray) -> Paths:
         """The paths to all isolated solutions of the member with the parameters
@@ -94,18 +114,27 @@ class RealFamily(ABC):
         start = self.generic.fibre
         rng = np.random.default_rng(SEED)
         for attempt in reversed(range(ATTEMPTS)):
-            paths = self._followed(start, last)
+            paths = self.followed(start, last)
             if not np.any(paths.is_lost) or current_deadline().passed:
                 break
             _, moved = self.generic_member(rng, attempt)
-            elsewhere = self._followed(start, moved)
+            elsewhere = self.followed(start, moved)
             if np.all(elsewhere.is_regular):
                 start = Fibre(moved, elsewhere.points)
         if np.any(paths.is_lost):
             raise UnfollowedError(f"paths were lost: {', '.join(paths.reasons())}")
         return paths
 
-    def _followed(self, start: Fibre, last: np.ndarray) -> Paths:
+    def paths_to_regular(self, last: np.ndarray) -> Paths:
+        """The same. Raises `UnfollowedError` where some ends are singular, too."""
+        paths = self.paths_to(last)
+        if np.any(paths.ends == PathEnd.SINGULAR):
+            raise UnfollowedError("some configurations are singular or move")
+        return paths
+
+    def followed(self, start: Fibre, last: np.ndarray) -> Paths:
+        """The paths from the solutions of one member to the one with the parameters
+        ``last`` (q,)."""
         solutions, first = start.solutions, start.parameters
         return follow_paths(self.family, solutions, first, last, current_deadline())
 
@@ -124,6 +153,7 @@ class RealFamily(ABC):
 
 
 _known: dict[str, GenericSolutions] = {}
+_unknown: dict[str, str] = {}  # why
 
 
 def find_generic(one: RealFamily, most: int) -> GenericSolutions:
@@ -133,17 +163,18 @@ def find_generic(one: RealFamily, most: int) -> GenericSolutions:
     Raises `UnfollowedError`.
     """
     deadline = current_deadline()
+    if not one.is_regular:
+        raise UnfollowedError("it moves, or more holds it than has to")
+    effort = Effort(deadline, one.most_paths)
     for attempt in range(ATTEMPTS):
         rng = np.random.default_rng(SEED + attempt)
         start, parameters = one.generic_member(rng, attempt)
-        if not one.family.is_regular(start, parameters):
-            raise UnfollowedError("it moves, or more holds it than has to")
         generic = solve_generic(
             one.family,
             start,
             parameters,
             rng,
-            deadline,
+            effort,
             most,
             projection=one.projection,
         )

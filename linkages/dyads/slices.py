@@ -32,7 +32,7 @@ from linkages.dyads.space import SpaceGeometry
 from linkages.statements import LinkageClaim, random_assemblies
 from linkages.structure.placement import Placement
 from linkages.structure.plane import normal_of_plane
-from linkages.structure.structure import Structure
+from linkages.structure.structure import Structure, Unknown
 
 SLICES = 36  # of a driver's period, or of its limits
 MOST_DRIVERS = 4
@@ -326,15 +326,7 @@ def _slice(builder: Builder, number: int, rng: np.random.Generator) -> _Slice | 
     """That of an unknown, by number; None where it is not known that it has all
     configurations."""
     structure = builder.structure
-    unknown = structure.unknowns[number]
-    low, high = unknown.low, unknown.high
-    if np.isfinite(unknown.period):
-        low, high = 0.0, unknown.period
-    elif unknown.is_angle:
-        # what is a turn away is the same for dyads
-        high = min(high, low + TURN)
-    step = (high - low) / SLICES
-    places = low + step * (np.arange(SLICES) + rng.uniform())
+    places, step = places_of_slices(structure.unknowns[number], rng)
     try:
         points = _points_at(builder, number, places)
         count = builder.generic_count()
@@ -345,6 +337,22 @@ def _slice(builder: Builder, number: int, rng: np.random.Generator) -> _Slice | 
     at_first = _values(structure, number, places[0])
     always_moves = builder.is_never_degenerate(at_first)
     return _Slice(points, always_moves, step, count)
+
+
+def places_of_slices(
+    unknown: Unknown, rng: np.random.Generator
+) -> tuple[list[float], float]:
+    """Evenly spaced values of an unknown, the first one drawn, and their distance, in
+    rad or the structure's unit."""
+    low, high = unknown.low, unknown.high
+    if np.isfinite(unknown.period):
+        low, high = 0.0, unknown.period
+    elif unknown.is_angle:
+        # what is a turn away is the same configuration
+        high = min(high, low + TURN)
+    step = (high - low) / SLICES
+    places = low + step * (np.arange(SLICES) + rng.uniform())
+    return places.tolist(), step
 
 
 def _values(structure: Structure, number: int | None, place: float) -> list[float]:

@@ -56,11 +56,9 @@ class Module:
     def configurations(self) -> np.ndarray:
         """All real configurations (k, n), angles between -pi and pi."""
         family = self.family
-        paths = family.paths_to(family.given)
-        if np.any(paths.ends == PathEnd.SINGULAR):
-            raise UnfollowedError("some configurations are singular or move")
+        paths = family.paths_to_regular(family.given)
         if np.any(paths.ends == PathEnd.AT_INFINITY):
-            _require_no_short_length(self.structure)
+            require_no_short_length(self.structure)
         return family.points(family.real_ends(paths))
 
 
@@ -93,7 +91,7 @@ def _assemblies(module: Module) -> DyadSlices:
     )
 
 
-def _require_no_short_length(structure: Structure) -> None:
+def require_no_short_length(structure: Structure) -> None:
     """Raise `UnfollowedError` where paths may come back that seem to end at infinity."""
     points = [
         variable.motion.point / structure.unit

@@ -43,6 +43,7 @@ from linkages.structure.structure import (
 Number: TypeAlias = Any
 Point: TypeAlias = Any  # three of them, in any sequence
 
+DRIVER = "driver"  # the block of its value
 ROTATION = 6  # numbers of an embedded rotation: two orthonormal vectors
 X_AXIS, Y_AXIS, ORIGIN = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
 OF_SINES = -0.5j  # the sine of x is this times exp(i x) - exp(-i x)
@@ -50,6 +51,9 @@ FLAT = {ClosureKind.CYCLE: 3, ClosureKind.POINT: 2, ClosureKind.ROD: 1}
 # Complex ones of a generic member that are looked for. Types with more of them are at
 # hand, or are not followed.
 MOST_SOLUTIONS = 48
+# that are followed to find those of a driven mechanism, of which others are to be found
+# as well: some seconds
+MOST_DRIVEN_PATHS = 600
 # Imaginary parts of the numbers of generic members that are tried, one after the other.
 # Along a chain of displacements products of numbers that are far from real become large;
 # from numbers that are nearly real paths pass near singular members.
@@ -87,7 +91,9 @@ class Places:
 
 
 class ClosureFamily(RealFamily):
-    """The closures of a ``structure``.
+    """The closures of a ``structure``, with a linear function of the unknowns of some
+    numbers, the ``drivers``, at a value that is a parameter: of the unknown itself where
+    there is one, and without any there is no such function.
 
     Raises `ValueError` where they are more or fewer than the other unknowns, and for
     what is no polynomial: helical joints, ratios of coupled turns other than 1 and -1.
@@ -95,8 +101,13 @@ class ClosureFamily(RealFamily):
 
     most: ClassVar[int] = MOST_SOLUTIONS
 
-    def __init__(self, structure: Structure):
-        self.structure = structure
+    @property
+    def most_paths(self) -> int:
+        """How many paths are followed at most to find them."""
+        return MOST_DRIVEN_PATHS if self.drivers else super().most_paths
+
+    def __init__(self, structure: Structure, drivers: tuple[int, ...] = ()):
+        self.structure, self.drivers = structure, drivers
         self.placement = self._placement()
         self._require_square()
         _require_polynomials(structure)
@@ -113,9 +124,9 @@ class ClosureFamily(RealFamily):
         variables = structure.mechanism.variables
         motions = [one.motion for one in variables if one.locked != 0.0]
         placement = Placement.of_chain(motions, structure.unit)
-        if placement.is_planar and not all(
-            one.is_turn or abs(placement.direction(one)[2]) == 0.0 for one in motions
-        ):
+        slides = [placement.direction(one) for one in motions if not one.is_turn]
+        leave_plane = placement.is_planar and any(abs(one[2]) > 0.0 for one in slides)
+        if leave_plane or (placement.is_spherical and slides):
             return Placement(np.zeros(3), np.eye(3), structure.unit)
         return placement
 
@@ -132,6 +143,7 @@ class ClosureFamily(RealFamily):
         unknowns = len(structure.unknowns) - len(self.standing)
         unknowns -= 3 * len(structure.embedded)
         equations = sum(map(self.freedoms, self.closures))
+        equations += bool(self.drivers)
         if unknowns != equations:
             raise ValueError("it moves, or more holds it than has to")
 
@@ -223,6 +235,8 @@ class ClosureFamily(RealFamily):
             if closure.rod is not None and closure.rod.leg is not None:
                 parameters.add("leg", k, [closure.rod.length / structure.unit])
             parameters.add("target", k, self._given_target(closure))
+        if self.drivers:
+            parameters.add(DRIVER, 0, [1.0])
         return parameters
 
     def _locked(self, variable: Variable) -> list[float]:
@@ -312,7 +326,7 @@ class ClosureFamily(RealFamily):
         """Which parameters (q,) are targets."""
         are_targets = np.zeros(len(self.parameters.given), dtype=bool)
         for (name, _), place in self.parameters.blocks.items():
-            are_targets[place] |= name == "target"
+            are_targets[place] |= name in ("target", DRIVER)
         return are_targets
 
     @cached_property
@@ -326,6 +340,24 @@ class ClosureFamily(RealFamily):
     def given(self) -> np.ndarray:
         """The parameters (q,) of the structure."""
         return np.array(self.parameters.given, dtype=complex)
+
+    def given_at(self, value: complex) -> np.ndarray:
+        """The same with the drivers at a value, a single angle in rad."""
+        given = self.given
+        is_angle = self.structure.unknowns[self.drivers[0]].is_angle
+        is_turn = is_angle and len(self.drivers) == 1
+        at = np.exp(1j * value) if is_turn else value
+        given[self.parameters.blocks[DRIVER, 0]] = at
+        return given
+
+    def driven(self, x: np.ndarray) -> Number:
+        """The linear function of coordinates x (n,) that is held."""
+        firsts = [self.columns[number].start for number in self.drivers]
+        value = x[firsts[0]]
+        weights = np.random.default_rng(len(firsts)).normal(size=len(firsts))
+        for weight, first in zip(weights[1:].tolist(), firsts[1:], strict=True):
+            value = value + weight * x[first]
+        return value
 
     @cached_property
     def projection(self) -> Projection:
@@ -371,6 +403,8 @@ class ClosureFamily(RealFamily):
         chains = _Chains(self, x, p)
         for k, closure in enumerate(self.closures):
             p[self.parameters.blocks["target", k]] = chains.reached(k, closure)
+        if self.drivers:
+            p[self.parameters.blocks[DRIVER, 0]] = self.driven(x)
         return x, p
 
 
@@ -637,7 +671,8 @@ class _Chains:
         return quaternion if is_spherical else [*quaternion, *place]
 
     def own_gaps(self) -> list[Number]:
-        """By how much the coordinates are none of angles and rotations."""
+        """By how much the coordinates are none of angles and rotations, and then the
+        drivers are elsewhere."""
         gaps = []
         unknowns, places = self.structure.unknowns, self.family.columns
         for unknown, place in zip(unknowns, places, strict=True):
@@ -649,6 +684,9 @@ class _Chains:
             numbers = list(self.x[first : first + ROTATION])
             a, b = numbers[:3], numbers[3:]
             gaps += [_dot(a, a) - 1.0, _dot(b, b) - 1.0, _dot(a, b)]
+        if self.family.drivers:
+            (value,) = self._block(DRIVER, 0)
+            gaps.append(self.family.driven(self.x) - value)
         return gaps
 
 

@@ -119,7 +119,7 @@ def test_no_more_paths_than_are_allowed_are_followed():
 
 
 def test_what_is_not_tested_for_lack_of_time_is_not_said_to_be_all():
-    known = generic_solutions(framework(PRISM, 6), deadline=Deadline(0.0))
+    known = generic_solutions(framework(PRISM, 6), effort=Effort(Deadline(0.0)))
     assert known.trace is None
     assert not known.are_all
 
