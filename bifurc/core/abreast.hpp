@@ -31,6 +31,7 @@ struct Abreast {
 
     Abreast operator-() const { return each([&](Index lane) { return -at[lane]; }); }
     Abreast& operator+=(const Abreast& other) { return *this = *this + other; }
+    Abreast& operator-=(const Abreast& other) { return *this = *this - other; }
 
     friend Abreast operator+(const Abreast& a, const Abreast& b) { return both(a, b, std::plus<>()); }
     friend Abreast operator-(const Abreast& a, const Abreast& b) { return both(a, b, std::minus<>()); }
