@@ -197,8 +197,9 @@ def _augmented_step(problem: System, u: np.ndarray, basis: np.ndarray) -> _Step 
 def _unit_of_steps(along: np.ndarray) -> np.ndarray:
     """The matrix (n, n) that takes vectors to steps du of a point which, together with
     what they make of its null space, ``along`` (k, n, n), are as long as these."""
-    metric = np.eye(along.shape[1]) + np.einsum("kij,kil->jl", along, along)
-    unit: np.ndarray = np.linalg.inv(np.linalg.cholesky(metric).T)
+    n = along.shape[2]
+    together = np.concatenate([np.eye(n), along.reshape(-1, n)])
+    unit: np.ndarray = np.linalg.inv(np.linalg.qr(together, mode="r"))
     return unit
 
 
