@@ -24,6 +24,8 @@ def names_in(stub):
                 for inner in node.body
                 if isinstance(inner, ast.FunctionDef) and inner.name[:2] != "__"
             }
+            members = (inner for inner in node.body if isinstance(inner, ast.Assign))
+            found |= {f"{node.name}.{inner.targets[0].id}" for inner in members}
     return found
 
 

@@ -21,7 +21,7 @@ from bifurc.surfaces.geodesic import (
 )
 
 # Spacing of the paths whose lengths are compared, over the median radius of the charts.
-FINE = 0.15
+FINE = 0.11
 # Relative residual above which a point has no foot on a surface.
 SOLVED = 1e-9
 # Where the charts do not reach, the distance from them is this share of a radius at

@@ -378,9 +378,10 @@ def _chord_lengths(points: np.ndarray) -> np.ndarray:
 
 
 def _count_intervals(points: np.ndarray, spacing: float) -> int:
-    """How many intervals of about ``spacing`` the chords make: an even number."""
+    """How many intervals of about ``spacing`` the chords make: an even number, from which
+    a length can be extrapolated."""
     length = float(_chord_lengths(points).sum())
-    return 2 * max(1, round(length / (2.0 * spacing)))
+    return 2 * max(2, round(length / (2.0 * spacing)))
 
 
 def _place_along(points: np.ndarray, shares: np.ndarray) -> np.ndarray:
