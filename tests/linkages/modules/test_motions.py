@@ -15,8 +15,8 @@ from tests.linkages.modules.test_modules import are_among, loop
 from tests.samples import one_in
 
 # loops of one freedom in space, and how many complex configurations there are at a value
-# of the drivers that have least
-COUNTS = {"RSSR": 2, "SUU": 4, "RSRRR": 2, "RCCC": 2, "PUPS": 2, "CCCP": 2, "RSSP": 2}
+# of the drivers that have least: a 3R arm takes a point anywhere in 4 ways (Pieper 1968)
+COUNTS = {"RSSR": 2, "SUU": 4, "RSRRR": 4, "RCCC": 2, "PUPS": 2, "CCCP": 2, "RSSP": 2}
 
 
 @pytest.mark.parametrize("letters", one_in(4, COUNTS))
