@@ -16,7 +16,7 @@ KINDS = ("plain", "at infinity", "multiple", "with curves")
 
 
 def random_polynomial(symbols, degree, rng):
-    monomials = list(sympy.itermonomials(symbols, degree))
+    monomials = sorted(sympy.itermonomials(symbols, degree), key=str)
     chosen = rng.choice(len(monomials), min(4, len(monomials)), replace=False)
     values = rng.integers(1, 6, len(chosen)) * rng.choice([-1, 1], len(chosen))
     total = sum(
@@ -37,7 +37,7 @@ def random_system(seed):
     linear = [random_polynomial(symbols, 1, rng) for _ in range(3)]
     kind = KINDS[seed % len(KINDS)]
     if kind == "at infinity":
-        system[0] = system[1] + linear[0]
+        system[0] = system[1] + symbols[0] * linear[0]
     elif kind == "multiple":
         system[0] = linear[0] ** 2
     elif kind == "with curves":
@@ -108,7 +108,6 @@ def test_what_is_known_for_sure_is_so(seed):
     paths = SparseFamily.of(polynomials).solve(polynomials, rng, Deadline(), 500)
     has_curves = have_curves(polynomials, rng, Deadline(), 500)
     exact = exact_counts(symbols, system)
-    assert not paths.lost
     if exact is None:
         assert has_curves is not False
         return
@@ -116,7 +115,7 @@ def test_what_is_known_for_sure_is_so(seed):
     regular = paths.regular
     assert not has_curves
     assert len(regular) <= different
-    if has_curves is None or paths.far() or len(paths.singular):
+    if has_curves is None or paths.lost or paths.far() or len(paths.singular):
         return
     copies = copy_of(np.concatenate([regular, regular.conj()]))[len(regular) :]
     assert len(regular) == different == with_multiplicities
