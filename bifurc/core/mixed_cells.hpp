@@ -24,6 +24,7 @@ namespace cells {
 
 constexpr double meeting = 1e-10;               // lifts at which two points come low that count as one
 constexpr std::int64_t largest = 1 << 30;       // of the numbers with which a cell is known
+constexpr std::int64_t passing = 100;           // times the volume allowed: while some supports are simplices
 
 }  // namespace cells
 
@@ -132,7 +133,7 @@ private:
             open.pop_back();
             if (is_own(cell.first[row]) && is_own(cell.second[row])) {
                 volume += cell.volume;
-                if (volume > most_) end_ = CellsEnd::too_large;
+                if (volume > (row + 1 < n_ ? cells::passing * most_ : most_)) end_ = CellsEnd::too_large;
                 cells_.push_back(std::move(cell));
                 continue;
             }

@@ -63,19 +63,14 @@ class SparseFamily:
     @cached_property
     def lowering(self) -> Family:
         """The polynomials with each coefficient times exp(-h), h its height; the
-        parameters are all coefficients, and then all heights."""
+        parameters are all coefficients, and then all -h."""
         writer = TapeWriter(self.n + 2 * self.coefficients)
-        unknowns, numbers, heights = (
-            [writer.unknown(number) for number in numbers]
-            for numbers in np.split(
-                np.arange(writer.n), [self.n, self.n + self.coefficients]
-            )
-        )
+        slots = map(writer.unknown, range(writer.n))
+        unknowns = list(islice(slots, self.n))
+        numbers = list(islice(slots, self.coefficients))
         factors = [
-            writer.multiply(
-                number, writer.apply(Operation.EXP, writer.negative(height))
-            )
-            for number, height in zip(numbers, heights, strict=True)
+            writer.multiply(number, writer.apply(Operation.EXP, depth))
+            for number, depth in zip(numbers, slots, strict=True)
         ]
         outputs = self._written(writer, unknowns, factors)
         return Family(writer.tape(outputs), self.n, has_regular_ends=True)
@@ -140,7 +135,7 @@ class SparseFamily:
                 return None
             numbers = _on_unit_circle(rng, self.coefficients)
             starts, heights = cells.starts(numbers)
-            first = np.hstack([np.broadcast_to(numbers, heights.shape), heights])
+            first = np.hstack([np.broadcast_to(numbers, heights.shape), -heights])
             last = np.r_[numbers, np.zeros(self.coefficients)]
             paths = follow_paths(self.lowering, starts, first, last, deadline)
             if np.all(paths.is_regular):
