@@ -15,7 +15,7 @@ from bifurc.surfaces.sheet import slopes_above
 
 # Rise of the surface towards a bound above the tangent plane, over that in the plane, at
 # which the bound is too bent, and the radius over what it was then.
-BENT, SMALLER = 0.25, 0.7
+BENT, SMALLER = 0.18, 0.7
 # Distance, over the radius, of a place where the surface turns back, at most, by how
 # many steps it is looked for, and the last of them, over the radius.
 FARTHEST, STEPS, LAST = 2.5, 20, 1e-7

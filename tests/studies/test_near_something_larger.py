@@ -19,7 +19,7 @@ WITH_MORE_MOTIONS = FAMILIES[5:9]
 GOOD = {Verdict.RIGHT, Verdict.RIGHT_IN_DOUBT}
 
 
-@pytest.mark.parametrize("decades", [5.0, 8.0])
+@pytest.mark.parametrize("decades", [5.0, 8.5])
 def test_curves_beside_a_surface_are_told_from_it(decades):
     found = list(answers(WITH_A_SURFACE, [decades], seeds=1))
     assert {answer.verdict for answer in found} <= GOOD

@@ -89,11 +89,11 @@ def test_components_of_higher_dimension_are_reported_with_it_and_nothing_else(
 
 def test_a_search_ends_when_its_budget_is_used_up_and_says_so() -> None:
     began = time.perf_counter()
-    atlas = explore(general(8), settings=SearchSettings(budget=1.0))
+    atlas = explore(general(8), settings=SearchSettings(budget=0.2))
     assert time.perf_counter() - began < 5.0
     assert atlas.provenance.out_of_time
     assert atlas.completeness.level == "out of time"
-    # how far the covering comes in a second hangs on the machine, but not to its end
+    # how far the covering comes in that time hangs on the machine, but not to its end
     coverings = [s.charts for s in atlas.surfaces if s.charts is not None]
     assert {charts.outcome for charts in coverings} <= {Covering.OUT_OF_TIME}
 
