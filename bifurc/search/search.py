@@ -523,12 +523,15 @@ class Search:
 
     def _follow_up(self, division: Subdivision) -> Starts:
         """Trace what a subdivision found, and look at what it left; what it refuted is
-        forgotten where others take its place."""
+        forgotten where others take its place. What lies beyond a bound, by rounding, may
+        be the end of a curve that is known inside."""
         findings = self.findings
-        for points, is_new in ((division.found, True), (division.seeds, False)):
-            for point in points:
-                if not self.run.is_over:
-                    yield self.tracer.trace(Start(point), is_new).starts
+        is_within = self.problem.domain.excess(division.found) < 0.0
+        starts = [*zip(division.found, is_within.tolist(), strict=True)]
+        starts += [(point, False) for point in division.seeds]
+        for point, is_new in starts:
+            if not self.run.is_over:
+                yield self.tracer.trace(Start(point), is_new).starts
         findings.forget_covered([number for number, _ in division.refuted])
         values = singular_values(self.problem, division.left)[:, self.problem.n - 2]
         for place in division.left[may_be_crossed(values)]:

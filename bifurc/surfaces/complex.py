@@ -219,7 +219,9 @@ def without_empty_polygons(charts: FlatCharts) -> FlatCharts:
     polygons = []
     for vertices, labels in charts.polygons:
         if len(vertices):
-            renumbered = np.where(labels >= 0, number[labels], labels)
+            renumbered = labels.copy()
+            is_inner = labels >= 0  # others are bounds
+            renumbered[is_inner] = number[labels[is_inner]]
             polygons.append(Polygon(vertices, renumbered))
     return FlatCharts(
         centers=charts.centers[has_polygon],

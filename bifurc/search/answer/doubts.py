@@ -44,7 +44,7 @@ from bifurc.search.solutions import solutions_on_rims
 from bifurc.search.strands import missing_crossings
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
-from bifurc.singular.prestress import is_held
+from bifurc.singular.prestress import is_held, second_order_at
 from bifurc.surfaces.chart_atlas import Covering
 from bifurc.system import relative_gaps
 
@@ -105,6 +105,26 @@ def doubts_of(
     ]
     if double:
         yield SearchDoubt.DOUBLE_SOLUTIONS.doubt(points=double)
+    yield from _doubts_of_corners(problem, points)
+
+
+def _doubts_of_corners(
+    problem: Problem, points: Sequence[MeetingPoint]
+) -> Iterator[Doubt]:
+    """Whether something leads on from isolated points at which several unknowns are in
+    bounds: what is left of the flexes there may be an edge of what leads away without
+    bounds, which no sample of it meets."""
+    low, high = problem.domain.bounds.T
+    slack = problem.domain.slack
+    open_corners = []
+    for point in points:
+        u = point.point.u
+        at_bounds = np.count_nonzero((u - low <= slack) | (high - u <= slack))
+        is_corner = at_bounds > 1 and point.kind is Kind.ISOLATED
+        if is_corner and not second_order_at(problem, u).is_rigid:
+            open_corners.append(point.name)
+    if open_corners:
+        yield SearchDoubt.OPEN_CORNERS.doubt(points=open_corners)
 
 
 def _doubts_of_crossings(

@@ -246,3 +246,10 @@ def test_where_curves_only_touch_the_region_there_are_single_solutions(name) -> 
     size = np.diff(bounds).max()
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-6 * size)
     assert atlas.completeness.doubts
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_a_curve_that_touches_the_bound_where_it_ends_is_listed_once(seed):
+    """Beyond the bound rounding lets it go on for 6e-4."""
+    cubic = FunctionProblem(lambda u: [u[1] - u[0] ** 3], [(-2, 2), (0, 2)])
+    assert len(explore(cubic, seed=seed).forms) == 1

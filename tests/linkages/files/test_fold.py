@@ -587,3 +587,28 @@ def test_a_flat_vertex_is_held_unless_it_has_a_birds_foot(seed, tmp_path):
     problem = Closure(read(tmp_path, vertex_of(turns, letters)))
     second = second_order_at(problem, problem.reference)
     assert second.is_prestress_stable != has_birds_foot(turns, letters)
+
+
+def test_an_edge_of_what_limits_cut_off_is_in_doubt(tmp_path):
+    """Two valleys on one line fold while the other creases stay flat: of what leads away
+    without limits no sample is within them."""
+    turns = np.radians([0.0, 45.0, 90.0, 180.0, 225.0, 270.0])
+    atlas = map_of(read(tmp_path, vertex_of(turns, "MVVVVM")))
+    kinds = [doubt.kind for doubt in atlas.completeness.doubts]
+    assert atlas.forms or kinds == ["open corners"]
+
+
+def test_a_grid_of_panels_with_an_assignment_is_answered(tmp_path):
+    """Polygons of charts beside bounds that are left empty."""
+    corners = [(i, j) for j in range(3) for i in range(4)]
+    content = {
+        "vertices_coords": corners,
+        "faces_vertices": [
+            [4 * j + i, 4 * j + i + 1, 4 * j + i + 5, 4 * j + i + 4]
+            for j in range(2)
+            for i in range(3)
+        ],
+        "edges_vertices": [[1, 5], [2, 6], [4, 5], [5, 6], [5, 9], [6, 7], [6, 10]],
+        "edges_assignment": list("VVVMVVM"),
+    }
+    assert map_of(read(tmp_path, content)).forms
