@@ -32,6 +32,8 @@ from bifurc.settings import TraceSettings
 
 log = logging.getLogger(__name__)
 
+# Of the slack of a bound: what is nearer to it runs in it.
+IN_BOUND = 0.1
 LEAVING_STUB = 20  # times shorter: a branch that leaves the bounds and is none
 # A curve is traced at a misclosure a little above what it may have: the largest one
 # along it, measured afterwards, decides.
@@ -188,11 +190,14 @@ class Tracer:
         if branch.outcome is Outcome.STALLED:
             return not is_stub(branch.length, unit)
         unit /= LEAVING_STUB
+        depths = -self.problem.domain.excess(branch.sample(SAMPLES))
+        slack = self.problem.domain.slack
         if not is_stub(branch.length, unit):
-            return True
+            # beyond a bound that it touches rounding lets a curve go on
+            only_touches = depths.max() < IN_BOUND * slack < -depths.min()
+            return not only_touches
         # what is short between two bounds is an arc of the longer curve beyond them,
         # unless it only touches them from outside
         if is_stub(branch.trusted_length, unit):
             return False
-        depths = -self.problem.domain.excess(branch.sample(SAMPLES))
-        return float(depths.max()) > self.problem.domain.slack
+        return float(depths.max()) > slack

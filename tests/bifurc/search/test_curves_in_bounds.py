@@ -253,3 +253,11 @@ def test_a_curve_that_touches_the_bound_where_it_ends_is_listed_once(seed):
     """Beyond the bound rounding lets it go on for 6e-4."""
     cubic = FunctionProblem(lambda u: [u[1] - u[0] ** 3], [(-2, 2), (0, 2)])
     assert len(explore(cubic, seed=seed).forms) == 1
+
+
+def test_a_curve_that_is_beyond_a_bound_but_for_its_end_is_none():
+    """It touches the bound from outside, and is within its slack for 5e-4."""
+    outside = FunctionProblem(lambda u: [u[1] + u[0] ** 3], [(0, 2), (0, 2)])
+    atlas = explore(outside, seed=1)
+    assert not atlas.forms and atlas.points
+    assert atlas.completeness.doubts
