@@ -26,7 +26,7 @@ from bifurc.search.seed_book import Fate, SeedBook, SeedFate, reach_of_places
 from bifurc.seeds import Audit
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import SingularPoint
-from bifurc.singular.prestress import is_held
+from bifurc.singular.prestress import SecondOrder, second_order_at
 from bifurc.system import relative_gaps
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ class Findings:
         self.gaps_of_stops: list[float] = []
         self.audit: Audit | None = None
         self.awaits_audit = True
-        self._held: dict[bytes, bool] = {}
+        self._orders: dict[bytes, SecondOrder] = {}
 
     @property
     def branches(self) -> list[Branch]:
@@ -403,12 +403,19 @@ class Findings:
         return SeedFate(Fate.RIGID, self.rigid.add(RigidAssembly(place, hidden)))
 
     def is_held(self, u: np.ndarray) -> bool:
-        """Whether a stress or the bounds hold a singular solution (n,), which is told
-        once."""
+        """Whether a solution (n,) at which F' is singular is there for certain, and a
+        stress or the bounds hold it, so that no motion passes it."""
+        if not self.problem.is_given_at(u):
+            return False
+        order = self.second_order(u)
+        return bool(len(order.flexes)) and order.is_prestress_stable
+
+    def second_order(self, u: np.ndarray) -> SecondOrder:
+        """What second order says of a solution (n,), which is asked once."""
         key = u.tobytes()
-        if key not in self._held:
-            self._held[key] = is_held(self.problem, u)
-        return self._held[key]
+        if key not in self._orders:
+            self._orders[key] = second_order_at(self.problem, u)
+        return self._orders[key]
 
     # --- all of them ------------------------------------------------------------------
 

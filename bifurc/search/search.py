@@ -197,28 +197,27 @@ class Search:
         """Find the seeds that lie on components of dimension 2 and more."""
         book = self.findings.book
         if len(book.seeds.points):
-            values = self._values_of_mobile()
+            values = book.values.copy()
+            values[self._settle_held()] = np.inf
             share = self.run.deadline.share(SORTING)
             components = components_of_seeds(
                 self.problem, book.seeds.points, values, share
             )
             self.findings.set_components(components)
 
-    def _values_of_mobile(self) -> np.ndarray:
-        """The singular values (k, n) at the seeds, infinite at those in a bound that are
-        held there, as a sheet that cannot fold as it is assigned; these are listed."""
-        book, n = self.findings.book, self.problem.n
-        values = book.values.copy()
-        if self.problem.domain.is_large:
-            return values
-        at_bounds = self.problem.domain.are_at_bounds(book.seeds.points)
-        at_bounds &= may_be_mobile(values[:, n - 1])
-        for number in np.flatnonzero(at_bounds).tolist():
-            if self.findings.is_held(book.seeds.points[number]):
-                fate = self.findings.add_assembly(book.seeds.points[number])
-                book.settle([number], fate)
-                values[number] = np.inf
-        return values
+    def _settle_held(self) -> list[int]:
+        """List the seeds in a bound that are held there as assemblies, as a sheet that
+        cannot fold as it is assigned; their numbers."""
+        book, domain = self.findings.book, self.problem.domain
+        if domain.is_large:
+            return []
+        points = book.seeds.points
+        is_open = domain.are_at_bounds(points) & may_be_mobile(book.values[:, -1])
+        numbers = np.flatnonzero(is_open).tolist()
+        held = [number for number in numbers if self.findings.is_held(points[number])]
+        for number in held:
+            book.settle([number], self.findings.add_assembly(points[number]))
+        return held
 
     def trace_seeds(self) -> None:
         """Trace from every seed that lies on nothing known, and from every half-branch

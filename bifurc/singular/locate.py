@@ -188,10 +188,10 @@ def _augmented_step(problem: System, u: np.ndarray, basis: np.ndarray) -> _Step 
     rows = np.concatenate([jacobian[None], turns.left.T @ bends], axis=None)
     sides = np.concatenate([residual, (missed @ turns.left).ravel()])
     unit = _unit_of_steps(along)
-    step = _least_squares(rows.reshape(-1, len(u)) @ unit, -sides, turns)
-    du = unit @ step.du
+    found = _least_squares(rows.reshape(-1, len(u)) @ unit, -sides, turns)
+    du = unit @ found.vector
     dv = -(missed @ turns.inverse.T + along @ du).T
-    return step._replace(du=du, dv=dv, weak=step.weak @ unit.T)
+    return _Step(du, dv, found.rank, found.condition, found.weak @ unit.T)
 
 
 def _unit_of_steps(along: np.ndarray) -> np.ndarray:
@@ -203,16 +203,25 @@ def _unit_of_steps(along: np.ndarray) -> np.ndarray:
     return unit
 
 
-def _least_squares(matrix: np.ndarray, sides: np.ndarray, turns: _Turns) -> _Step:
-    """The shortest least-squares solution ``du`` (n,) of a system (r, n), which is one
-    with that of null spaces, without what it makes of these."""
+class _Solution(NamedTuple):
+    """A solution ``vector`` (n,) of least squares, with the numerical rank, the condition
+    and the ``weak`` directions (w, n) of the matrix."""
+
+    vector: np.ndarray
+    rank: int
+    condition: float
+    weak: np.ndarray
+
+
+def _least_squares(matrix: np.ndarray, sides: np.ndarray, turns: _Turns) -> _Solution:
+    """The shortest solution of a system (r, n) whose matrix is one with that of null
+    spaces."""
     left, sigma, right = np.linalg.svd(matrix, full_matrices=False)
     largest = max(sigma[0], turns.largest)
     regular = sigma > ROUNDING * largest
     shares = (left[:, regular].T @ sides) / sigma[regular]
-    return _Step(
-        du=right[regular].T @ shares,
-        dv=np.empty((0, 0)),
+    return _Solution(
+        vector=right[regular].T @ shares,
         rank=int(np.count_nonzero(regular)),
         condition=float(largest / sigma[regular].min(initial=turns.smallest)),
         weak=right[sigma < WEAK * largest],

@@ -26,7 +26,6 @@ from bifurc.domain import Domain
 from bifurc.errors import ProblemError
 from bifurc.limits import is_time_over
 from bifurc.numerics.singular_values import factors_of
-from bifurc.problem import Problem
 from bifurc.singular.second_order import common_lines
 from bifurc.system import System, hessian_at, relative_jacobians
 
@@ -91,15 +90,6 @@ def second_order_at(problem: System, point: np.ndarray) -> SecondOrder:
     holding = None if weights is None else weights @ stresses
     is_rigid = True if weights is not None else _have_no_common_zero(forms)
     return SecondOrder(flexes, stresses, within, holding, margin, is_rigid)
-
-
-def is_held(problem: Problem, place: np.ndarray) -> bool:
-    """Whether a solution at a ``place`` (n,) at which F' is singular is there for
-    certain, and a stress or the bounds hold it, so that no motion passes it."""
-    if not problem.is_given_at(place):
-        return False
-    order = second_order_at(problem, place)
-    return bool(len(order.flexes)) and order.is_prestress_stable
 
 
 def _flexes_and_stresses(

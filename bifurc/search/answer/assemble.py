@@ -34,6 +34,7 @@ from bifurc.search.answer.doubts import (
     are_on_rim,
     doubts_of,
     doubts_of_findings,
+    doubts_of_isolated,
     doubts_of_near_misses,
     loose_ends,
 )
@@ -93,6 +94,7 @@ def assemble_atlas(
     deflated = findings.components.deflated
     doubts = [
         *doubts_of(problem, traced, forms, points, surfaces, deflated),
+        *doubts_of_isolated(findings, points),
         *doubts_of_near_misses(problem, near_misses),
         *doubts_of_findings(problem, findings, located),
     ]

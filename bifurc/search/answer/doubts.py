@@ -44,7 +44,6 @@ from bifurc.search.solutions import solutions_on_rims
 from bifurc.search.strands import missing_crossings
 from bifurc.singular.dimension import misclosures_beside, project_slowly
 from bifurc.singular.point import Kind, SingularPoint
-from bifurc.singular.prestress import is_held, second_order_at
 from bifurc.surfaces.chart_atlas import Covering
 from bifurc.system import relative_gaps
 
@@ -96,35 +95,34 @@ def doubts_of(
         yield from _doubts_of_point(problem, point)
         yield from _doubts_of_halves(traced, point)
     yield from _doubts_of_crossings(problem, traced, points, surfaces)
-    double = [
-        point.name
-        for point in points
-        if point.kind is Kind.ISOLATED
-        and point.point.rank == problem.n - 1
-        and not is_held(problem, point.point.u)
-    ]
+
+
+def doubts_of_isolated(
+    findings: Findings, points: Sequence[MeetingPoint]
+) -> Iterator[Doubt]:
+    """Whether isolated singular points are double, and whether something leads on from
+    those at which several unknowns are in bounds; nothing where the time is over, which
+    is said of the whole search.
+
+    In such a corner what is left of the flexes may be an edge of what leads away without
+    bounds, which no sample of that meets.
+    """
+    if is_time_over():
+        return
+    domain, n = findings.problem.domain, findings.problem.n
+    isolated = [point for point in points if point.kind is Kind.ISOLATED]
+    double, corners = [], []
+    for point in isolated:
+        u = point.point.u
+        if point.point.rank == n - 1 and not findings.is_held(u):
+            double.append(point.name)
+        at_bounds = np.any(np.abs(domain.bounds.T - u) <= domain.slack, axis=0)
+        if at_bounds.sum() > 1 and not findings.second_order(u).is_rigid:
+            corners.append(point.name)
     if double:
         yield SearchDoubt.DOUBLE_SOLUTIONS.doubt(points=double)
-    yield from _doubts_of_corners(problem, points)
-
-
-def _doubts_of_corners(
-    problem: Problem, points: Sequence[MeetingPoint]
-) -> Iterator[Doubt]:
-    """Whether something leads on from isolated points at which several unknowns are in
-    bounds: what is left of the flexes there may be an edge of what leads away without
-    bounds, which no sample of it meets."""
-    low, high = problem.domain.bounds.T
-    slack = problem.domain.slack
-    open_corners = []
-    for point in points:
-        u = point.point.u
-        at_bounds = np.count_nonzero((u - low <= slack) | (high - u <= slack))
-        is_corner = at_bounds > 1 and point.kind is Kind.ISOLATED
-        if is_corner and not second_order_at(problem, u).is_rigid:
-            open_corners.append(point.name)
-    if open_corners:
-        yield SearchDoubt.OPEN_CORNERS.doubt(points=open_corners)
+    if corners:
+        yield SearchDoubt.OPEN_CORNERS.doubt(points=corners)
 
 
 def _doubts_of_crossings(

@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from bifurc.function_problem import FunctionProblem
-from bifurc.singular.locate import LocatedPoint, locate_singular_point
+from bifurc.singular.locate import (
+    LocatedPoint,
+    _augmented_step,
+    locate_singular_point,
+)
+from bifurc.system import hessian_at, relative_jacobians, relative_residuals
 from tests.bifurc.near_surfaces import CirclesBesideSphere
 
 
@@ -35,6 +40,38 @@ def test_the_error_estimate_bounds_the_error_in_random_crossings_of_known_place(
         off = np.linalg.norm(located.u - place)
         assert off <= located.error
         assert off < 1e-12
+
+
+@pytest.mark.parametrize("nullity", [1, 2, 3])
+def test_a_step_solves_the_whole_system_of_a_point_and_its_null_space(nullity):
+    """Against the matrix with all vectors of the null space written out."""
+    rng = np.random.default_rng(nullity)
+    linear, squares = rng.normal(size=(6, 5)), rng.normal(size=(6, 5, 5))
+    problem = FunctionProblem(
+        lambda u: [
+            sum(a * x for a, x in zip(row, u, strict=True))
+            + sum(form[i][j] * u[i] * u[j] for i in range(5) for j in range(5))
+            for row, form in zip(linear, squares, strict=True)
+        ],
+        [(-2, 2)] * 5,
+    )
+    u = rng.uniform(-0.5, 0.5, size=5)
+    jacobian = relative_jacobians(problem, u[None])[0]
+    basis = np.linalg.svd(jacobian)[2][5 - nullity :].T
+    bends = hessian_at(problem, u) @ basis / problem.magnitude
+    n, k = basis.shape
+    rows, sides = [], []
+    rows.append(np.hstack([jacobian, np.zeros((6, n * k))]))
+    sides.append(relative_residuals(problem, u[None])[0])
+    for j in range(k):
+        place = np.eye(k)[j]
+        rows.append(np.hstack([bends[:, :, j], np.kron(place, jacobian)]))
+        rows.append(np.hstack([np.zeros((k, n)), np.kron(place, basis.T)]))
+        sides += [jacobian @ basis[:, j], np.zeros(k)]
+    whole = np.linalg.lstsq(np.vstack(rows), -np.concatenate(sides))[0]
+    step = _augmented_step(problem, u, basis)
+    assert step.du == pytest.approx(whole[:n], abs=1e-10)
+    assert step.dv == pytest.approx(whole[n:].reshape(k, n).T, abs=1e-10)
 
 
 def random_crossing(rng: np.random.Generator) -> tuple[FunctionProblem, np.ndarray]:
