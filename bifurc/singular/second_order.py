@@ -74,18 +74,26 @@ def lines_of_form(form: np.ndarray) -> np.ndarray:
     return _real_roots(a, b, c)
 
 
+def forms_on_null_space(
+    problem: System, point: np.ndarray, null_space: np.ndarray
+) -> np.ndarray:
+    """The forms W^T F''(V x, V x) (w, k, k) of second order at a singular point with the
+    ``null_space`` V (n, k), over the magnitude; not finite where F'' is not."""
+    left = factors_of(relative_jacobians(problem, point[None])[0]).left
+    left_null_space = left[:, problem.n - null_space.shape[1] :]
+    hessian = hessian_at(problem, point) / problem.magnitude
+    forms: np.ndarray = np.tensordot(
+        left_null_space.T, null_space.T @ (hessian @ null_space), axes=1
+    )
+    return forms
+
+
 def _reduced_forms(
     problem: System, point: np.ndarray, null_space: np.ndarray
 ) -> np.ndarray:
     """Coefficients (w, 3) of the quadratic forms W^T F''(V x, V x); not finite where
     F'' is not."""
-    jacobian = relative_jacobians(problem, point[None])[0]
-    left = factors_of(jacobian).left
-    left_null_space = left[:, problem.n - 2 :]
-    hessian = hessian_at(problem, point) / problem.magnitude
-    forms = np.einsum(
-        "mw,mij,ia,jb->wab", left_null_space, hessian, null_space, null_space
-    )
+    forms = forms_on_null_space(problem, point, null_space)
     xx = forms[:, 0, 0]
     xy = 2 * forms[:, 0, 1]
     yy = forms[:, 1, 1]

@@ -27,6 +27,7 @@ from bifurc.numerics.binary_forms import unit_vectors
 from bifurc.numerics.singular_values import Factors, factors_of, singular_values
 from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions
+from bifurc.singular.second_order import forms_on_null_space
 from bifurc.system import relative_jacobians, relative_residuals
 
 UNSEEN = -1  # dimension of a section that could not be made
@@ -48,10 +49,15 @@ ROUNDS, LAST_STEP = 40, 1e-15
 # Of a point on a sphere, over the radius: last step of the iteration.
 SETTLED = 1e-4
 BESIDE = 1e3  # times the gap of points that are one: those are looked at as well
+# Steps of an iteration onto zeros of quadratic forms, its least damping, the values of
+# forms of size 1 that are zero, and the least singular value of their rates at a zero
+# that is isolated.
+STEPS_OF_FORMS, LEAST_DAMPING, ZERO_OF_FORMS, LONE = 15, 1e-14, 1e-9, 1e-2
 # Residual of a point on a sphere, over the radius squared, and rounding.
 SOLVED, SOLVED_ROUNDING = 1e-8, 5e-15
-# Solutions of higher nullity on a sphere whose local dimension is looked at.
-MOST_TESTED = 40
+# Solutions of higher nullity on a sphere whose local dimension is looked at, and starts
+# that are enough where all of them come to such.
+MOST_TESTED, MOST_ALIKE = 40, 100
 # How often solutions on a sphere are moved to within the bounds, and how far within, over
 # the radius.
 TIMES_LED, MARGINS = 30, np.array([0.3, 0.1, 0.03, 0.01])
@@ -102,7 +108,14 @@ class Sections:
     def _made(self, radius: float) -> Section:
         if self.null_space.shape[1] == 2:
             return _circle_section(_ReducedEquations(self, self._factors, radius))
-        return _sphere_section(self.problem, self.point, self.null_space, radius)
+        return _sphere_section(self, radius)
+
+    @cached_property
+    def starts(self) -> tuple[np.ndarray, np.ndarray]:
+        """Unit vectors (d, k) of the null space from which solutions on spheres are looked
+        for: those that second order shows to be alone, and others."""
+        forms = forms_on_null_space(self.problem, self.point, self.null_space)
+        return _moved_to_zeros(forms, _spread_directions(self.null_space.shape[1]))
 
     @cached_property
     def _factors(self) -> Factors:
@@ -339,13 +352,10 @@ def _dips(samples: np.ndarray) -> np.ndarray:
 # --- nullity 3 and more: many starts on a sphere --------------------------------------
 
 
-def _sphere_section(
-    problem: Problem, point: np.ndarray, null_space: np.ndarray, radius: float
-) -> Section:
+def _sphere_section(sections: Sections, radius: float) -> Section:
     """What Gauss-Newton reaches from starts spread over the sphere."""
-    directions = _spread_directions(null_space.shape[1])
-    starts = point + radius * directions @ null_space.T
-    ends = _on_sphere(problem, starts, point, radius)
+    problem, point = sections.problem, sections.point
+    ends = _reached(sections, radius)
     if not len(ends):
         return Section(np.empty((0, problem.n)), 0)
     if not problem.domain.are_inside(ends).any():
@@ -353,6 +363,63 @@ def _sphere_section(
         ends = np.concatenate([ends, inside])
     cut = _separate_surfaces(problem, ends)
     return replace(cut, points=_without_duplicates(cut.points, radius))
+
+
+def _reached(sections: Sections, radius: float) -> np.ndarray:
+    """The solutions (h, n) on a sphere from starts in all directions. Of those that second
+    order does not tell apart a part is enough where all of it comes to surfaces."""
+    problem, point = sections.problem, sections.point
+
+    def from_directions(directions: np.ndarray) -> np.ndarray:
+        starts = point + radius * directions @ sections.null_space.T
+        return _on_sphere(problem, starts, point, radius)
+
+    lone, others = sections.starts
+    ends = from_directions(lone)
+    if len(ends) < len(lone):  # so far away they are not what second order says
+        others = _spread_directions(sections.null_space.shape[1])
+    stride = max(1, len(others) // MOST_ALIKE)
+    some = from_directions(others[::stride])
+    if stride > 1 and not (len(some) and _are_of_higher_nullity(problem, some).all()):
+        some = from_directions(others)
+    return np.concatenate([ends, some])
+
+
+def _moved_to_zeros(
+    forms: np.ndarray, directions: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Unit vectors (d, k) moved to where quadratic forms (w, k, k) vanish together: of
+    the places that are isolated to first order one each, as one half-branch leaves in
+    each; and the others, where they came to no zero as they were.
+
+    The damping is that of Fan and Yuan (2005), for zeros that are not isolated.
+    """
+    size = np.abs(forms).max(initial=0.0)
+    if not 0.0 < size < np.inf:
+        return directions[:0], directions
+    forms = forms / size
+    x = directions
+    for _ in range(STEPS_OF_FORMS):
+        x, gaps, normal = _nearer_to_zeros(forms, x)
+    is_zero = gaps < ZERO_OF_FORMS
+    is_lone = is_zero & (np.linalg.eigvalsh(normal)[:, 0] > LONE**2)
+    others = np.where(is_zero[:, None], x, directions)[~is_lone]
+    return _without_duplicates(x[is_lone], 1.0), others
+
+
+def _nearer_to_zeros(
+    forms: np.ndarray, x: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Unit vectors (d, k) after one step towards zeros of forms (w, k, k), and the sizes
+    (d,) of the forms and the normal equations (d, k, k) before it."""
+    halves = np.tensordot(x, forms, axes=(1, 1))  # (d, w, k), of the rates
+    values = (halves @ x[:, :, None])[:, :, 0]
+    normal = 4 * np.swapaxes(halves, 1, 2) @ halves + x[:, :, None] * x[:, None]
+    gaps = np.linalg.norm(values, axis=1)
+    damping = (gaps**2 + LEAST_DAMPING)[:, None, None] * np.eye(x.shape[1])
+    down = 2 * values[:, None] @ halves  # (d, 1, k)
+    x = x - np.linalg.solve(normal + damping, np.swapaxes(down, 1, 2))[:, :, 0]
+    return x / np.linalg.norm(x, axis=1)[:, None], gaps, normal
 
 
 def _on_sphere(
@@ -429,8 +496,7 @@ def _separate_surfaces(problem: Problem, points: np.ndarray) -> Section:
     A curve may be shaky, and a solution of higher nullity on it; the dimension of the
     nearby solutions decides. Surfaces outside the region do not count.
     """
-    sigma = singular_values(problem, points)
-    is_of_higher_nullity = is_null(sigma[:, -2])
+    is_of_higher_nullity = _are_of_higher_nullity(problem, points)
     counts = problem.domain.are_inside(points) | ~is_of_higher_nullity
     points, is_of_higher_nullity = points[counts], is_of_higher_nullity[counts]
     candidates = np.flatnonzero(is_of_higher_nullity)
@@ -440,3 +506,8 @@ def _separate_surfaces(problem: Problem, points: np.ndarray) -> Section:
     if np.all(dimension < 2):
         return Section(points, 1)
     return Section(points[~is_of_higher_nullity], int(dimension.max()))
+
+
+def _are_of_higher_nullity(problem: Problem, points: np.ndarray) -> np.ndarray:
+    """Whether F' has a null space of dimension 2 or more at each of points (h, n)."""
+    return np.asarray(is_null(singular_values(problem, points)[:, -2]))

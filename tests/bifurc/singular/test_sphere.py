@@ -58,6 +58,33 @@ def test_of_a_plane_and_a_line_the_points_are_those_of_the_line():
     assert np.sort(cut.points[:, 2]) == pytest.approx([-0.1, 0.1])
 
 
+def beside_a_plane(of_the_others):
+    """A plane in (x, y) and what equations of (z, w) say, in four unknowns."""
+
+    def equations(u):
+        x, y, z, w = u
+        return [x * z, y * z, x * w, y * w, of_the_others(z, w)]
+
+    return FunctionProblem(equations, [(-1.0, 1.0)] * 4)
+
+
+@pytest.mark.parametrize(
+    ("of_the_others", "half_branches", "alone"),
+    [
+        pytest.param(lambda z, w: z * w, 4, 4, id="lines that second order tells"),
+        pytest.param(lambda z, w: w * (w - z**2), 4, 0, id="curves that touch"),
+        pytest.param(lambda z, w: w**2 - z**3, 2, 0, id="a cusp"),
+    ],
+)
+def test_half_branches_beside_a_surface(of_the_others, half_branches, alone):
+    problem = beside_a_plane(of_the_others)
+    sections = Sections(problem, np.zeros(4), np.eye(4))
+    assert len(sections.starts[0]) == alone
+    for radius in (0.04, 0.02, 0.01):
+        cut = sections.of_radius(radius)
+        assert (len(cut.points), cut.dimension) == (half_branches, 2)
+
+
 def test_regular_points_of_a_plane_are_on_a_surface_and_those_of_a_line_are_not():
     def is_there(*point, null_space):
         return is_on_surface(Sections(PLANE_AND_LINE, np.array(point), null_space))
