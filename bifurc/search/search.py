@@ -522,10 +522,11 @@ class Search:
 
     def _follow_up(self, division: Subdivision) -> Starts:
         """Trace what a subdivision found, and look at what it left; what it refuted is
-        forgotten where others take its place. What lies beyond a bound, by rounding, may
-        be the end of a curve that is known inside."""
+        forgotten where others take its place. What lies on a bound, or by rounding beyond
+        it, may be the end of a curve that is known inside."""
         findings = self.findings
-        is_within = self.problem.domain.excess(division.found) < 0.0
+        domain = self.problem.domain
+        is_within = domain.excess(division.found) < -domain.slack
         starts = [*zip(division.found, is_within.tolist(), strict=True)]
         starts += [(point, False) for point in division.seeds]
         for point, is_new in starts:
