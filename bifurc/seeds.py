@@ -43,6 +43,7 @@ class Seeds:
     to others that are the same but for them, is the shift (n,) that brings samples
     (k, n) of a curve to the one among them that is to be traced. ``more``, where random
     starts are all there is, gives what so many further ones reach before a deadline.
+    ``isolated`` (i, n) are those of which the problem knows that nothing leads on.
     """
 
     points: np.ndarray
@@ -52,6 +53,11 @@ class Seeds:
     audit: Callable[[Sequence[Branch], float], Audit] | None = None
     home: Callable[[np.ndarray], np.ndarray] | None = None
     more: Callable[[np.random.Generator, int, Deadline], Seeds] | None = None
+    isolated: np.ndarray | None = None
+
+    def know_isolated(self, point: np.ndarray) -> bool:
+        """Whether a point (n,) of these is known to be isolated."""
+        return self.isolated is not None and bool((self.isolated == point).all(1).any())
 
     def and_random(self, others: Seeds) -> Seeds:
         """These seeds and ``others``, all of random starts."""

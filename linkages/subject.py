@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from linkages.structure.single_loop import SingleLoop
 
 FREEDOMS = 6  # of a body in space
+MOST_SHOWN = 12  # unknowns that a table shows all of
 # what unknowns are shown in, by the units of an atlas
 UNITS = {"rad": "deg", "size": "lengths", "": "entries ax to bz of rotation matrices"}
 
@@ -370,7 +371,10 @@ class MechanismSubject(Subject):
 
     def heading(self, atlas: Atlas) -> str:
         units = [words for unit, words in UNITS.items() if unit in atlas.units]
-        return f"{', '.join(self.labels)} ({', '.join(units)})"
+        names = ", ".join(self.labels)
+        if len(self.labels) > MOST_SHOWN:
+            names = "what is not 0"
+        return f"{names} ({', '.join(units)})"
 
     def place(self, point: np.ndarray) -> dict[str, Any]:
         """The variables by joint, and the angles of the outer joints of a network."""

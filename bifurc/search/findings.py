@@ -403,8 +403,10 @@ class Findings:
         return SeedFate(Fate.RIGID, self.rigid.add(RigidAssembly(place, hidden)))
 
     def is_held(self, u: np.ndarray) -> bool:
-        """Whether a solution (n,) at which F' is singular is there for certain, and a
-        stress or the bounds hold it, so that no motion passes it."""
+        """Whether a solution (n,) at which F' is singular is there for certain, and the
+        problem knows that no motion passes it, or a stress or the bounds hold it."""
+        if self.book.seeds.know_isolated(u):
+            return True
         if not self.problem.is_given_at(u):
             return False
         order = self.second_order(u)

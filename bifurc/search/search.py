@@ -209,10 +209,10 @@ class Search:
         """List the seeds in a bound that are held there as assemblies, as a sheet that
         cannot fold as it is assigned; their numbers."""
         book, domain = self.findings.book, self.problem.domain
-        if domain.is_large:
-            return []
         points = book.seeds.points
         is_open = domain.are_at_bounds(points) & may_be_mobile(book.values[:, -1])
+        if domain.is_large:  # nothing else is known of such
+            is_open &= [book.seeds.know_isolated(point) for point in points]
         numbers = np.flatnonzero(is_open).tolist()
         held = [number for number in numbers if self.findings.is_held(points[number])]
         for number in held:

@@ -215,7 +215,11 @@ def hold_joints(text: str, linkage: Linkage | Mechanism, hold: HoldOptions) -> I
         "single loop, a table or axes"
     )
     mechanism = _part(require_kind(linkage, Mechanism, refusal), hold.part)
-    mechanism = replace(mechanism, with_flaps=hold.with_flaps)
+    mechanism = replace(
+        mechanism,
+        with_flaps=hold.with_flaps,
+        with_flat_creases=hold.with_flat_creases,
+    )
     if hold.free_creases:
         mechanism = mechanism.with_free_creases()
     values = _read_values(hold.locks, "--lock", mechanism.holds_angle)

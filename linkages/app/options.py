@@ -232,7 +232,8 @@ class HoldOptions:
 
     ``locks`` are "J=40" each, ``driver`` is the joint that has to move all others.
     ``is_without_centre``: of a network only the loop that its outer bars leave.
-    ``with_flaps``: what hangs on joints in no closed loop is free. ``part`` is the number
+    ``with_flaps``: what hangs on joints in no closed loop is free; ``with_flat_creases``:
+    so are creases that stay flat about the flat state of a sheet. ``part`` is the number
     of one of several mechanisms of a file. ``free_creases``: those of a pattern fold
     either way, however they are assigned.
     ``closures`` is a file that closes the loops of a robot.
@@ -243,6 +244,7 @@ class HoldOptions:
     driver: str | None = None
     is_without_centre: bool = False
     with_flaps: bool = False
+    with_flat_creases: bool = False
     part: int | None = None
     free_creases: bool = False
     closures: Path | None = None
@@ -254,6 +256,7 @@ class HoldOptions:
         flags = {
             "--without-centre": self.is_without_centre,
             "--with-flaps": self.with_flaps,
+            "--with-flat-creases": self.with_flat_creases,
             "--free-creases": self.free_creases,
             "--modified-dh": self.is_modified,
         }
@@ -304,6 +307,15 @@ HOLD_OPTIONS: dict[str, Option] = {
         "with_flaps",
         is_flag=True,
         help="Let what hangs on joints in no closed loop move: it is held else.",
+    ),
+    "with_flat_creases": click.option(
+        "--with-flat-creases",
+        "with_flat_creases",
+        is_flag=True,
+        help=(
+            "Let creases of a flat sheet fold that stay flat about its flat state: they "
+            "are held else."
+        ),
     ),
     "part": click.option(
         "--part",

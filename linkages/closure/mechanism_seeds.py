@@ -17,6 +17,7 @@ from bifurc.limits import Deadline, current_deadline, made_in_time, until
 from bifurc.problem import Problem
 from bifurc.seeding import random_seeds, start_region
 from bifurc.seeds import Audit, Seeds
+from bifurc.tables import count_of
 from linkages.closure import cut_at_limits
 from linkages.closure.system import ClosureSystem
 from linkages.closure.within_limits import brought_within_limits
@@ -24,6 +25,7 @@ from linkages.dyads import slices as dyads
 from linkages.dyads.slices import DyadSlices
 from linkages.modules import assemblies
 from linkages.modules import slices as modules
+from linkages.statements import LinkageClaim, estimated
 from linkages.structure.structure import Structure
 from linkages.turns import whole_turns
 from linkages.turns.whole_turns import TurnedEnds
@@ -44,6 +46,25 @@ class Source(Protocol):
 
     def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
         """What is said of the branches."""
+
+
+@dataclass(frozen=True, eq=False)
+class BesideFlatCreases:
+    """What a ``judge``, if there is one, says of forms in ``n`` unknowns, and that so many
+    ``creases`` are held flat."""
+
+    creases: int
+    n: int
+    judge: Callable[[Sequence[Branch], float], Audit] | None
+
+    def __call__(self, branches: Sequence[Branch], seconds: float) -> Audit:
+        """Both."""
+        audit = Audit((), np.empty((0, self.n)))
+        if self.judge is not None:
+            audit = self.judge(branches, seconds)
+        words = count_of(self.creases, "crease")
+        claim = estimated(LinkageClaim.STAY_FLAT, creases=words)
+        return replace(audit, claims=(*audit.claims, claim), has_all_isolated=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,13 +145,28 @@ def mechanism_seeds(
         solutions = lattice.homes(solutions)
     is_inside = problem.domain.are_inside(solutions)
     seeds = drawn.with_constructed(solutions[is_inside])
-    if motions is None:
+    if motions is None and not problem.structure.is_held_flat:
         seeds = replace(seeds, more=partial(_drawn, problem))
-    seeds = replace(seeds, audit=judge)
-    if lattice:
-        ends = TurnedEnds(problem, lattice, judge)
-        seeds = replace(seeds, home=lattice.home, audit=ends)
+    seeds = _judged(problem, replace(seeds, audit=judge))
     return seeds.with_constructed(_assemblies(problem))
+
+
+def _judged(problem: ClosureSystem, seeds: Seeds) -> Seeds:
+    """The seeds with what whole turns, and creases that stay flat, add to what is said of
+    the motions."""
+    lattice, structure = problem.lattice, problem.structure
+    sees_all = seeds.audit is not None
+    if lattice:
+        ends = TurnedEnds(problem, lattice, seeds.audit)
+        seeds = replace(seeds, home=lattice.home, audit=ends)
+    if not structure.stay_flat:
+        return seeds
+    if structure.is_held_flat:
+        seeds = replace(seeds, isolated=problem.reference[None])
+        if sees_all:  # folded states, too
+            return seeds
+    creases = len(structure.stay_flat)
+    return replace(seeds, audit=BesideFlatCreases(creases, problem.n, seeds.audit))
 
 
 def _sources(
@@ -186,7 +222,10 @@ def _drawn(
     deadline: Deadline | None,
 ) -> Seeds:
     """What is reached from random starts before a deadline; where whole turns lead to
-    the same again, half of them from a region that holds a translate of everything."""
+    the same again, half of them from a region that holds a translate of everything. None
+    where a sheet is held flat."""
+    if problem.structure.is_held_flat:
+        count = 0
     lattice = problem.lattice
     if not lattice:
         return random_seeds(problem, rng, count, deadline=deadline)

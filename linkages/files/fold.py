@@ -195,7 +195,7 @@ def _folded_part(
     mechanism: Mechanism, angles: Mapping[str, float]
 ) -> tuple[Mechanism, dict[str, float]]:
     """The same of a mechanism that is one part."""
-    problem = ClosureSystem(replace(mechanism, with_flaps=True))
+    problem = ClosureSystem(replace(mechanism, with_flaps=True, with_flat_creases=True))
     start = np.array([angles[name] for name in problem.domain.names])
     far = "folded such that a gap of {:.3g} is left; near a closed state"
     point = closed_near(problem, ANGLES, start, problem.domain.names, far)

@@ -31,6 +31,7 @@ def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
         ]
     if mechanism.creases:
         values["creases"] = [one._asdict() for one in mechanism.creases]
+        values["with_flat_creases"] = mechanism.with_flat_creases
     if mechanism.layers:
         values["layers"] = dict(mechanism.layers)
     if mechanism.motors:
@@ -122,6 +123,8 @@ def mechanism_from(given: object, name: str) -> Mechanism:
     panels = tuple(_panel(value, bodies) for value in outlines)
     with_flaps = bool(given.get("with_flaps", False))
     creases = tuple(Crease(**value) for value in given.get("creases", []))
+    # none were held once
+    with_flat_creases = bool(given.get("with_flat_creases", creases))
     layers = tuple(checked_table("layers", given.get("layers", {}), "a table").items())
     return Mechanism(
         tuple(joints),
@@ -132,6 +135,7 @@ def mechanism_from(given: object, name: str) -> Mechanism:
         panels,
         with_flaps,
         creases,
+        with_flat_creases=with_flat_creases,
         motors=tuple(given.get("motors", ())),
         layers=layers,
     )

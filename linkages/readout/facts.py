@@ -13,7 +13,7 @@ from bifurc.numerics.blur import blur_along, change_by_blur
 from linkages.decisions import is_dependent_constraint, keeps_angle
 from linkages.readout.ranges import VariableRange, variable_ranges
 from linkages.readout.readout import Readout
-from linkages.structure.structure import CONSTRAINTS, Structure
+from linkages.structure.structure import CONSTRAINTS, Closure, Structure
 
 SAMPLES = 400  # of a form
 IN_PLANE = 3  # constraints of a cycle in a plane
@@ -40,13 +40,16 @@ class LoopFacts:
 
 
 def loop_facts(readout: Readout, point: np.ndarray) -> list[LoopFacts]:
-    """What is redundant in every loop at a configuration (n,) of the atlas."""
+    """What is redundant in every loop at a configuration (n,) of the atlas, but for those
+    of creases that are held flat."""
     problem = readout.closure
     jacobian = problem.jacobians(point[None])[0]
     facts = []
     for closure, rows in zip(
         problem.structure.closures, problem.parts.rows, strict=True
     ):
+        if _is_held(problem.structure, closure):
+            continue
         block = jacobian[rows]
         rank = _rank(block)
         dependent = []
@@ -66,6 +69,14 @@ def loop_facts(readout: Readout, point: np.ndarray) -> list[LoopFacts]:
             )
         )
     return facts
+
+
+def _is_held(structure: Structure, closure: Closure) -> bool:
+    """Whether all variables of a closed chain are held."""
+    variables = structure.mechanism.variables
+    numbers = [n for step in closure.chain for n in structure.variables_of(step.pair)]
+    labels = {variables[number].label for number in numbers}
+    return bool(labels) and labels <= structure.held
 
 
 def _columns_of_joint(structure: Structure, name: str) -> list[int]:
@@ -143,11 +154,14 @@ def _groups(
 
 
 def _still(readout: Readout, groups: tuple[tuple[str, ...], ...]) -> tuple[str, ...]:
-    """The joints all of whose bodies move as one, but for idle turns."""
+    """The joints all of whose bodies move as one, but for idle turns and what is held
+    without having been locked."""
+    structure = readout.structure
+    left_out = structure.held.union(structure.idle_turns)
     still = []
     for joint in readout.mechanism.joints:
         bodies = set(joint.bodies)
-        if set(joint.labels) & set(readout.structure.idle_turns):
+        if left_out.intersection(joint.labels):
             continue
         if joint.freedoms and any(bodies <= set(group) for group in groups):
             still.append(joint.name)

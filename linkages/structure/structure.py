@@ -32,6 +32,11 @@ from linkages.structure.cycles import (
     chain_between,
     cycle_basis,
 )
+from linkages.structure.flat_sheet import (
+    FlatVertex,
+    creases_that_stay_flat,
+    flat_vertex,
+)
 from linkages.structure.free_points import FreePoint, free_points
 from linkages.structure.groups import SPHERICAL, Groups, JointPoint, find_idle_turn
 from linkages.structure.hanging import Hanging
@@ -128,8 +133,10 @@ class Unknown:
 
 class Structure:
     """The unknowns and the closures of a ``mechanism``, of which what is ``hanging`` is
-    held, if it ``holds_flaps``; raises `GeometryError` where bodies do not hang together, and where nothing is
-    left that could move.
+    held, if it ``holds_flaps``, and so are creases that ``stay_flat``, by their labels,
+    if it ``holds_flat_creases``: where all do, it ``is_held_flat``, and nothing else is
+    held for that. Raises `GeometryError` where bodies do not hang together, and where
+    nothing is left that could move.
 
     ``unit`` is the characteristic length, in which slides are counted.
     """
@@ -150,12 +157,48 @@ class Structure:
             self.idle_turns += (label,)
             self.mechanism = self.mechanism.with_locks({label: 0.0})
             self.groups = Groups(self.mechanism, self.unit)
+        self._hold_flat_creases()
         locked = "every one locked or rigid"
         if not self.unknowns and self.idle_bodies:
             idle = ", ".join(self.idle_bodies)
             locked += f" but for {idle}, whose turning about its own line is idle,"
         can_move = bool(self.unknowns)
         require(can_move, "joints", locked, "such that one is left to move")
+
+    @property
+    def held(self) -> frozenset[str]:
+        """The labels of variables that are held without having been locked."""
+        flaps = self.hanging.labels if self.holds_flaps else ()
+        flat = () if self.is_held_flat else self.stay_flat
+        return frozenset((*flaps, *flat))
+
+    def _hold_flat_creases(self) -> None:
+        """Lock the creases of a flat sheet that stay flat, unless all of them do."""
+        self.stay_flat: tuple[str, ...] = ()
+        self.is_held_flat = False
+        if not self.mechanism.creases or self.mechanism.with_flat_creases:
+            return
+        variables = self.mechanism.variables
+        self.stay_flat = creases_that_stay_flat(variables, copy(self)._flat_vertices())
+        free = [one.label for one in variables if one.locked is None]
+        self.is_held_flat = set(self.stay_flat) == set(free)
+        if self.stay_flat and not self.is_held_flat:
+            locks = dict.fromkeys(self.stay_flat, 0.0)
+            self.mechanism = self.mechanism.with_locks(locks)
+            self.groups = Groups(self.mechanism, self.unit)
+
+    def _flat_vertices(self) -> list[FlatVertex]:
+        """The inner vertices about which a sheet is flat."""
+        vertices = []
+        for closure in self.closures:
+            if self.placement(closure).is_spherical:
+                steps = [
+                    (number, step.sign)
+                    for step in closure.chain
+                    for number in self.variables_of(step.pair)
+                ]
+                vertices.append(flat_vertex(self.mechanism.variables, steps))
+        return [vertex for vertex in vertices if vertex is not None]
 
     # --- bodies and pairs -------------------------------------------------------------
 

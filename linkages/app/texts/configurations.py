@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from bifurc.atlas import Atlas
 from bifurc.torus import wrap
 from linkages.app.texts.numbers import in_degrees, in_lengths
-from linkages.subject import subject_at
+from linkages.subject import MOST_SHOWN, subject_at
 
 SHOWN_SHARE = 0.5e-4 / 360  # of a turn, that four digits of a degree do not show
+LARGEST_SHOWN = 6  # of more unknowns than a table shows all of
 
 
 def numbers_at(atlas: Atlas, point: NDArray[np.float64]) -> list[float]:
@@ -52,9 +53,19 @@ def unit_of_arclengths(atlas: Atlas) -> str:
 
 def show_configuration(atlas: Atlas, point: NDArray[np.float64]) -> str:
     """The unknowns (n,) as text: angles in degrees, above -180 and up to 180, lengths
-    in the user's unit; those of a mechanism from its reference configuration."""
+    in the user's unit; those of a mechanism from its reference configuration. Of many
+    unknowns the largest are shown."""
     angles = wrap(point, atlas.periods, within=SHOWN_SHARE)
-    return " ".join(f"{text:>9}" for text in show_travel(atlas, angles))
+    texts = show_travel(atlas, angles)
+    if len(texts) <= MOST_SHOWN:
+        return " ".join(f"{text:>9}" for text in texts)
+    labels = subject_at(atlas).labels
+    largest = np.argsort(-np.abs(angles), kind="stable").tolist()
+    moved = [k for k in largest if float(texts[k]) != 0.0]
+    shown = [f"{labels[k]} {texts[k]}" for k in moved[:LARGEST_SHOWN]]
+    if len(moved) > LARGEST_SHOWN:
+        shown.append(f"{len(moved) - LARGEST_SHOWN} more")
+    return ", ".join(shown) or "all 0"
 
 
 def show_travel(atlas: Atlas, point: NDArray[np.float64], digits: int = 4) -> list[str]:

@@ -47,7 +47,7 @@ def describe_joints(readout: Readout) -> str:
         if label not in creases
     ]
     if readout.mechanism.creases:
-        text += f"\n\n{describe_creases(readout.mechanism)}"
+        text += f"\n\n{describe_creases(readout.structure)}"
     if limits:
         text += f"\n\nFollowed within limits: {', '.join(limits)}."
     coupled = _couplings(readout.mechanism)
@@ -180,10 +180,11 @@ def _special_count(mechanism: Mechanism) -> str:
 def describe_motions(atlas: Atlas, readout: Readout) -> str:
     """What joints and bodies do along each form."""
     rows: list[tuple[str, ...]] = []
-    is_turn = {v.label: v.motion.is_turn for v in readout.mechanism.variables}
-    if readout.structure.holds_flaps:
-        for label in readout.structure.hanging.labels:
-            del is_turn[label]
+    is_turn = {
+        variable.label: variable.motion.is_turn
+        for variable in readout.mechanism.variables
+        if variable.label not in readout.structure.held
+    }
     for index in listed_numbers(atlas):
         facts = form_facts(atlas, index, readout)
         ranges = [

@@ -74,8 +74,9 @@ def make_screen(atlas: Atlas) -> str:
 
 def _held(readout: Readout) -> str:
     """How creases are assigned, and what is held as it lies in no closed loop."""
-    lines = [describe_creases(readout.mechanism)] if readout.mechanism.creases else []
-    lines.append(describe_hanging(readout.structure))
+    structure = readout.structure
+    lines = [describe_creases(structure)] if structure.mechanism.creases else []
+    lines.append(describe_hanging(structure))
     return "\n".join(filter(None, lines))
 
 
@@ -142,7 +143,7 @@ def certainty_in_short(completeness: Completeness) -> str:
         for claim in completeness.claims
         if claim.scope is not Scope.STARTS and claim.level is not None
     ]
-    if level is Level.ESTIMATED:
+    if level is Level.ESTIMATED and completeness.missed_probability < 1.0:
         claims.append(
             "one more random start would reach something new with a probability of at "
             f"most {completeness.missed_probability:.2g}"
