@@ -140,6 +140,6 @@ def distance_to_singular(problem: System, point: np.ndarray, nullity: int = 2) -
     left = decomposition.left[0, :, weakest:]
     right = decomposition.right[0, weakest:]
     hessian = hessian_at(problem, point) / problem.magnitude
-    reduced = np.einsum("mw,mij,ai,bj->wab", left, hessian, right, right)
+    reduced = np.tensordot(left.T, right @ (hessian @ right.T), axes=1)
     rate = float(np.linalg.norm(reduced)) * problem.domain.scale
     return sigma / (rate + TINY)

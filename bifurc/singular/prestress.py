@@ -189,8 +189,8 @@ def _by_cutting_planes(
     goal = np.append(np.zeros(len(forms)), -1.0)
     bounds = [(-1.0, 1.0)] * count + [(0.0, HEAVIEST)] * (len(goal) - count)
     for _ in range(MOST_CUTS):
-        along = np.einsum("wab,ca,cb->cw", forms, cuts, cuts, optimize=True)
-        rows = np.column_stack([-along, np.ones(len(cuts))])
+        along = ((cuts @ forms) * cuts).sum(axis=2)  # (w, c)
+        rows = np.column_stack([-along.T, np.ones(len(cuts))])
         program = linprog(goal, A_ub=rows, b_ub=np.zeros(len(cuts)), bounds=bounds)
         if not program.success or leaves_loose(program.x[-1]) or is_time_over():
             break
