@@ -68,15 +68,6 @@ class Tracer:
         queue = list(starts)
         while queue and not self.run.is_over:
             queue += self.trace(queue.pop()).starts
-            queue = self._beside_branches(queue)
-
-    def _beside_branches(self, starts: Sequence[Start]) -> list[Start]:
-        """Those of the starts that lie on no known branch."""
-        if not starts:
-            return []
-        points = np.array([start.point for start in starts])
-        are_on = self.findings.are_on_branches(points)
-        return [start for start, is_on in zip(starts, are_on, strict=True) if not is_on]
 
     def trace(self, start: Start, is_new: bool = False) -> Trace:
         """Trace the branch through a start, unless it is known; where the start ``is_new``
