@@ -98,9 +98,8 @@ def creases_that_fold(directions: np.ndarray, signs: np.ndarray) -> np.ndarray:
     if not len(rays) or (forms.min() < 0.0 < forms.max()):
         is_open = len(rays) and not _is_of_one_sense(directions, signs)
         return np.asarray((rays != 0.0).any(axis=0)) if is_open else can_fold
-    sense = 1.0 if forms.max() > 0.0 else -1.0
     for ray in rays[np.diag(forms) == 0.0]:
-        if not _holds_others(directions, signs, ray, sense):
+        if not _holds_others(directions, signs, ray):
             return np.ones(len(signs), dtype=bool)
         can_fold |= ray != 0.0
     return can_fold
@@ -119,9 +118,7 @@ def _is_of_one_sense(directions: np.ndarray, signs: np.ndarray) -> bool:
     return weights is not None
 
 
-def _holds_others(
-    directions: np.ndarray, signs: np.ndarray, line: np.ndarray, sense: float
-) -> bool:
+def _holds_others(directions: np.ndarray, signs: np.ndarray, line: np.ndarray) -> bool:
     """Whether two creases that fold along a ``line`` (d,) keep the others from folding.
 
     Where the line is folded by an angle t, angles u of the others and what these add to
@@ -134,11 +131,12 @@ def _holds_others(
         return False
     rays = _extreme_rays(directions, np.where(is_along, FREE, signs))
     rays = rays[(rays != 0.0)[:, ~is_along].any(axis=1)]
-    with_line = sense * _forms(directions, line[None], rays)[0]
+    with_line = _forms(directions, line[None], rays)[0]
     beside = rays[with_line == 0.0]
-    forms = sense * _forms(directions, beside, beside)
-    are_held = (forms >= 0.0).all() and (np.diag(forms) > 0.0).all()
-    return bool((with_line >= 0.0).all() and are_held)
+    own = _forms(directions, beside, beside)
+    forms = np.concatenate([with_line, own.ravel()])
+    is_of_one_sense = (forms >= 0.0).all() or (forms <= 0.0).all()
+    return bool(is_of_one_sense and np.diag(own).all())
 
 
 def _extreme_rays(directions: np.ndarray, signs: np.ndarray) -> np.ndarray:
