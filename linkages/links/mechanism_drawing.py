@@ -122,8 +122,8 @@ def _sides(mechanism: Mechanism, pair: Pair) -> _Sides:
 
 
 def draw_symbols(structure: Structure) -> list[Drawing]:
-    """The symbols of all joints: one for every pair of bodies, but for joints whose
-    bodies share one.
+    """The symbols of all joints but creases that are held flat: one for every pair of
+    bodies, but for joints whose bodies share one.
 
     Each has the ``kind`` of its joint and its ``place`` on its body, the ``holder``;
     ``directions`` holds that of the axis, the slide or the normal, with the second one
@@ -139,6 +139,8 @@ def draw_symbols(structure: Structure) -> list[Drawing]:
     for number, joint in enumerate(mechanism.joints):
         pairs = range(first, first + len(joint.bodies) - 1)
         first += len(pairs)
+        if structure.held.intersection(structure.stay_flat, joint.labels):
+            continue
         groups = [pairs] if joint.kind.facets.is_shared else [[pair] for pair in pairs]
         for k, group in enumerate(groups):
             label = joint.name if k == 0 else ""
