@@ -30,7 +30,7 @@ constexpr int most_along = 500;     // along the curve
 constexpr double arrived = 1e-12;   // rad: distance to the end
 // rad: what is proved around a fold must reach farther than the rounding of its angle
 constexpr double smallest = 1e-9;
-constexpr double corrected = 1e-9;  // rad: a correction after which the error is of rounding
+constexpr double corrected = 1e-8;  // rad: a correction after which the error is of rounding
 constexpr int corrections = 8;
 constexpr int coefficients = 32;                          // of the angle as a power series about a fold
 constexpr int circles = 60;                               // on which the terms of that series are compared
@@ -397,20 +397,27 @@ private:
     // Whether a sheet, moved in place, gets to ``end`` or into the neighbourhood of a fold without
     // short steps.
     bool follow_in_angle(Configuration& z, double end, const Folds& folds) const {
+        Passed before;
         for (int i = 0; i < sheets::most_steps; ++i) {
             for (const Fold<n>* fold : folds) {
                 if (has_joined(z, *fold)) return true;
             }
             const double left = end - z[joint_].real();
             if (std::abs(left) < sheets::arrived) return true;
-            if (!advance_in_angle(z, left)) return false;
+            if (!advance_in_angle(z, left, before)) return false;
         }
         return false;
     }
 
+    // A configuration of a sheet, its rates, and the step that was taken from it; 0 where there is none.
+    struct Passed {
+        Configuration at, slope;
+        double step = 0.0;
+    };
+
     // One step in the angle of the joint, at most by ``left``; false where none can be proved that
-    // is not short.
-    bool advance_in_angle(Configuration& z, double left) const {
+    // is not short. The polynomial through the place ``before`` predicts where it leads.
+    bool advance_in_angle(Configuration& z, double left, Passed& before) const {
         const auto screws = linearize(z).screws;
         const auto inverse = BorderedScrews<n>(screws, of_joint_).inverse();
         const SecondDerivatives<n> second(screws, inverse);
@@ -425,11 +432,21 @@ private:
         if (!(std::abs(step) >= std::min(sheets::slow, std::abs(left)))) return false;
         const Configuration bend = second.at(slope);
         Configuration after = z, moved;
-        for (std::size_t i = 0; i < n; ++i) after[i] += step * (slope[i] - 0.5 * step * bend[i]);
+        const double h = before.step, ratio = h == 0.0 ? 0.0 : step / h;
+        const double third = ratio * ratio * ratio;
+        for (std::size_t i = 0; i < n; ++i) {
+            after[i] += step * (slope[i] - 0.5 * step * bend[i]);
+            // what the second order misses of the step before, in its place and in its rate
+            const Complex missed = z[i] - before.at[i] - h * (slope[i] + 0.5 * h * bend[i]);
+            const Complex turned = h * (before.slope[i] - slope[i] - h * bend[i]);
+            const Complex fourth = 3.0 * missed - turned;
+            after[i] += third * (missed + fourth + ratio * fourth);
+        }
         after[joint_] = z[joint_] + step;
         if (!correct(after, of_joint_)) return false;
         for (std::size_t i = 0; i < n; ++i) moved[i] = after[i] - z[i];
         if (!(weighted_size(moved, ball) < ball.radius)) return false;  // in the ball there is only one
+        before = {z, slope, step};
         z = after;
         z[joint_] = z[joint_].real();
         return true;
@@ -495,15 +512,18 @@ private:
         if (!(curve.ball.radius > 0.0)) return {};
         curve.reach = 0.75 * curve.ball.radius / weighted_size(curve.tangent, curve.ball);
         const double radius = 0.5 * curve.reach;
+        Configuration bend{};  // of the curve, as the point before shows it
         std::array<Complex, count> roots, turned;
         for (int k = 0; k < count; ++k) {
             roots[k] = std::polar(1.0, 2.0 * std::numbers::pi * k / count);
+            const Complex t = radius * roots[k];
             Configuration point = z, moved;
-            for (std::size_t i = 0; i < n; ++i) point[i] += radius * roots[k] * curve.tangent[i];
+            for (std::size_t i = 0; i < n; ++i) point[i] += t * (curve.tangent[i] + t * bend[i]);
             if (!correct(point, along)) return {};
             for (std::size_t i = 0; i < n; ++i) moved[i] = point[i] - z[i];
             if (!(weighted_size(moved, curve.ball) <= curve.ball.radius)) return {};
             turned[k] = moved[joint_];
+            for (std::size_t i = 0; i < n; ++i) bend[i] = (moved[i] / t - curve.tangent[i]) / t;
         }
         double power = 1.0;
         for (int k = 0; k < count; ++k) {
@@ -514,8 +534,8 @@ private:
             curve.terms[k] = std::abs(total);
             power *= radius;
         }
-        const double bend = 0.5 * curve.ball.bound * curve.ball.radius * curve.ball.radius;
-        curve.largest = curve.reach * std::abs(curve.tangent[joint_]) + curve.ball.weight[joint_] * bend;
+        const double strayed = 0.5 * curve.ball.bound * curve.ball.radius * curve.ball.radius;
+        curve.largest = curve.reach * std::abs(curve.tangent[joint_]) + curve.ball.weight[joint_] * strayed;
         return curve;
     }
 
