@@ -181,7 +181,8 @@ class _Disc:
     def _sampled(self, strand: _Strand) -> tuple[np.ndarray, np.ndarray]:
         """Points (k, n) all along a strand, and their offsets (k, 2) from the middle in
         the null space."""
-        arclengths = np.linspace(*strand.arclengths, 2 * SAMPLES + 1)
+        begin, end = strand.arclengths
+        arclengths = np.linspace(begin, end, 2 * SAMPLES + 1)
         u = self.branches[strand.curve](arclengths)
         gaps = self.problem.domain.difference(u, self.point.u)
         return u, gaps @ self.point.null_space
