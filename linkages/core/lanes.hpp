@@ -52,6 +52,18 @@ inline Packed where_less(const Packed& a, const Packed& b, const Packed& x, cons
     return out;
 }
 
+inline Packed operator*(double factor, const Packed& a) {
+    Packed out;
+    for (int i = 0; i < lane_count; ++i) out.lanes[i] = factor * a.lanes[i];
+    return out;
+}
+
+inline Packed operator/(double a, const Packed& b) {
+    Packed out;
+    for (int i = 0; i < lane_count; ++i) out.lanes[i] = a / b.lanes[i];
+    return out;
+}
+
 inline Packed operator/(const Packed& a, const Packed& b) {
     Packed out;
     for (int i = 0; i < lane_count; ++i) out.lanes[i] = a.lanes[i] / b.lanes[i];

@@ -192,14 +192,17 @@ nb::tuple follow_sheets(const Table& geometry, Index joint, const ComplexTableIn
         {
             nb::gil_scoped_release release;
             Deadline deadline(seconds, python::raise_signals);
+            std::vector<Sheet<n>> sheets;
             for (Index k = 0; k < count; ++k) {
-                std::vector<const Fold<n>*> of_sheet;
+                sheets.push_back({array_from<n>(starts.data() + k * n), ends.data()[k], {}});
                 for (std::int64_t i = first.data()[k]; i < first.data()[k + 1]; ++i) {
-                    of_sheet.push_back(&folds.at(near.data()[i]));
+                    sheets.back().folds.push_back(&folds.at(near.data()[i]));
                 }
-                auto sheet = array_from<n>(starts.data() + k * n);
-                cleared.data()[k] = tracker.follow(sheet, ends.data()[k], of_sheet, deadline);
-                std::copy(sheet.begin(), sheet.end(), last.data() + k * n);
+            }
+            tracker.follow(sheets, deadline);
+            for (Index k = 0; k < count; ++k) {
+                cleared.data()[k] = sheets[k].is_cleared;
+                std::copy(sheets[k].at.begin(), sheets[k].at.end(), last.data() + k * n);
             }
         }
         return nb::make_tuple(cleared.release(), last.release());
@@ -250,9 +253,9 @@ nb::tuple ball_around(const Table& geometry, const Complexes& configuration, con
         const auto row = array_from<n>(along.data());
         const auto screws =
             SheetTracker<n>(view(geometry), 0).linearize(array_from<n>(configuration.data())).screws;
-        const auto inverse = BorderedScrews<n>(screws, row).inverse();
-        const SecondDerivatives<n> second(screws, inverse);
-        const Ball<n> ball = find_ball(screws, inverse, second);
+        const auto inverse = BorderedScrews<Complex, n>(screws, row).inverse();
+        const SecondDerivatives<Complex, n> second(screws, inverse);
+        const Ball<n> ball = find_ball(ball_terms(screws, inverse, second));
         constexpr auto size = static_cast<Index>(n);
         Array<Complex> derivatives({size, size, size});
         std::size_t number = 0;
