@@ -22,7 +22,7 @@ from linkages.loop import Loop
 from linkages.values import GeometryError
 
 # where on every piece of a form its closure is checked
-CLOSING = np.linspace(0.0, 1.0, 8, endpoint=False)
+CLOSING = np.linspace(0.0, 1.0, 24, endpoint=False)
 
 
 class LoopTable(TypedDict):

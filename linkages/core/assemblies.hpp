@@ -187,9 +187,9 @@ private:
     }
 
     // What the derivatives turn into error and rate, by elimination with row pivots.
-    LINKAGES_VECTORISED_WHOLE static void solve(const Table& table, const Turns& halves,
-                                                const std::array<Column, 3>& change, Column& step,
-                                                Column& velocity) {
+    LINKAGES_VECTORISED static void solve(const Table& table, const Turns& halves,
+                                          const std::array<Column, 3>& change, Column& step,
+                                          Column& velocity) {
         constexpr int n = path_joints, columns = n + 2;
         const ComplexLoop<ComplexLanes> loop(table);
         const auto closure = loop.close(halves);

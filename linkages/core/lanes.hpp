@@ -5,14 +5,12 @@
 #include <array>
 #include <cstring>
 
-// A function that is compiled twice where the processor may have wider registers. The bits are the
-// same either way: nothing is contracted or reordered. WHOLE: with all functions that it calls.
+// A function that is compiled twice, with all that it calls, where the processor may have wider
+// registers. The bits are the same either way: nothing is contracted or reordered.
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__)
-#define LINKAGES_VECTORISED __attribute__((target_clones("avx2", "default"), noinline))
-#define LINKAGES_VECTORISED_WHOLE __attribute__((target_clones("avx2", "default"), noinline, flatten))
+#define LINKAGES_VECTORISED __attribute__((target_clones("avx2", "default"), noinline, flatten))
 #else
 #define LINKAGES_VECTORISED
-#define LINKAGES_VECTORISED_WHOLE
 #endif
 
 namespace linkages {

@@ -473,8 +473,8 @@ private:
         return out;
     }
 
-    LINKAGES_VECTORISED_WHOLE static void look(const Links& links, std::size_t joint, const Places& places,
-                                               Outlook& out) {
+    LINKAGES_VECTORISED static void look(const Links& links, std::size_t joint, const Places& places,
+                                         Outlook& out) {
         const auto screws = linearization(links, places).screws;
         Columns along{};
         along[joint] = 1.0;
@@ -486,8 +486,8 @@ private:
     }
 
     // Corrections by Newton's method with the angle of the joint as it is.
-    LINKAGES_VECTORISED_WHOLE static void correct_once(const Links& links, std::size_t joint,
-                                                       const Places& places, Columns& out) {
+    LINKAGES_VECTORISED static void correct_once(const Links& links, std::size_t joint,
+                                                 const Places& places, Columns& out) {
         const auto at = linearization(links, places);
         Columns along{};
         along[joint] = 1.0;
