@@ -9,6 +9,8 @@
 // registers. The bits are the same either way: nothing is contracted or reordered.
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__)
 #define LINKAGES_VECTORISED __attribute__((target_clones("avx2", "default"), noinline, flatten))
+#elif defined(__GNUC__)
+#define LINKAGES_VECTORISED __attribute__((flatten))
 #else
 #define LINKAGES_VECTORISED
 #endif
