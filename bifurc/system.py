@@ -317,12 +317,17 @@ class System(ABC):
 
 def relative_residuals(system: System, points: np.ndarray) -> np.ndarray:
     """F over the magnitude (k, m) at points (k, n)."""
-    return system.residuals(points) / system.magnitude
+    return _over(system.magnitude, system.residuals(points))
 
 
 def relative_jacobians(system: System, points: np.ndarray) -> np.ndarray:
     """F' over the magnitude (k, m, n) at points (k, n)."""
-    return system.jacobians(points) / system.magnitude
+    return _over(system.magnitude, system.jacobians(points))
+
+
+def _over(magnitude: float, values: np.ndarray) -> np.ndarray:
+    """``values`` over the magnitude, which of many a system is 1."""
+    return values if magnitude == 1.0 else values / magnitude
 
 
 def relative_gaps(system: System, points: np.ndarray) -> np.ndarray:

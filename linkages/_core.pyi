@@ -46,7 +46,11 @@ def slice_configurations(
     geometry: np.ndarray, joint: int, angles: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
 def follow_paths(
-    starts: np.ndarray, first: np.ndarray, last: np.ndarray, seconds: float
+    starts: np.ndarray,
+    first: np.ndarray,
+    last: np.ndarray,
+    shares: np.ndarray,
+    seconds: float,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]: ...
 def smallest_singular_values(
     configurations: np.ndarray, table: np.ndarray

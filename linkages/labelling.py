@@ -30,7 +30,7 @@ from linkages.forms import FormIdentity, name_forms
 from linkages.labels import FormLabels, largest_residual, subject_of
 from linkages.statements import LinkageClaim
 
-SAMPLES = 400  # of a form, to name it and to see what stands still
+SAMPLES = 160  # of a form, to name it and to see what stands still
 
 
 def name_atlas(atlas: Atlas, linkage: Linkage) -> Atlas:

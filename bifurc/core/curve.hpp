@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -233,14 +234,26 @@ private:
         const View<const double> of = piece(place.piece);
         double scale = 1.0;
         for (int i = 0; i < derivative; ++i) scale *= radii[place.piece];
-        std::fill(out.begin(), out.end(), 0.0);
-        for (Index k = order(); k >= derivative; --k) {
-            for (Index j = 0; j < unknowns(); ++j) out[j] = out[j] * place.x + factors[k] * of(k, j);
-        }
+        in_parts([&]<Index width>(Index first) {
+            std::array<double, width> sums{};
+            for (Index k = order(); k >= derivative; --k) {
+                for (Index j = 0; j < width; ++j) sums[j] = sums[j] * place.x + factors[k] * of(k, first + j);
+            }
+            std::copy(sums.begin(), sums.end(), out.begin() + first);
+        });
         for (Index j = 0; j < unknowns(); ++j) {
             out[j] /= scale;
             if (derivative == 0 && is_closed()) out[j] += place.turns * travel[j];
         }
+    }
+
+    // Some unknowns at a time, from ``first`` on: sums of as many as are known beforehand stay in registers.
+    template <class F>
+    void in_parts(F sum) const {
+        Index first = 0;
+        for (; first + 4 <= unknowns(); first += 4) sum.template operator()<4>(first);
+        for (; first + 2 <= unknowns(); first += 2) sum.template operator()<2>(first);
+        if (first < unknowns()) sum.template operator()<1>(first);
     }
 
     // u, du/ds and d2u/ds2 at one arclength.
@@ -252,17 +265,20 @@ private:
         const Place place = place_of(s);
         const View<const double> of = piece(place.piece);
         const double radius = radii[place.piece];
-        for (Index j = 0; j < unknowns(); ++j) {
-            jet.value[j] = of(order(), j);
-            jet.slope[j] = jet.bend[j] = 0.0;
-        }
-        for (Index k = order() - 1; k >= 0; --k) {
-            for (Index j = 0; j < unknowns(); ++j) {
-                jet.bend[j] = jet.bend[j] * place.x + jet.slope[j];
-                jet.slope[j] = jet.slope[j] * place.x + jet.value[j];
-                jet.value[j] = jet.value[j] * place.x + of(k, j);
+        in_parts([&]<Index width>(Index first) {
+            std::array<double, width> value, slope{}, bend{};
+            for (Index j = 0; j < width; ++j) value[j] = of(order(), first + j);
+            for (Index k = order() - 1; k >= 0; --k) {
+                for (Index j = 0; j < width; ++j) {
+                    bend[j] = bend[j] * place.x + slope[j];
+                    slope[j] = slope[j] * place.x + value[j];
+                    value[j] = value[j] * place.x + of(k, first + j);
+                }
             }
-        }
+            std::copy(value.begin(), value.end(), jet.value.begin() + first);
+            std::copy(slope.begin(), slope.end(), jet.slope.begin() + first);
+            std::copy(bend.begin(), bend.end(), jet.bend.begin() + first);
+        });
         for (Index j = 0; j < unknowns(); ++j) {
             if (is_closed()) jet.value[j] += place.turns * travel[j];
             jet.slope[j] /= radius;

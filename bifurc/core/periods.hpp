@@ -10,7 +10,7 @@ namespace bifurc {
 // a - b, within half a period of 0; an infinite period is none.
 inline double periodic_difference(double a, double b, double period) {
     const double apart = a - b;
-    return std::isfinite(period) ? apart - period * std::nearbyint(apart / period) : apart;
+    return std::abs(apart) <= 0.5 * period ? apart : apart - period * std::nearbyint(apart / period);
 }
 
 }  // namespace bifurc

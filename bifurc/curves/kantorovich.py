@@ -220,7 +220,8 @@ class _Nodes:
             hessians,
         )
         # on a part of an arc that is neither, everything would be the same
-        is_long = np.ptp(self.edges, axis=1) > LONG * self.problem.domain.scale
+        lengths = self.edges[:, -1] - self.edges[:, 0]
+        is_long = lengths > LONG * self.problem.domain.scale
         is_solved = is_closed_to_rounding(_largest_rows(self.arrays["residuals"]))
         is_joined = is_closed_to_rounding(_largest_rows(self.arrays["images"]))
         may_change = is_long | is_uneven | ~is_joined
@@ -250,5 +251,5 @@ class _Nodes:
 
 def _largest_rows(values: np.ndarray) -> np.ndarray:
     """The largest norm (a,) of vectors (a, k, q)."""
-    squares: np.ndarray = (values * values).sum(axis=2)
+    squares = np.einsum("akq,akq->ak", values, values)
     return np.asarray(np.sqrt(squares.max(axis=1)))

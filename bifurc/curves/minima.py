@@ -53,16 +53,21 @@ def singular_value_minima(problem: System, branch: Branch, profile: Profile) -> 
     if not rank:
         return Minima(np.empty(0), np.empty(0))
     places = _places_to_look(branch, profile)
-    valleys = _look_into(problem, branch, rank, places)
+    here = _values_and_slopes(problem, branch, rank, places)
+    valleys = _look_into(problem, branch, rank, places, here)
     is_crossed = may_be_crossed(
         singular_values(problem, branch(valleys.bottoms))[..., rank - 1]
     )
     if np.any(is_crossed):
         # next to one singular point there may be another one
         low, high = valleys.low[is_crossed], valleys.high[is_crossed]
-        places = np.union1d(places, _about(branch, places, low, high))
-        valleys = _look_into(problem, branch, rank, places)
-    here, bottoms = valleys.here, valleys.bottoms
+        more = np.setdiff1d(_about(branch, places, low, high), places)
+        there = _values_and_slopes(problem, branch, rank, more)
+        both = np.concatenate([places, more])
+        order = np.argsort(both)
+        places, here = both[order], here.and_more(there, order)
+        valleys = _look_into(problem, branch, rank, places, here)
+    bottoms = valleys.bottoms
     if not len(bottoms):
         return Minima(np.empty(0), np.empty(0))
     samples = np.concatenate([profile.arclength.ravel(), places])
@@ -99,18 +104,23 @@ def _about(
 
 
 class _Look(NamedTuple):
-    """What is seen at places along a curve, ``here``, and between which of them the
-    slope turns to rising: from ``low`` (k,) to ``high`` (k,), about ``bottoms`` (k,)."""
+    """Between which places along a curve the slope turns to rising: from ``low`` (k,) to
+    ``high`` (k,), about ``bottoms`` (k,)."""
 
-    here: _ValuesAndSlopes
     low: np.ndarray
     high: np.ndarray
     bottoms: np.ndarray
 
 
-def _look_into(problem: System, branch: Branch, rank: int, places: np.ndarray) -> _Look:
-    """The minima between ``places`` (k,), arclengths in order."""
-    here = _values_and_slopes(problem, branch, rank, places)
+def _look_into(
+    problem: System,
+    branch: Branch,
+    rank: int,
+    places: np.ndarray,
+    here: _ValuesAndSlopes,
+) -> _Look:
+    """The minima between ``places`` (k,), arclengths in order, at which so much is
+    known."""
     before, after = _valleys(branch, here.slopes * problem.domain.scale)
     low, high = places[before], places[after]
     high[after < before] += branch.length  # once round a closed curve
@@ -124,7 +134,7 @@ def _look_into(problem: System, branch: Branch, rank: int, places: np.ndarray) -
         at_ends = here.slopes_of_squares[before], here.slopes_of_squares[after]
         tolerance = LOCATED * problem.domain.scale
         bottoms = bracketed_roots(slope_of_square, low, high, tolerance, at_ends)
-    return _Look(here, low, high, bottoms)
+    return _Look(low, high, bottoms)
 
 
 def stand_out(
@@ -273,6 +283,12 @@ class _ValuesAndSlopes(NamedTuple):
         """Half the derivatives of their squares (k,)."""
         slopes: np.ndarray = self.values * self.slopes
         return slopes
+
+    def and_more(self, others: _ValuesAndSlopes, order: np.ndarray) -> _ValuesAndSlopes:
+        """These and ``others`` in an ``order`` (k,)."""
+        values = np.concatenate([self.values, others.values])[order]
+        slopes = np.concatenate([self.slopes, others.slopes])[order]
+        return _ValuesAndSlopes(values, slopes)
 
 
 def _values_and_slopes(

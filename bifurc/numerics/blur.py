@@ -114,8 +114,8 @@ def _rounding(problem: System, points: np.ndarray) -> np.ndarray:
         -1, problem.n
     )
     steps = PROBE * problem.domain.scale * rng.normal(size=places.shape)
-    change = relative_residuals(problem, places + steps)
-    change -= relative_residuals(problem, places)
+    moved = relative_residuals(problem, places + steps)
+    change = moved - relative_residuals(problem, places)
     slopes = relative_jacobians(problem, places)
     rounding: np.ndarray = change - np.einsum("kmn,kn->km", slopes, steps)
     return rounding.reshape(PROBES, len(points), -1)

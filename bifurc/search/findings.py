@@ -86,6 +86,7 @@ class Findings:
         self.audit: Audit | None = None
         self.awaits_audit = True
         self._orders: dict[bytes, SecondOrder] = {}
+        self._with_all_crossings: list[Branch | SingularPoint] = []
 
     @property
     def branches(self) -> list[Branch]:
@@ -208,6 +209,22 @@ class Findings:
         """Whether a branch passes all along another one."""
         points = other(other.length * PLACES)
         return _are_on([one], points, reach_of_places(self.problem, points))
+
+    # --- crossings --------------------------------------------------------------------
+
+    @whole
+    def set_all_crossings(self) -> None:
+        """Record that the branches known now have to cross at no other points than those
+        known now."""
+        self._with_all_crossings = [*self.branches, *self.points.values()]
+
+    @property
+    def have_all_crossings(self) -> bool:
+        """Whether that is known of the branches and points known now."""
+        now = [*self.branches, *self.points.values()]
+        then = self._with_all_crossings
+        is_same = [one is other for one, other in zip(now, then, strict=False)]
+        return len(now) == len(then) and all(is_same)
 
     # --- shifts -----------------------------------------------------------------------
 

@@ -434,12 +434,16 @@ class Search:
         if findings.components.seeds:
             return
         points = list(findings.points.values())
+        is_any = False
         for missing in missing_crossings(self.problem, points, findings.branches):
+            is_any = True
             if self.run.is_over:
                 return
             sighting = self.points.near(missing.place, 2, BRANCH_REACH)
             if sighting is not None and sighting.is_new:
                 yield half_branch_starts(sighting.point)
+        if not is_any:
+            findings.set_all_crossings()
 
     def mend_at_germs(self) -> Starts:
         """Trace the branches again that do not follow the germs of singular points."""

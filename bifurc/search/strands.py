@@ -23,7 +23,8 @@ from bifurc.singular.point import SingularPoint
 # of which the null space is tangent.
 IN_PLANE, ON_SURFACE = 0.03, 1e-5
 LONGEST = 4.0  # radii: a strand that is longer to either side is none
-SAMPLES = 400  # of a strand
+SAMPLES = 400  # of a strand to either side
+FIRST = 16  # of these: those next to the rim, among which it leaves as a rule
 AT_POINT = 1e-9  # over the scale: how near to a crossing its strands come
 SHARP = 0.1  # of a disc: where its middle is known no better it shows nothing
 CLEAR = 1e-3  # rad: ends that are nearer to each other on a rim do not tell
@@ -39,12 +40,12 @@ class MissingCrossing(NamedTuple):
 
 
 class _Strand(NamedTuple):
-    """A stretch of a curve, by its number, inside a disc: ``arclengths`` (k,), and there
-    the ``offsets`` (k, 2) from the middle in the null space."""
+    """A stretch of a curve, by its number, inside a disc, between two ``arclengths`` (2,);
+    its ``ends`` (2, 2) in the null space, from the middle."""
 
     curve: int
     arclengths: np.ndarray
-    offsets: np.ndarray
+    ends: np.ndarray
 
 
 def missing_crossings(
@@ -92,27 +93,43 @@ class _Disc:
         for s in branch.passes(self.point.u, self.radius).tolist():
             if s <= begin:
                 continue
-            reach = min(LONGEST * self.radius, 0.5 * branch.length)
-            arclengths = s + np.linspace(-reach, reach, 2 * SAMPLES + 1)
+            arclengths = self._leaves(branch, s)
+            if arclengths is None:
+                continue
+            begin = float(arclengths[1])
+            ends = self._gaps(branch, arclengths) @ self.point.null_space
+            yield _Strand(curve, arclengths, ends)
+
+    def _leaves(self, branch: Branch, s: float) -> np.ndarray | None:
+        """The arclengths (2,) at which a branch has left the disc to either side of
+        ``s``; None where it does not.
+
+        As long as it is no longer than what is left of the radius it cannot have left.
+        """
+        reach = min(LONGEST * self.radius, 0.5 * branch.length)
+        inside = self.radius - np.linalg.norm(self._gaps(branch, s))
+        shares = np.arange(1, SAMPLES + 1) / SAMPLES
+        first = int(np.searchsorted(shares, inside / reach))
+        for sampled in (shares[first : first + FIRST], shares[first:]):
+            arclengths = s + reach * np.array([-sampled, sampled])  # (2, k)
             if not branch.closed:
                 arclengths = np.clip(arclengths, 0.0, branch.length)
-            u = branch(arclengths)
-            gaps = self.problem.domain.difference(u, self.point.u)
-            is_out = np.linalg.norm(gaps, axis=1) >= self.radius
-            before = np.flatnonzero(is_out[:SAMPLES])
-            after = np.flatnonzero(is_out[SAMPLES:])
-            if not len(before) or not len(after):
-                continue
-            ends = slice(before[-1], SAMPLES + after[0] + 1)
-            begin = float(arclengths[ends][-1])
-            yield _Strand(curve, arclengths[ends], gaps[ends] @ self.point.null_space)
+            distances = np.linalg.norm(self._gaps(branch, arclengths), axis=2)
+            is_out = distances >= self.radius
+            if np.all(np.any(is_out, axis=1)):
+                return arclengths[[0, 1], is_out.argmax(axis=1)]
+        return None
+
+    def _gaps(self, branch: Branch, arclengths: np.ndarray | float) -> np.ndarray:
+        """How far (..., n) from the middle a branch is at arclengths (...)."""
+        return self.problem.domain.difference(branch(arclengths), self.point.u)
 
     def missing_of(
         self, one: _Strand, other: _Strand, known: Sequence[SingularPoint]
     ) -> np.ndarray | None:
         """Where two strands cross besides the ``known`` points, next to the middle (n,);
         None where they do not have to, or their ends do not tell."""
-        is_odd = _alternate(one.offsets[[0, -1]], other.offsets[[0, -1]])
+        is_odd = _alternate(one.ends, other.ends)
         if is_odd is None:
             return None
         for point in known:
@@ -132,7 +149,7 @@ class _Disc:
         for strand in (one, other):
             branch = self.branches[strand.curve]
             within = AT_POINT * self.problem.domain.scale + 2.0 * point.error
-            low, high = strand.arclengths[[0, -1]]
+            low, high = strand.arclengths
             passes = branch.passes(point.u, within)
             if branch.closed:
                 passes = low + (passes - low) % branch.length
@@ -150,15 +167,25 @@ class _Disc:
         self, one: _Strand, other: _Strand, known: Sequence[SingularPoint]
     ) -> np.ndarray:
         """Where two strands come nearest to each other, away from the known points."""
-        apart = np.linalg.norm(one.offsets[:, None] - other.offsets[None], axis=2)
-        u = self.branches[one.curve](one.arclengths)
-        spacing = float(np.linalg.norm(np.diff(one.offsets, axis=0), axis=1).max())
+        u, offsets = self._sampled(one)
+        _, others = self._sampled(other)
+        apart = np.linalg.norm(offsets[:, None] - others[None], axis=2)
+        spacing = float(np.linalg.norm(np.diff(offsets, axis=0), axis=1).max())
         for point in known:
             gaps = self.problem.domain.difference(u, point.u)
             apart[np.linalg.norm(gaps, axis=1) < spacing] = np.inf
         nearest = np.unravel_index(np.argmin(apart), apart.shape)[0]
         place: np.ndarray = u[nearest]
         return place
+
+    def _sampled(self, strand: _Strand) -> tuple[np.ndarray, np.ndarray]:
+        """Points (k, n) all along a strand, and their offsets (k, 2) from the middle in
+        the null space."""
+        begin, end = strand.arclengths
+        arclengths = np.linspace(begin, end, 2 * SAMPLES + 1)
+        u = self.branches[strand.curve](arclengths)
+        gaps = self.problem.domain.difference(u, self.point.u)
+        return u, gaps @ self.point.null_space
 
 
 def _alternate(one: np.ndarray, other: np.ndarray) -> bool | None:

@@ -97,6 +97,11 @@ struct ChainClosure {
     std::array<std::array<T, 6>, n> derivatives;
 };
 
+template <class T>
+double sign_of_real_part(const T& value) {
+    return std::real(value) >= 0.0 ? 1.0 : -1.0;
+}
+
 // From half the angles as turns; ``links`` follow the joints.
 template <class T, class L, std::size_t n>
 ChainClosure<T, n> close_chain(const std::array<DualQuaternion<L>, n>& links,
@@ -105,10 +110,10 @@ ChainClosure<T, n> close_chain(const std::array<DualQuaternion<L>, n>& links,
     for (std::size_t i = 0; i < n; ++i) steps[i] = turned(halves[i], links[i]);
     after[n - 1] = steps[n - 1];
     for (std::size_t i = n - 1; i-- > 0;) after[i] = steps[i] * after[i + 1];
-    const double sign = std::real(after[0][0]) >= 0.0 ? 1.0 : -1.0;  // both are the same displacement
+    const auto sign = sign_of_real_part(after[0][0]);  // both are the same displacement
     ChainClosure<T, n> out;
     out.error = vector_parts(after[0]);
-    for (T& entry : out.error) entry *= sign;
+    for (T& entry : out.error) entry = sign * entry;
     DualQuaternion<T> before{T(sign)};
     for (std::size_t i = 0; i < n; ++i) {
         out.derivatives[i] = product_vectors(before, half_turned(after[i]));

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <type_traits>
 
 #include "bifurc/core/arrays.hpp"
 
@@ -31,7 +32,9 @@ Vec3<T> operator*(const T& factor, const Vec3<T>& a) {
     return {factor * a[0], factor * a[1], factor * a[2]};
 }
 
-inline Vec3<Complex> operator*(double factor, const Vec3<Complex>& a) {
+template <class T>
+    requires(!std::is_same_v<T, double>)
+Vec3<T> operator*(double factor, const Vec3<T>& a) {
     return {factor * a[0], factor * a[1], factor * a[2]};
 }
 
@@ -62,7 +65,9 @@ Screw<T> operator*(const T& factor, const Screw<T>& a) {
     return {factor * a.direction, factor * a.moment};
 }
 
-inline Screw<Complex> operator*(double factor, const Screw<Complex>& a) {
+template <class T>
+    requires(!std::is_same_v<T, double>)
+Screw<T> operator*(double factor, const Screw<T>& a) {
     return {factor * a.direction, factor * a.moment};
 }
 

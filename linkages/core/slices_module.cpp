@@ -105,11 +105,12 @@ ComplexTable table_of(const char* name, const ComplexTableIn& table) {
     return ComplexTable::from(view(table));
 }
 
-// (angles (k, 6), rests (k), `PathEnd` numbers (k)) of paths from configurations (k, 6); none is
-// begun when the time is over.
+// (angles (k, 6), rests (k), `PathEnd` numbers (k)) of paths from configurations (k, 6), each where a
+// share (k) of the way from the first to the last table is left; none is begun when the time is over.
 nb::tuple follow_paths(const ComplexTableIn& starts, const ComplexTableIn& first, const ComplexTableIn& last,
-                       double seconds) {
+                       const Doubles& shares, double seconds) {
     check_extent("starts", starts.shape(1), path_joints);
+    check_extent("shares", shares.shape(0), starts.shape(0));
     const auto count = static_cast<Index>(starts.shape(0));
     const PathTracker tracker(table_of("first", first), table_of("last", last));
     Array<Complex> angles({count, static_cast<Index>(path_joints)});
@@ -118,13 +119,15 @@ nb::tuple follow_paths(const ComplexTableIn& starts, const ComplexTableIn& first
     {
         nb::gil_scoped_release release;
         Deadline deadline(seconds, python::raise_signals);
+        std::vector<Path> all;
         for (Index k = 0; k < count; ++k) {
-            const auto start = array_from<path_joints>(starts.data() + k * path_joints);
-            PathTracker::Outcome outcome{start, 1.0, PathEnd::stopped};
-            if (!deadline.has_passed()) outcome = tracker.follow(start);
-            std::copy(outcome.angles.begin(), outcome.angles.end(), angles.data() + k * path_joints);
-            rests.data()[k] = outcome.rest;
-            ends.data()[k] = static_cast<std::int64_t>(outcome.end);
+            all.emplace_back(array_from<path_joints>(starts.data() + k * path_joints), shares.data()[k]);
+        }
+        tracker.follow(all, deadline);
+        for (Index k = 0; k < count; ++k) {
+            std::copy(all[k].angles().begin(), all[k].angles().end(), angles.data() + k * path_joints);
+            rests.data()[k] = all[k].rest();
+            ends.data()[k] = static_cast<std::int64_t>(all[k].end());
         }
     }
     return nb::make_tuple(angles.release(), rests.release(), ends.release());
@@ -133,11 +136,11 @@ nb::tuple follow_paths(const ComplexTableIn& starts, const ComplexTableIn& first
 // The smallest singular value (k) of F' at configurations (k, 6) of a loop with this table (3, 6).
 nb::object smallest_singular_values(const ComplexTableIn& configurations, const ComplexTableIn& table) {
     check_extent("configurations", configurations.shape(1), path_joints);
-    const ComplexLoop loop(table_of("table", table));
+    const auto loop = complex_loop(table_of("table", table));
     std::vector<double> values;
     for (std::size_t k = 0; k < configurations.shape(0); ++k) {
         const auto angles = array_from<path_joints>(configurations.data() + k * path_joints);
-        values.push_back(bifurc::smallest_singular_value(loop.linearize(angles, {}).derivatives).value);
+        values.push_back(bifurc::smallest_singular_value(loop.close(half_turns(angles)).derivatives).value);
     }
     return array_of(values);
 }
@@ -145,11 +148,11 @@ nb::object smallest_singular_values(const ComplexTableIn& configurations, const 
 // Closure errors (k, 6) of configurations (k, 6), in quaternions.
 nb::object quaternion_closure(const ComplexTableIn& configurations, const ComplexTableIn& table) {
     check_extent("configurations", configurations.shape(1), path_joints);
-    const ComplexLoop loop(table_of("table", table));
+    const auto loop = complex_loop(table_of("table", table));
     std::vector<std::array<Complex, 6>> errors;
     for (std::size_t k = 0; k < configurations.shape(0); ++k) {
         const auto angles = array_from<path_joints>(configurations.data() + k * path_joints);
-        errors.push_back(loop.linearize_far_away(angles, {}).error);
+        errors.push_back(loop.close(half_turns(angles)).error);
     }
     return array_of(errors);
 }
@@ -189,14 +192,17 @@ nb::tuple follow_sheets(const Table& geometry, Index joint, const ComplexTableIn
         {
             nb::gil_scoped_release release;
             Deadline deadline(seconds, python::raise_signals);
+            std::vector<Sheet<n>> sheets;
             for (Index k = 0; k < count; ++k) {
-                std::vector<const Fold<n>*> of_sheet;
+                sheets.push_back({array_from<n>(starts.data() + k * n), ends.data()[k], {}});
                 for (std::int64_t i = first.data()[k]; i < first.data()[k + 1]; ++i) {
-                    of_sheet.push_back(&folds.at(near.data()[i]));
+                    sheets.back().folds.push_back(&folds.at(near.data()[i]));
                 }
-                auto sheet = array_from<n>(starts.data() + k * n);
-                cleared.data()[k] = tracker.follow(sheet, ends.data()[k], of_sheet, deadline);
-                std::copy(sheet.begin(), sheet.end(), last.data() + k * n);
+            }
+            tracker.follow(sheets, deadline);
+            for (Index k = 0; k < count; ++k) {
+                cleared.data()[k] = sheets[k].is_cleared;
+                std::copy(sheets[k].at.begin(), sheets[k].at.end(), last.data() + k * n);
             }
         }
         return nb::make_tuple(cleared.release(), last.release());
@@ -247,9 +253,9 @@ nb::tuple ball_around(const Table& geometry, const Complexes& configuration, con
         const auto row = array_from<n>(along.data());
         const auto screws =
             SheetTracker<n>(view(geometry), 0).linearize(array_from<n>(configuration.data())).screws;
-        const auto inverse = BorderedScrews<n>(screws, row).inverse();
-        const SecondDerivatives<n> second(screws, inverse);
-        const Ball<n> ball = find_ball(screws, inverse, second);
+        const auto inverse = BorderedScrews<Complex, n>(screws, row).inverse();
+        const SecondDerivatives<Complex, n> second(screws, inverse);
+        const Ball<n> ball = find_ball(ball_terms(screws, inverse, second));
         constexpr auto size = static_cast<Index>(n);
         Array<Complex> derivatives({size, size, size});
         std::size_t number = 0;
@@ -272,7 +278,7 @@ void define_slices(nb::module_& module) {
     module.def("slice_configurations", &slice_configurations, nb::arg("geometry"), nb::arg("joint"),
                nb::arg("angles"));
     module.def("follow_paths", &follow_paths, nb::arg("starts"), nb::arg("first"), nb::arg("last"),
-               nb::arg("seconds"));
+               nb::arg("shares"), nb::arg("seconds"));
     module.def("smallest_singular_values", &smallest_singular_values, nb::arg("configurations"),
                nb::arg("table"));
     module.def("quaternion_closure", &quaternion_closure, nb::arg("configurations"), nb::arg("table"));

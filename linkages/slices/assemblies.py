@@ -130,12 +130,19 @@ def isolated_assemblies(loop: Loop, seconds: float = np.inf) -> Assemblies:
 
 
 def follow_paths(
-    start: GenericLoop, table: np.ndarray, seconds: float = np.inf
+    start: GenericLoop,
+    table: np.ndarray,
+    seconds: float = np.inf,
+    shares: np.ndarray | float = 1.0,
 ) -> Paths:
     """The paths of all configurations of ``start`` while its geometry moves straight to
-    ``table`` (3, 6); none of them is begun after about so many ``seconds``."""
+    ``table`` (3, 6); none of them is begun after about so many ``seconds``.
+
+    Of all the way ``shares`` (k,) are left where they begin, each counted as 1.
+    """
     last = np.asarray(table, dtype=complex)
-    paths = _core.follow_paths(start.configurations, start.table, last, seconds)
+    left = np.full(len(start.configurations), shares, dtype=float)
+    paths = _core.follow_paths(start.configurations, start.table, last, left, seconds)
     return Paths(*paths)
 
 
@@ -151,18 +158,17 @@ def _followed_on(
     """
     angles, rest, ends = paths.angles.copy(), paths.rest.copy(), paths.ends.copy()
     stopped = np.flatnonzero(ends == PathEnd.STOPPED)
-    for k in stopped[is_near_its_end(rest[stopped])]:
-        if deadline.passed:
+    near = stopped[is_near_its_end(rest[stopped])]
+    for shares in (rest[near], 0.0):
+        # at the end Newton's method goes on: a singular value that vanishes falls with it
+        if not len(near) or deadline.passed:
             break
-        geometry = table + rest[k] * (start.table - table)
-        here = GenericLoop(geometry, angles[k : k + 1])
-        again = follow_paths(here, table, deadline.left)
-        if again.ends[0] == PathEnd.ARRIVED:
-            # Newton's method goes on: a singular value that vanishes falls with it
-            there = GenericLoop(table, again.angles)
-            again = follow_paths(there, table, deadline.left)
-        angles[k], ends[k] = again.angles[0], again.ends[0]
-        rest[k] *= again.rest[0]
+        here = GenericLoop(start.table, angles[near])
+        again = follow_paths(here, table, deadline.left, shares)
+        angles[near], ends[near] = again.angles, again.ends
+        rest[near] *= again.rest
+        has_arrived = again.ends == PathEnd.ARRIVED
+        near = near[has_arrived]
     return Paths(angles, rest, ends)
 
 

@@ -33,6 +33,7 @@ from bifurc.search.answer.completeness import judge_completeness
 from bifurc.search.answer.doubts import (
     are_on_rim,
     doubts_of,
+    doubts_of_crossings,
     doubts_of_findings,
     doubts_of_isolated,
     doubts_of_near_misses,
@@ -92,8 +93,10 @@ def assemble_atlas(
     near_misses = near_misses_of(problem, traced, singular, points, periods)
     near_motions = _near_motions(problem, findings, periods)
     deflated = findings.components.deflated
+    may_cross = not surfaces and not findings.have_all_crossings
     doubts = [
         *doubts_of(problem, traced, forms, points, surfaces, deflated),
+        *(doubts_of_crossings(problem, traced, points) if may_cross else ()),
         *doubts_of_isolated(findings, points),
         *doubts_of_near_misses(problem, near_misses),
         *doubts_of_findings(problem, findings, located),

@@ -94,7 +94,6 @@ def doubts_of(
     for point in points:
         yield from _doubts_of_point(problem, point)
         yield from _doubts_of_halves(traced, point)
-    yield from _doubts_of_crossings(problem, traced, points, surfaces)
 
 
 def doubts_of_isolated(
@@ -125,15 +124,12 @@ def doubts_of_isolated(
         yield SearchDoubt.OPEN_CORNERS.doubt(points=corners)
 
 
-def _doubts_of_crossings(
-    problem: Problem,
-    traced: Sequence[TracedBranch],
-    points: Sequence[MeetingPoint],
-    surfaces: Sequence[Surface],
+def doubts_of_crossings(
+    problem: Problem, traced: Sequence[TracedBranch], points: Sequence[MeetingPoint]
 ) -> Iterator[Doubt]:
     """Whether curves have to cross once more next to singular points; nothing where the
     time is over, which is said of the whole search."""
-    if surfaces or is_time_over():
+    if is_time_over():
         return
     located = [point.point for point in points]
     branches = [one.branch for one in traced]

@@ -156,13 +156,15 @@ def test_paths_far_from_real_configurations_are_followed_by_quaternions():
 
 def test_smallest_singular_values_of_complex_configurations_are_those_of_lapack():
     rng = np.random.default_rng(0)
-    angles = rng.normal(size=(20, 6)) + 1j * rng.normal(size=(20, 6))
-    table = assemblies._with_six_joints(SIXTEEN).table.astype(complex)
+    loop = Loop(rng.uniform(0.5, 1.5, 6), rng.uniform(0.5, 2.5, 6), rng.normal(size=6))
+    table = assemblies._with_six_joints(loop).table.astype(complex)
+    angles = follow_paths(assemblies._generic_loop(0), table).angles
+    assert np.count_nonzero(np.abs(angles.imag).max(axis=1) > 0.1) > 8
     values = _core.smallest_singular_values(angles, table)
     for configuration, value in zip(angles, values, strict=True):
-        screws, _ = _core.screws_and_error(SIXTEEN.link_geometry, configuration)
+        screws, _ = _core.screws_and_error(loop.link_geometry, configuration)
         expected = np.linalg.svd(screws, compute_uv=False)
-        assert abs(value - expected[-1]) < 1e-14 * expected[0]
+        assert abs(value - expected[-1]) < 1e-9 * expected[0]
 
 
 def ends_at(regular, singular=0, nearly_singular=0, far_out=0, at_infinity=0):
