@@ -77,6 +77,11 @@ class RealFamily(ABC):
     def conjugates(self, points: np.ndarray) -> np.ndarray:
         """The conjugates (k, n) of solutions (k, n)."""
 
+    @property
+    def name(self) -> str:
+        """What its equations are called: the same have the same name."""
+        return name_of(self.family)
+
     @cached_property
     def generic(self) -> GenericSolutions:
         """The solutions of one generic member: of a common type, known, or found.
@@ -84,7 +89,7 @@ class RealFamily(ABC):
         Raises `UnfollowedError` where it moves, where there are more than are looked
         for, and where the time is over.
         """
-        name = name_of(self.family)
+        name = self.name
         if name in _unknown:
             raise UnfollowedError(_unknown[name])
         if name not in _known:
@@ -133,22 +138,28 @@ class RealFamily(ABC):
         return paths
 
     def followed(self, start: Fibre, last: np.ndarray) -> Paths:
-        """The paths from the solutions of one member to the one with the parameters
-        ``last`` (q,)."""
+        """The paths from the solutions of one member, or of one each, to the one with
+        the parameters ``last``, (q,) or (k, q)."""
         solutions, first = start.solutions, start.parameters
         return follow_paths(self.family, solutions, first, last, current_deadline())
 
-    def real_ends(self, paths: Paths) -> np.ndarray:
-        """The ends (k, n) that are real: each is its own conjugate.
+    def are_real(self, ends: np.ndarray) -> np.ndarray:
+        """Which of all ends (k, n) of real members are real (k,): each is its own
+        conjugate.
 
         Raises `UnfollowedError` unless the conjugate of each end is one of them.
         """
-        ends = paths.regular
         count = len(ends)
         partners = copy_of(np.concatenate([ends, self.conjugates(ends)]))[count:]
         if np.any(partners >= count):
             raise UnfollowedError("a configuration has no conjugate one")
-        real: np.ndarray = ends[partners == np.arange(count)]
+        are_real: np.ndarray = partners == np.arange(count)
+        return are_real
+
+    def real_ends(self, paths: Paths) -> np.ndarray:
+        """The ends (k, n) that are real. Raises `UnfollowedError`, as `are_real`."""
+        ends = paths.regular
+        real: np.ndarray = ends[self.are_real(ends)]
         return real
 
 

@@ -1,0 +1,297 @@
+"""Single loops in space, by the chains of turns and slides that they are.
+
+Where an unknown of a loop is held, all others are a chain of single turns and slides,
+whatever joints these are of: six that lead to a frame, three that lead to a point, or one
+that leads to a distance. There are few types of such chains, and the generic solutions
+of all of them are part of the package. So paths lead from these to the configurations of
+any loop where an unknown has some value, real or not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import product
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+
+from bifurc.paths.follow import PathEnd
+from linkages.decisions import meets_in_one_point
+from linkages.dyads.generic import UnfollowedError
+from linkages.mechanisms.joint import Joint, JointKind, Motion
+from linkages.mechanisms.mechanism import Mechanism
+from linkages.modules.assemblies import require_no_short_length
+from linkages.modules.equations import ClosureFamily, Move, mirror_of, quaternion
+from linkages.structure.structure import Closure, ClosureKind, Share, Structure
+
+# Turns and slides, one after the other.
+Letters: TypeAlias = str
+SLIDE, TURN, POINT = "P", "R", "S"
+KINDS = {
+    SLIDE: JointKind.PRISMATIC,
+    TURN: JointKind.REVOLUTE,
+    POINT: JointKind.SPHERICAL,
+}
+# How many unknowns a chain determines, and the spherical joints that close it so.
+LENGTHS = {ClosureKind.CYCLE: 6, ClosureKind.POINT: 3, ClosureKind.ROD: 1}
+SPHERICAL = {ClosureKind.CYCLE: 0, ClosureKind.POINT: 1, ClosureKind.ROD: 2}
+NOTHING = -1  # the number of no unknown
+MOST_SLIDES = 3  # more of them in a cycle move, or turns cannot close it
+SOLVED = 1e-8  # residual of what solves the equations, over the largest number in them
+
+
+class Chain(NamedTuple):
+    """The ``moves`` along a chain, and where it ends: ``second`` (3,) of the last body
+    comes to ``first`` (3,) of the first one, or to a distance from it."""
+
+    moves: tuple[Move, ...]
+    first: np.ndarray
+    second: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """A chain with what is held in it taken out: the ``unknowns``, by number, their
+    ``directions`` and ``points`` (3,), and the displacement (4, 4) that is left at the
+    end of it. All are complex."""
+
+    chain: Chain
+    unknowns: list[int]
+    directions: list[np.ndarray]
+    points: list[np.ndarray]
+    rest: np.ndarray
+
+
+def single_loop(closures: ClosureFamily) -> SingleLoop | None:
+    """The loop that they are of; None where they are of none, and where with some of its
+    unknowns held it is of no type."""
+    try:
+        loop = SingleLoop(closures)
+        for number in range(len(closures.structure.unknowns)):
+            loop.family(number)
+    except ValueError:
+        return None
+    return loop
+
+
+class SingleLoop:
+    """The loop of a ``closures`` family. Raises `ValueError` where these are of no single
+    loop in space, of single turns and slides."""
+
+    def __init__(self, closures: ClosureFamily):
+        self.closures, self.structure = closures, closures.structure
+        placement, moves = closures.placement, closures.moves
+        shares = (self.structure.share(move.variable) for move in moves)
+        known = sorted(share for share in shares if share is not None)
+        is_flat = placement.is_planar or placement.is_spherical
+        has_leg = any(one.rod and one.rod.leg for one in closures.closures)
+        numbers = range(len(self.structure.unknowns))
+        is_whole = known == [Share(number, 1.0, 0.0) for number in numbers]
+        if not closures.is_single or is_flat or has_leg or not is_whole:
+            raise ValueError("it is no single loop of turns and slides in space")
+
+    @property
+    def _closure(self) -> Closure:
+        return self.closures.closures[0]
+
+    def family(self, driver: int) -> ClosureFamily:
+        """The chains of the type that is left where an unknown, by number, is held.
+
+        Raises `ValueError` where there is no such type.
+        """
+        letters = min(_letters(self.closures, one.moves, driver) for one in self._ways())
+        return chains_of(self._closure.kind, letters)
+
+    def solutions(self, driver: int, place: complex) -> np.ndarray:
+        """All configurations with an unknown, by number, at a place: coordinates
+        (k, c) of the closures.
+
+        Raises `UnfollowedError` where it is not known that they are all.
+        """
+        family = self.family(driver)
+        held = self._held(self._chain(family, driver), driver, place)
+        paths = family.paths_to_regular(self._member(family, held))
+        if np.any(paths.ends == PathEnd.AT_INFINITY):
+            require_no_short_length(self.structure)
+        found = paths.regular
+        points = np.empty((len(found), self.closures.n), dtype=complex)
+        for number, move in zip(held.unknowns, family.moves, strict=True):
+            own = family.columns[family.unknown_of(move)]
+            points[:, self.closures.columns[number]] = found[:, own]
+        given = self.closures.driven_by((driver,)).given_at(place)
+        is_angle = self.structure.unknowns[driver].is_angle
+        at = [np.exp(1j * place), np.exp(-1j * place)] if is_angle else place
+        points[:, self.closures.columns[driver]] = at
+        gaps = np.abs(self.closures.family.residuals(points, given))
+        if gaps.max(initial=0.0) > SOLVED * (1.0 + np.abs(points).max(initial=0.0)) ** 2:
+            raise UnfollowedError("what solves the equations of a chain closes no loop")
+        return points
+
+    def on_every_motion(self) -> list[int]:
+        """Unknowns, by number, of which one moves on every motion: all but some that do
+        not move without others.
+
+        Turns that move alone have one direction, so in a cycle there are two of them at
+        least, or else two slides, and of each kind one is left out. A point is moved by
+        the turn next to it, if it is not on its axis.
+        """
+        unknowns = self.structure.unknowns
+        order = [self.closures.unknown_of(move) for move in self.closures.moves]
+        numbers = [number for number in order if number is not None]
+        left_out: list[int] = []
+        if self._closure.kind is ClosureKind.CYCLE:
+            left_out += [k for k in numbers if unknowns[k].is_angle][-1:]
+            left_out += [k for k in numbers if not unknowns[k].is_angle][-1:]
+        elif self._closure.kind is ClosureKind.POINT and self._last_moves_point():
+            left_out.append(numbers[-1])
+        return [k for k in range(len(unknowns)) if k not in left_out]
+
+    def _last_moves_point(self) -> bool:
+        """Whether the last motion before a point moves it."""
+        last = self.closures.moves[-1].variable
+        motion = self.structure.mechanism.variables[last].motion
+        if not motion.is_turn:
+            return True
+        arm = (self._closure.second - motion.point) / self.structure.unit
+        distance = float(np.linalg.norm(np.cross(motion.direction, arm)))
+        return not meets_in_one_point(distance, 1.0)
+
+    # --- the chain --------------------------------------------------------------------
+
+    def _chain(self, family: ClosureFamily, driver: int) -> Chain:
+        """The chain, passed as those of its type are where the driver is held."""
+        letters = _letters(family, family.moves)
+        return next(
+            chain
+            for chain in self._ways()
+            if _letters(self.closures, chain.moves, driver) == letters
+        )
+
+    def _ways(self) -> Iterator[Chain]:
+        """The chain, both ways and a cycle from everywhere."""
+        closure, placement = self._closure, self.closures.placement
+        ends = placement.point(closure.first), placement.point(closure.second)
+        there = tuple(self.closures.moves)
+        back = tuple(Move(-sign, variable) for sign, variable in reversed(there))
+        is_cycle = closure.kind is ClosureKind.CYCLE
+        for moves, (first, second) in ((there, ends), (back, ends[::-1])):
+            for start in range(len(moves) if is_cycle else 1):
+                yield Chain(moves[start:] + moves[:start], first, second)
+
+    def _held(self, chain: Chain, driver: int, place: complex) -> Held:
+        """A chain with the driver held at a place: what is behind it is moved."""
+        held = Held(chain, [], [], [], np.eye(4, dtype=complex))
+        placement, rest = self.closures.placement, held.rest
+        for move in chain.moves:
+            variable = self.structure.mechanism.variables[move.variable]
+            motion, number = variable.motion, self.closures.unknown_of(move)
+            direction = move.sign * placement.direction(motion)
+            point = np.zeros(3)
+            if motion.is_turn:
+                point = placement.point_on_axis(motion)
+            if number is not None and number != driver:
+                held.unknowns.append(number)
+                held.directions.append(rest[:3, :3] @ direction)
+                held.points.append(rest[:3, :3] @ point + rest[:3, 3])
+                continue
+            value = place
+            if number is None:
+                unit = 1.0 if motion.is_turn else self.structure.unit
+                value = (variable.locked or 0.0) / unit
+            rest = rest @ _displacement(motion, direction, point, value)
+        return replace(held, rest=rest)
+
+    def _member(self, family: ClosureFamily, held: Held) -> np.ndarray:
+        """The parameters (q,) of the chain among those of its type."""
+        given, blocks = family.given, family.parameters.blocks
+        turn, shift = held.rest[:3, :3], held.rest[:3, 3]
+        axes = zip(family.moves, held.directions, held.points, strict=True)
+        for move, direction, point in axes:
+            motion = family.structure.mechanism.variables[move.variable].motion
+            given[blocks[family.direction_of(motion)]] = mirror_of(move.sign * direction)
+            if motion.is_turn:
+                given[blocks[family.point_of(motion)]] = point
+        (closure,) = family.closures
+        if closure.kind is ClosureKind.CYCLE:
+            target = [*quaternion(*turn[:2]), *(-turn.T @ shift)]
+        else:
+            moved = turn @ held.chain.second + shift
+            given[blocks[family.place_of(closure.second)]] = moved
+            target = list(held.chain.first)
+        if closure.kind is ClosureKind.ROD:
+            given[blocks[family.place_of(closure.first)]] = held.chain.first
+            rod = self._closure.rod
+            assert rod is not None
+            target = [(rod.length / self.structure.unit) ** 2]
+        given[blocks["target", 0]] = target
+        return given
+
+
+def _displacement(
+    motion: Motion, direction: np.ndarray, point: np.ndarray, value: complex
+) -> np.ndarray:
+    """What a motion (4, 4) makes of a value, real or not, along or about an axis."""
+    displacement = np.eye(4, dtype=complex)
+    if not motion.is_turn:
+        displacement[:3, 3] = value * direction
+        return displacement
+    x, y, z = direction
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    turn = np.eye(3) + np.sin(value) * cross + (1.0 - np.cos(value)) * cross @ cross
+    displacement[:3, :3] = turn
+    displacement[:3, 3] = point - turn @ point
+    return displacement
+
+
+# --- types ----------------------------------------------------------------------------
+
+
+def _letters(
+    closures: ClosureFamily, moves: Iterable[Move], driver: int = NOTHING
+) -> Letters:
+    """The turns and slides that are not held."""
+    numbers = map(closures.unknown_of, moves)
+    unknowns = closures.structure.unknowns
+    return "".join(
+        TURN if unknowns[number].is_angle else SLIDE
+        for number in numbers
+        if number is not None and number != driver
+    )
+
+
+@cache
+def chains_of(kind: ClosureKind, letters: Letters) -> ClosureFamily:
+    """All chains of so many turns and slides. Raises `ValueError` where these do not
+    determine each other."""
+    if letters not in letters_of(kind):
+        raise ValueError(f"letters: {letters!r} are no type of chains")
+    return ClosureFamily(Structure(_generic_loop(letters + SPHERICAL[kind] * POINT)))
+
+
+@cache
+def letters_of(kind: ClosureKind) -> tuple[Letters, ...]:
+    """The types of chains, passed the way in which the letters are first."""
+    words = set()
+    for letters in map("".join, product(SLIDE + TURN, repeat=LENGTHS[kind])):
+        starts = range(len(letters) if kind is ClosureKind.CYCLE else 1)
+        ways = (letters, letters[::-1])
+        words.add(min(way[k:] + way[:k] for way in ways for k in starts))
+    return tuple(one for one in sorted(words) if one.count(SLIDE) <= MOST_SLIDES)
+
+
+def _generic_loop(letters: Letters) -> Mechanism:
+    """A loop of joints at random places."""
+    rng = np.random.default_rng(0)
+    joints = []
+    for number, letter in enumerate(letters):
+        bodies = f"b{number}", f"b{(number + 1) % len(letters)}"
+        point, direction = (tuple(rng.normal(size=3).tolist()) for _ in range(2))
+        at = {"point": point, "direction": direction}
+        if letter == SLIDE:
+            del at["point"]
+        if letter == POINT:
+            del at["direction"]
+        joints.append(Joint(f"{letter}{number}", KINDS[letter], bodies, **at))
+    return Mechanism(tuple(joints))
