@@ -15,7 +15,7 @@ tangent of its half, and a rotation is that of a quaternion of any length.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from copy import copy
 from dataclasses import dataclass, field
 from functools import cached_property, partial
@@ -26,9 +26,10 @@ import numpy as np
 
 from bifurc.equations.recorded import RecordedNumber
 from bifurc.paths.family import Family
+from bifurc.paths.follow import PathEnd
 from bifurc.paths.monodromy import Projection
-from linkages.decisions import meets_in_one_point
-from linkages.dyads.generic import RealFamily
+from linkages.decisions import is_short_bar, meets_in_one_point
+from linkages.dyads.generic import RealFamily, UnfollowedError
 from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.mechanism import Variable
 from linkages.structure.cycles import Step
@@ -51,7 +52,8 @@ ROTATION = 6  # numbers of an embedded rotation: two orthonormal vectors
 X_AXIS, Y_AXIS, ORIGIN = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
 OF_SINES = -0.5j  # the sine of x is this times exp(i x) - exp(-i x)
 FLAT = {ClosureKind.CYCLE: 3, ClosureKind.POINT: 2, ClosureKind.ROD: 1}
-ROUNDING = 1e-20  # of the square of a vector: it is none
+# of a length, and of the square of a vector: it is none
+NO_LENGTH, ROUNDING = 1e-12, 1e-20
 # Complex ones of a generic member that are looked for. Types with more of them are at
 # hand, or are not followed.
 MOST_SOLUTIONS = 48
@@ -396,7 +398,9 @@ class ClosureFamily(RealFamily):
         """The parameters (q,) of the structure."""
         given = np.array(self.parameters.given, dtype=complex)
         if self.is_driven:
-            drawn = np.random.default_rng(len(self.drivers)).normal(size=len(self.drivers))
+            drawn = np.random.default_rng(len(self.drivers)).normal(
+                size=len(self.drivers)
+            )
             weights = given[self.parameters.blocks[WEIGHTS, 0]]
             weights[list(self.drivers)] = drawn
             weights[list(self.drivers[:1])] = 1.0
@@ -499,6 +503,39 @@ def mirror_of(direction: np.ndarray) -> np.ndarray:
     """A vector (3,) in which e_x reflected is a unit ``direction`` (3,)."""
     between = direction + X_AXIS
     return between if abs(between @ between) > ROUNDING else np.array(Y_AXIS)
+
+
+def solutions_of(
+    family: ClosureFamily, given: np.ndarray, structure: Structure
+) -> np.ndarray:
+    """All isolated solutions (k, n) of the member of a family with parameters (q,) that
+    are those of a ``structure``.
+
+    Raises `UnfollowedError` where it is not known that they are all.
+    """
+    paths = family.paths_to_regular(given)
+    if np.any(paths.ends == PathEnd.AT_INFINITY):
+        _require_no_short_length(structure)
+    return paths.regular
+
+
+def _require_no_short_length(structure: Structure) -> None:
+    """Raise `UnfollowedError` where paths may come back that seem to end at infinity."""
+    points = [
+        variable.motion.point / structure.unit
+        for variable in structure.mechanism.variables
+        if variable.motion.is_turn
+    ]
+    places = [
+        place / structure.unit
+        for closure in structure.closures
+        for place in (closure.first, closure.second)
+    ]
+    rows = np.array(points + places)
+    gaps = np.linalg.norm(rows[:, None] - rows[None], axis=2)
+    gaps = gaps[gaps > NO_LENGTH]
+    if len(gaps) and is_short_bar(float((gaps.min() / gaps.max()) ** 2)):
+        raise UnfollowedError("a length is so short that paths seem to end at infinity")
 
 
 # --- numbers, recorded or not ---------------------------------------------------------

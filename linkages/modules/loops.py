@@ -17,13 +17,17 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from bifurc.paths.follow import PathEnd
 from linkages.decisions import meets_in_one_point
 from linkages.dyads.generic import UnfollowedError
 from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.modules.assemblies import require_no_short_length
-from linkages.modules.equations import ClosureFamily, Move, mirror_of, quaternion
+from linkages.modules.equations import (
+    ClosureFamily,
+    Move,
+    mirror_of,
+    quaternion,
+    solutions_of,
+)
 from linkages.structure.structure import Closure, ClosureKind, Share, Structure
 
 # Turns and slides, one after the other.
@@ -65,11 +69,14 @@ class Held:
 
 
 def single_loop(closures: ClosureFamily) -> SingleLoop | None:
-    """The loop that they are of; None where they are of none, and where with some of its
-    unknowns held it is of no type."""
+    """The loop that they are of; None where they are of none, and where it is of no type,
+    or with some of its unknowns held if it is driven."""
+    numbers = (
+        range(len(closures.structure.unknowns)) if closures.is_driven else [NOTHING]
+    )
     try:
         loop = SingleLoop(closures)
-        for number in range(len(closures.structure.unknowns)):
+        for number in numbers:
             loop.family(number)
     except ValueError:
         return None
@@ -96,36 +103,41 @@ class SingleLoop:
     def _closure(self) -> Closure:
         return self.closures.closures[0]
 
-    def family(self, driver: int) -> ClosureFamily:
+    def family(self, driver: int = NOTHING) -> ClosureFamily:
         """The chains of the type that is left where an unknown, by number, is held.
 
         Raises `ValueError` where there is no such type.
         """
-        letters = min(_letters(self.closures, one.moves, driver) for one in self._ways())
+        letters = min(
+            _letters(self.closures, one.moves, driver) for one in self._ways()
+        )
         return chains_of(self._closure.kind, letters)
 
-    def solutions(self, driver: int, place: complex) -> np.ndarray:
-        """All configurations with an unknown, by number, at a place: coordinates
+    def solutions(self, driver: int = NOTHING, place: complex = 0.0) -> np.ndarray:
+        """All configurations, with an unknown, by number, at a place: coordinates
         (k, c) of the closures.
 
         Raises `UnfollowedError` where it is not known that they are all.
         """
         family = self.family(driver)
         held = self._held(self._chain(family, driver), driver, place)
-        paths = family.paths_to_regular(self._member(family, held))
-        if np.any(paths.ends == PathEnd.AT_INFINITY):
-            require_no_short_length(self.structure)
-        found = paths.regular
+        found = solutions_of(family, self._member(family, held), self.structure)
         points = np.empty((len(found), self.closures.n), dtype=complex)
         for number, move in zip(held.unknowns, family.moves, strict=True):
-            own = family.columns[family.unknown_of(move)]
-            points[:, self.closures.columns[number]] = found[:, own]
-        given = self.closures.driven_by((driver,)).given_at(place)
-        is_angle = self.structure.unknowns[driver].is_angle
-        at = [np.exp(1j * place), np.exp(-1j * place)] if is_angle else place
-        points[:, self.closures.columns[driver]] = at
+            own = family.unknown_of(move)
+            assert own is not None
+            points[:, self.closures.columns[number]] = found[:, family.columns[own]]
+        given = self.closures.given
+        if driver != NOTHING:
+            given = self.closures.driven_by((driver,)).given_at(place)
+            is_angle = self.structure.unknowns[driver].is_angle
+            at = [np.exp(1j * place), np.exp(-1j * place)] if is_angle else place
+            points[:, self.closures.columns[driver]] = at
         gaps = np.abs(self.closures.family.residuals(points, given))
-        if gaps.max(initial=0.0) > SOLVED * (1.0 + np.abs(points).max(initial=0.0)) ** 2:
+        if (
+            gaps.max(initial=0.0)
+            > SOLVED * (1.0 + np.abs(points).max(initial=0.0)) ** 2
+        ):
             raise UnfollowedError("what solves the equations of a chain closes no loop")
         return points
 
@@ -210,7 +222,9 @@ class SingleLoop:
         axes = zip(family.moves, held.directions, held.points, strict=True)
         for move, direction, point in axes:
             motion = family.structure.mechanism.variables[move.variable].motion
-            given[blocks[family.direction_of(motion)]] = mirror_of(move.sign * direction)
+            given[blocks[family.direction_of(motion)]] = mirror_of(
+                move.sign * direction
+            )
             if motion.is_turn:
                 given[blocks[family.point_of(motion)]] = point
         (closure,) = family.closures
@@ -287,11 +301,13 @@ def _generic_loop(letters: Letters) -> Mechanism:
     joints = []
     for number, letter in enumerate(letters):
         bodies = f"b{number}", f"b{(number + 1) % len(letters)}"
-        point, direction = (tuple(rng.normal(size=3).tolist()) for _ in range(2))
-        at = {"point": point, "direction": direction}
-        if letter == SLIDE:
-            del at["point"]
-        if letter == POINT:
-            del at["direction"]
-        joints.append(Joint(f"{letter}{number}", KINDS[letter], bodies, **at))
+        point, direction = rng.normal(size=(2, 3)).tolist()
+        joint = Joint(
+            name=f"{letter}{number}",
+            kind=KINDS[letter],
+            bodies=bodies,
+            point=None if letter == SLIDE else point,
+            direction=None if letter == POINT else direction,
+        )
+        joints.append(joint)
     return Mechanism(tuple(joints))

@@ -16,7 +16,6 @@ import numpy as np
 
 from bifurc.decisions import is_singular_path_end
 from bifurc.limits import current_deadline, until
-from bifurc.paths.follow import PathEnd
 from bifurc.paths.monodromy import Fibre
 from bifurc.problem import Problem
 from linkages.dyads.generic import UnfollowedError
@@ -27,8 +26,8 @@ from linkages.dyads.slices import (
     places_of_slices,
     within_limits,
 )
-from linkages.modules.assemblies import TIME, require_no_short_length
-from linkages.modules.equations import ClosureFamily
+from linkages.modules.assemblies import TIME
+from linkages.modules.equations import ClosureFamily, solutions_of
 from linkages.modules.loops import single_loop
 from linkages.structure.structure import Structure, Unknown
 
@@ -37,6 +36,7 @@ MOST_DRIVERS = 1
 # Complex places all round the values of a driver, and how far beside these they are, over
 # the way round: less than between them.
 HUBS, BESIDE = 5, 0.04
+PLACES = 2  # that are tried for all configurations at one
 
 
 class Motions:
@@ -68,13 +68,8 @@ class Motions:
         configurations at a value."""
         moving = np.ones(len(self.families), dtype=bool)
         for family in self._of_all_motions():
-            driver = family.drivers[0]
-            place = _place_beside(self.structure.unknowns[driver], rng.uniform())
-            given = family.given_at(place)
-            points = self._all_at(family, place)
-            if len(family.drivers) == 1:
-                self.bases[driver] = place, Fibre(given, points)
-            for jacobian in family.family.jacobians(points, given):
+            base = self._base(family, rng)
+            for jacobian in family.family.jacobians(base.solutions, base.parameters):
                 moving &= _do_move(family, jacobian)
         of_joints = [
             number
@@ -84,6 +79,23 @@ class Motions:
         counts = [self.count(number) for number in of_joints]
         order = np.argsort(counts, kind="stable")[:MOST_DRIVERS]
         return [of_joints[place] for place in order.tolist()]
+
+    def _base(self, family: ClosureFamily, rng: np.random.Generator) -> Fibre:
+        """All configurations with the driver of a family at a random complex place: there
+        some may be so far away that they look singular."""
+        driver = family.drivers[0]
+        for attempt in range(PLACES):
+            place = _place_beside(self.structure.unknowns[driver], rng.uniform())
+            try:
+                points = self._all_at(family, place)
+                break
+            except UnfollowedError:
+                if attempt == PLACES - 1:
+                    raise
+        base = Fibre(family.given_at(place), points)
+        if len(family.drivers) == 1:
+            self.bases[driver] = place, base
+        return base
 
     def count(self, driver: int) -> int:
         """How many complex configurations there are at a value of a driver."""
@@ -155,21 +167,22 @@ class Motions:
         """All configurations (k, c) with the driver of a family at a place."""
         if self.loop:
             return self.loop.solutions(family.drivers[0], place)
-        paths = family.paths_to_regular(family.given_at(place))
-        if np.any(paths.ends == PathEnd.AT_INFINITY):
-            require_no_short_length(self.structure)
-        return paths.regular
+        return solutions_of(family, family.given_at(place), self.structure)
 
 
 def _span(unknown: Unknown) -> float:
-    """Between the least and the largest values of an unknown; a turn of an angle."""
-    return TURN if unknown.is_angle else unknown.high - unknown.low
+    """Between the least and the largest values of an unknown: a turn of an angle, and 1
+    where there are no limits."""
+    if unknown.is_angle:
+        return TURN
+    span = unknown.high - unknown.low
+    return span if np.isfinite(span) else 1.0
 
 
 def _place_beside(unknown: Unknown, share: float) -> complex:
     """A complex place beside the real values of an unknown, after so much of them."""
     span = _span(unknown)
-    low = 0.0 if unknown.is_angle else unknown.low
+    low = unknown.low if np.isfinite(unknown.low) else 0.0
     return complex(low + share * span, -BESIDE * span)
 
 

@@ -103,7 +103,7 @@ def test_three_cylindrical_joints_close_in_two_ways():
     """Their angles close a spherical triangle, and the slides follow."""
     mechanism = loop("CCC", np.random.default_rng(3))
     module = Module(Structure(mechanism))
-    assert module.count == 2
+    assert module.generic.count == 2
     closure = Closure(mechanism)
     known = module.configurations()
     assert len(known) == 2
@@ -124,7 +124,7 @@ def test_what_moves_is_no_module():
 def test_a_platform_on_six_legs_has_all_its_assemblies(seed):
     mechanism = random_platform(seed)
     module = Module(Structure(mechanism))
-    assert module.count == 40
+    assert module.generic.count == 40
     known = module.configurations()
     assert len(known) % 2 == 0
     closure = Closure(mechanism)
@@ -307,7 +307,7 @@ def points_with(lengths):
 def test_seven_points_in_space_have_as_many_real_assemblies_as_complex_ones(count):
     lengths = SEVEN_POINTS[count]
     module = Module(Structure(framework_in_space(points_with(lengths), lengths)))
-    assert module.count == count
+    assert module.generic.count == count
     assert len(module.configurations()) == count
 
 
