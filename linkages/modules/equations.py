@@ -294,14 +294,19 @@ class ClosureFamily(RealFamily):
         for number, variable in enumerate(structure.mechanism.variables):
             if variable.locked:
                 parameters.add("locked", number, self._locked(variable))
+        self._add_targets(parameters)
+        return parameters
+
+    def _add_targets(self, parameters: Parameters) -> None:
+        """Where chains have to lead, and what is held."""
+        unit, unknowns = self.structure.unit, self.structure.unknowns
         for k, closure in enumerate(self.closures):
             if closure.rod is not None and closure.rod.leg is not None:
-                parameters.add("leg", k, [closure.rod.length / structure.unit])
-            parameters.add("target", k, self._given_target(closure))
+                parameters.add("leg", k, [closure.rod.length / unit])
+            parameters.add("target", k, self.target_of(closure))
         if self.is_driven:
-            parameters.add(WEIGHTS, 0, [0.0] * len(structure.unknowns))
+            parameters.add(WEIGHTS, 0, [0.0] * len(unknowns))
             parameters.add(DRIVER, 0, [1.0])
-        return parameters
 
     def _locked(self, variable: Variable) -> list[float]:
         """The parameters of what is locked: cosine and sine of half an angle, or a
@@ -311,7 +316,7 @@ class ClosureFamily(RealFamily):
             return [np.cos(0.5 * value), np.sin(0.5 * value)]
         return [value / self.structure.unit]
 
-    def _given_target(self, closure: Closure) -> Sequence[float]:
+    def target_of(self, closure: Closure) -> Sequence[float]:
         """Where the chain of a closure has to lead."""
         if closure.kind is ClosureKind.CYCLE:
             return self._rest_frame()

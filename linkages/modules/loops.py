@@ -9,7 +9,7 @@ any loop where an unknown has some value, real or not.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import product
@@ -18,7 +18,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from linkages.decisions import meets_in_one_point
-from linkages.dyads.generic import UnfollowedError
+from linkages.dyads.generic import SOLVED, UnfollowedError
 from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.modules.equations import (
@@ -28,6 +28,7 @@ from linkages.modules.equations import (
     quaternion,
     solutions_of,
 )
+from linkages.slices.assemblies import all_complex
 from linkages.structure.structure import Closure, ClosureKind, Share, Structure
 
 # Turns and slides, one after the other.
@@ -41,9 +42,9 @@ KINDS = {
 # How many unknowns a chain determines, and the spherical joints that close it so.
 LENGTHS = {ClosureKind.CYCLE: 6, ClosureKind.POINT: 3, ClosureKind.ROD: 1}
 SPHERICAL = {ClosureKind.CYCLE: 0, ClosureKind.POINT: 1, ClosureKind.ROD: 2}
+RING = 6 * TURN
 NOTHING = -1  # the number of no unknown
 MOST_SLIDES = 3  # more of them in a cycle move, or turns cannot close it
-SOLVED = 1e-8  # residual of what solves the equations, over the largest number in them
 
 
 class Chain(NamedTuple):
@@ -66,6 +67,22 @@ class Held:
     directions: list[np.ndarray]
     points: list[np.ndarray]
     rest: np.ndarray
+
+    @property
+    def turn(self) -> np.ndarray:
+        """The rotation (3, 3) that is left."""
+        return self.rest[:3, :3]
+
+    def moved(self, place: np.ndarray) -> np.ndarray:
+        """Where what is left takes a place (3,)."""
+        moved: np.ndarray = self.turn @ place + self.rest[:3, 3]
+        return moved
+
+    @property
+    def end(self) -> list[complex]:
+        """Where the unknowns have to lead: a quaternion and a translation."""
+        back = -self.turn.T @ self.rest[:3, 3]
+        return [*quaternion(*self.turn[:2]), *back.tolist()]
 
 
 def single_loop(closures: ClosureFamily) -> SingleLoop | None:
@@ -121,25 +138,27 @@ class SingleLoop:
         """
         family = self.family(driver)
         held = self._held(self._chain(family, driver), driver, place)
-        found = solutions_of(family, self._member(family, held), self.structure)
+        found = self._of_ring(family, held)
+        if found is None:
+            found = solutions_of(family, self._member(family, held), self.structure)
         points = np.empty((len(found), self.closures.n), dtype=complex)
-        for number, move in zip(held.unknowns, family.moves, strict=True):
-            own = family.unknown_of(move)
-            assert own is not None
-            points[:, self.closures.columns[number]] = found[:, family.columns[own]]
+        columns = self.closures.columns
+        for number, own in zip(held.unknowns, _columns(family), strict=True):
+            points[:, columns[number]] = found[:, own]
         given = self.closures.given
         if driver != NOTHING:
             given = self.closures.driven_by((driver,)).given_at(place)
             is_angle = self.structure.unknowns[driver].is_angle
             at = [np.exp(1j * place), np.exp(-1j * place)] if is_angle else place
-            points[:, self.closures.columns[driver]] = at
-        gaps = np.abs(self.closures.family.residuals(points, given))
-        if (
-            gaps.max(initial=0.0)
-            > SOLVED * (1.0 + np.abs(points).max(initial=0.0)) ** 2
-        ):
-            raise UnfollowedError("what solves the equations of a chain closes no loop")
+            points[:, columns[driver]] = at
+        self._require_solved(points, given)
         return points
+
+    def _require_solved(self, points: np.ndarray, given: np.ndarray) -> None:
+        gaps = np.abs(self.closures.family.residuals(points, given))
+        size = 1.0 + np.abs(points).max(initial=0.0)
+        if gaps.max(initial=0.0) > SOLVED * size * size:
+            raise UnfollowedError("what solves the equations of a chain closes no loop")
 
     def on_every_motion(self) -> list[int]:
         """Unknowns, by number, of which one moves on every motion: all but some that do
@@ -157,7 +176,7 @@ class SingleLoop:
             left_out += [k for k in numbers if unknowns[k].is_angle][-1:]
             left_out += [k for k in numbers if not unknowns[k].is_angle][-1:]
         elif self._closure.kind is ClosureKind.POINT and self._last_moves_point():
-            left_out.append(numbers[-1])
+            left_out += [k for k in order[-1:] if k is not None]
         return [k for k in range(len(unknowns)) if k not in left_out]
 
     def _last_moves_point(self) -> bool:
@@ -169,6 +188,20 @@ class SingleLoop:
         arm = (self._closure.second - motion.point) / self.structure.unit
         distance = float(np.linalg.norm(np.cross(motion.direction, arm)))
         return not meets_in_one_point(distance, 1.0)
+
+    def _of_ring(self, family: ClosureFamily, held: Held) -> np.ndarray | None:
+        """All solutions (16, 12) of a ring of six turns by the paths of such loops; None
+        of others, and where these do not find all."""
+        if _letters(family, family.moves) != RING:
+            return None
+        table, zero = _links(held)
+        angles = all_complex(table) if np.all(np.isfinite(table)) else None
+        if angles is None:
+            return None
+        found = np.empty((len(angles), family.n), dtype=complex)
+        for angle, own in zip((angles - zero).T, _columns(family), strict=True):
+            found[:, own] = np.exp(1j * np.outer(angle, [1.0, -1.0]))
+        return found
 
     # --- the chain --------------------------------------------------------------------
 
@@ -218,29 +251,62 @@ class SingleLoop:
     def _member(self, family: ClosureFamily, held: Held) -> np.ndarray:
         """The parameters (q,) of the chain among those of its type."""
         given, blocks = family.given, family.parameters.blocks
-        turn, shift = held.rest[:3, :3], held.rest[:3, 3]
         axes = zip(family.moves, held.directions, held.points, strict=True)
-        for move, direction, point in axes:
-            motion = family.structure.mechanism.variables[move.variable].motion
-            given[blocks[family.direction_of(motion)]] = mirror_of(
-                move.sign * direction
-            )
+        for (sign, number), direction, point in axes:
+            motion = family.structure.mechanism.variables[number].motion
+            given[blocks[family.direction_of(motion)]] = mirror_of(sign * direction)
             if motion.is_turn:
                 given[blocks[family.point_of(motion)]] = point
         (closure,) = family.closures
-        if closure.kind is ClosureKind.CYCLE:
-            target = [*quaternion(*turn[:2]), *(-turn.T @ shift)]
-        else:
-            moved = turn @ held.chain.second + shift
+        target: Sequence[complex] = held.end
+        if closure.kind is not ClosureKind.CYCLE:
+            moved = held.moved(held.chain.second)
             given[blocks[family.place_of(closure.second)]] = moved
-            target = list(held.chain.first)
+            target = held.chain.first.tolist()
         if closure.kind is ClosureKind.ROD:
             given[blocks[family.place_of(closure.first)]] = held.chain.first
-            rod = self._closure.rod
-            assert rod is not None
-            target = [(rod.length / self.structure.unit) ** 2]
+            target = self.closures.target_of(self._closure)
         given[blocks["target", 0]] = target
         return given
+
+
+def _links(held: Held) -> tuple[np.ndarray, np.ndarray]:
+    """Lengths, twists and offsets (3, k) of a ring of turns, and the angles (k,) between
+    the links where its unknowns are 0; not finite where axes are parallel."""
+    axes = np.array([*held.directions, held.turn @ held.directions[0]])
+    points = np.array([*held.points, held.moved(held.points[0])])
+    ways, here, there = np.diff(points, axis=0), axes[:-1], axes[1:]
+    cosines, along = _dots(here, there), _dots(ways, here)
+    with np.errstate(all="ignore"):
+        normals = np.cross(here, there)
+        sines = np.sqrt(_dots(normals, normals))
+        normals /= sines[:, None]
+        # where a normal comes to the next axis, and where it leaves its own one
+        ends = (cosines * along - _dots(ways, there)) / sines**2
+        starts = along + cosines * ends
+    before = np.roll(normals, 1, axis=0)
+    before[0] = held.turn.T @ before[0]
+    zero = _angles(_dots(before, normals), _dots(here, np.cross(before, normals)))
+    lengths, offsets = _dots(ways, normals), starts - np.roll(ends, 1)
+    return np.array([lengths, _angles(cosines, sines), offsets]), zero
+
+
+def _dots(vectors: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """The products (k,) of complex vectors (k, 3) with others."""
+    dots: np.ndarray = (vectors * others).sum(axis=1)
+    return dots
+
+
+def _angles(cosines: np.ndarray, sines: np.ndarray) -> np.ndarray:
+    """The complex angles with these cosines and sines."""
+    angles: np.ndarray = -1j * np.log(cosines + 1j * sines)
+    return angles
+
+
+def _columns(family: ClosureFamily) -> list[slice]:
+    """The coordinates of the unknowns of a family, in the order of its chain."""
+    numbers = map(family.unknown_of, family.moves)
+    return [family.columns[number] for number in numbers if number is not None]
 
 
 def _displacement(

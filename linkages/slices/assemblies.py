@@ -129,6 +129,21 @@ def isolated_assemblies(loop: Loop, seconds: float = np.inf) -> Assemblies:
     )
 
 
+def all_complex(table: np.ndarray) -> np.ndarray | None:
+    """All 16 configurations (16, 6), complex, rad, of six joints with a complex geometry
+    ``table`` (3, 6): lengths, twists (rad) and offsets. None where fewer are regular, and
+    where paths to them were lost."""
+    for attempt in range(ATTEMPTS):
+        start = _generic_loop(attempt)
+        paths = follow_paths(start, table)
+        arrived = paths.angles[paths.ends == PathEnd.ARRIVED]
+        smallest = _core.smallest_singular_values(arrived, table)
+        regular = _distinct(arrived[~is_nearly_singular_end(smallest)])
+        if len(regular) == len(start.configurations):
+            return regular
+    return None
+
+
 def follow_paths(
     start: GenericLoop, table: np.ndarray, seconds: float = np.inf
 ) -> Paths:
