@@ -28,7 +28,7 @@ from linkages.modules.equations import (
     quaternion,
     solutions_of,
 )
-from linkages.slices.assemblies import all_complex
+from linkages.slices.assemblies import regular_complex
 from linkages.structure.structure import Closure, ClosureKind, Share, Structure
 
 # Turns and slides, one after the other.
@@ -160,6 +160,10 @@ class SingleLoop:
         if gaps.max(initial=0.0) > SOLVED * size * size:
             raise UnfollowedError("what solves the equations of a chain closes no loop")
 
+    def is_ring_beside(self, driver: int) -> bool:
+        """Whether six turns are left where an unknown, by number, is held."""
+        return self.family(driver) is _ring()
+
     def on_every_motion(self) -> list[int]:
         """Unknowns, by number, of which one moves on every motion: all but some that do
         not move without others.
@@ -192,11 +196,15 @@ class SingleLoop:
     def _of_ring(self, family: ClosureFamily, held: Held) -> np.ndarray | None:
         """All solutions (16, 12) of a ring of six turns by the paths of such loops; None
         of others, and where these do not find all."""
-        if _letters(family, family.moves) != RING:
+        if family is not _ring():
             return None
         table, zero = _links(held)
-        angles = all_complex(table) if np.all(np.isfinite(table)) else None
-        if angles is None:
+        if not np.all(np.isfinite(table)):
+            return None
+        angles, singular = regular_complex(table)
+        if singular:
+            raise UnfollowedError("some configurations are singular or move")
+        if len(angles) < len(family.generic.fibre.solutions):
             return None
         found = np.empty((len(angles), family.n), dtype=complex)
         for angle, own in zip((angles - zero).T, _columns(family), strict=True):
@@ -287,8 +295,8 @@ def _links(held: Held) -> tuple[np.ndarray, np.ndarray]:
     before = np.roll(normals, 1, axis=0)
     before[0] = held.turn.T @ before[0]
     zero = _angles(_dots(before, normals), _dots(here, np.cross(before, normals)))
-    lengths, offsets = _dots(ways, normals), starts - np.roll(ends, 1)
-    return np.array([lengths, _angles(cosines, sines), offsets]), zero
+    offsets = starts - np.roll(ends, 1)
+    return np.array([_dots(ways, normals), _angles(cosines, sines), offsets]), zero
 
 
 def _dots(vectors: np.ndarray, others: np.ndarray) -> np.ndarray:
@@ -348,6 +356,11 @@ def chains_of(kind: ClosureKind, letters: Letters) -> ClosureFamily:
     if letters not in letters_of(kind):
         raise ValueError(f"letters: {letters!r} are no type of chains")
     return ClosureFamily(Structure(_generic_loop(letters + SPHERICAL[kind] * POINT)))
+
+
+def _ring() -> ClosureFamily:
+    """The rings of six turns."""
+    return chains_of(ClosureKind.CYCLE, RING)
 
 
 @cache

@@ -36,7 +36,7 @@ MOST_DRIVERS = 1
 # Complex places all round the values of a driver, and how far beside these they are, over
 # the way round: less than between them.
 HUBS, BESIDE = 5, 0.04
-PLACES = 2  # that are tried for all configurations at one
+PLACES = 4  # that are tried for all configurations at one
 
 
 class Motions:
@@ -123,17 +123,9 @@ class Motions:
 
     def points(self, driver: int, places: list[float]) -> np.ndarray:
         """All real configurations (k, n) within the limits with one of the `drivers` at
-        any of the places: each lies on a curve that has points at the complex place as
-        well, from where paths lead to others all round, and from the next of these to
-        the real ones."""
+        any of the places."""
         family = self.families[driver]
-        first, base = self.bases[driver]
-        span = _span(self.structure.unknowns[driver])
-        hubs = first + span / HUBS * np.arange(HUBS)
-        fibres = [base, *self._fibres(family, [base] * (HUBS - 1), hubs[1:])]
-        nearest = np.round((np.array(places) - first.real) * HUBS / span).astype(int)
-        starts = [fibres[number] for number in (nearest % HUBS).tolist()]
-        ends = [one.solutions for one in self._fibres(family, starts, places)]
+        ends = self._ends(driver, places)
         points = family.points(np.concatenate(ends))
         points[:, driver] = np.repeat(places, list(map(len, ends)))
         points = points[family.are_real(np.concatenate(ends))]
@@ -141,6 +133,24 @@ class Motions:
             one for point in points for one in within_limits(self.structure, point)
         ]
         return np.array(inside).reshape(-1, len(self.families))
+
+    def _ends(self, driver: int, places: list[float]) -> list[np.ndarray]:
+        """All complex configurations (k, c) at each of the places of a driver.
+
+        Each lies on a curve that has points at the complex place of the base as well, from
+        where paths lead to others all round, and from the next of these to the real
+        ones. In a ring of turns those from a generic one are faster.
+        """
+        if self.loop and self.loop.is_ring_beside(driver):
+            return [self.loop.solutions(driver, place) for place in places]
+        family = self.families[driver]
+        first, base = self.bases[driver]
+        span = _span(self.structure.unknowns[driver])
+        hubs = first + span / HUBS * np.arange(HUBS)
+        fibres = [base, *self._fibres(family, [base] * (HUBS - 1), hubs[1:])]
+        nearest = np.round((np.array(places) - first.real) * HUBS / span).astype(int)
+        starts = [fibres[number] for number in (nearest % HUBS).tolist()]
+        return [one.solutions for one in self._fibres(family, starts, places)]
 
     def _fibres(
         self, family: ClosureFamily, starts: list[Fibre], places: Iterable[complex]

@@ -129,19 +129,20 @@ def isolated_assemblies(loop: Loop, seconds: float = np.inf) -> Assemblies:
     )
 
 
-def all_complex(table: np.ndarray) -> np.ndarray | None:
-    """All 16 configurations (16, 6), complex, rad, of six joints with a complex geometry
-    ``table`` (3, 6): lengths, twists (rad) and offsets. None where fewer are regular, and
-    where paths to them were lost."""
+def regular_complex(table: np.ndarray) -> tuple[np.ndarray, int]:
+    """Configurations (k, 6), complex, rad, of six joints with a complex geometry ``table``
+    (3, 6), lengths, twists (rad) and offsets, which are all of them if they are 16; and
+    how many paths ended at others, at which the closure has no full rank."""
     for attempt in range(ATTEMPTS):
         start = _generic_loop(attempt)
         paths = follow_paths(start, table)
         arrived = paths.angles[paths.ends == PathEnd.ARRIVED]
         smallest = _core.smallest_singular_values(arrived, table)
-        regular = _distinct(arrived[~is_nearly_singular_end(smallest)])
+        is_regular = ~is_nearly_singular_end(smallest)
+        regular = _distinct(arrived[is_regular])
         if len(regular) == len(start.configurations):
-            return regular
-    return None
+            break
+    return regular, int(np.count_nonzero(~is_regular))
 
 
 def follow_paths(
