@@ -9,6 +9,7 @@ any loop where an unknown has some value, real or not.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -17,7 +18,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from linkages.decisions import meets_in_one_point
+from linkages.decisions import is_degenerate_dyad, meets_in_one_point
 from linkages.dyads.generic import SOLVED, UnfollowedError
 from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism
@@ -166,32 +167,60 @@ class SingleLoop:
 
     def on_every_motion(self) -> list[int]:
         """Unknowns, by number, of which one moves on every motion: all but some that do
-        not move without others.
-
-        Turns that move alone have one direction, so in a cycle there are two of them at
-        least, or else two slides, and of each kind one is left out. A point is moved by
-        the turn next to it, if it is not on its axis.
-        """
-        unknowns = self.structure.unknowns
-        order = [self.closures.unknown_of(move) for move in self.closures.moves]
-        numbers = [number for number in order if number is not None]
+        not move without others."""
         left_out: list[int] = []
         if self._closure.kind is ClosureKind.CYCLE:
-            left_out += [k for k in numbers if unknowns[k].is_angle][-1:]
-            left_out += [k for k in numbers if not unknowns[k].is_angle][-1:]
-        elif self._closure.kind is ClosureKind.POINT and self._last_moves_point():
-            left_out += [k for k in order[-1:] if k is not None]
-        return [k for k in range(len(unknowns)) if k not in left_out]
+            left_out = self._of_no_cycle()
+        elif self._closure.kind is ClosureKind.POINT:
+            left_out = self._of_no_point()
+        unknowns = range(len(self.structure.unknowns))
+        return [number for number in unknowns if number not in left_out]
 
-    def _last_moves_point(self) -> bool:
-        """Whether the last motion before a point moves it."""
-        last = self.closures.moves[-1].variable
-        motion = self.structure.mechanism.variables[last].motion
-        if not motion.is_turn:
-            return True
+    def _of_no_cycle(self) -> list[int]:
+        """Unknowns of a cycle, by number, that do not move without others.
+
+        Turns that move alone have one direction, so there are two of them at least, or
+        else two slides. Three in a row do not move alone where neighbours are not
+        parallel and the first and the last do not become so (`SpaceGeometry`).
+        """
+        axes = self._axes()
+        turns = [number for number, motion in axes if motion.is_turn]
+        slides = [number for number, motion in axes if not motion.is_turn]
+        lasts = [motion for _, motion in axes if motion.is_turn][-3:]
+        if len(axes) == len(self.closures.moves) and len(lasts) == 3:
+            first, second, third = (motion.direction for motion in lasts)
+            cosines = abs(float(first @ second)), abs(float(second @ third))
+            sine = math.sqrt(max(0.0, 1.0 - max(cosines) ** 2))
+            if not is_degenerate_dyad(min(abs(cosines[0] - cosines[1]), sine)):
+                return [*turns[-3:], *slides[-1:]]
+        return [*turns[-1:], *slides[-1:]]
+
+    def _of_no_point(self) -> list[int]:
+        """Unknowns next to a point, by number, that do not move without others: it moves
+        on a circle or a line, and the next ones move it on another one."""
+        axes = self._axes()
+        if len(axes) < len(self.closures.moves):
+            return []
+        (before, other), (last, motion) = axes[-2:]
         arm = (self._closure.second - motion.point) / self.structure.unit
         distance = float(np.linalg.norm(np.cross(motion.direction, arm)))
-        return not meets_in_one_point(distance, 1.0)
+        if motion.is_turn and meets_in_one_point(distance, 1.0):
+            return []
+        across = np.cross(other.direction, motion.direction)
+        is_other = other.is_turn != motion.is_turn
+        if is_other or not is_degenerate_dyad(float(np.linalg.norm(across))):
+            return [before, last]
+        return [last]
+
+    def _axes(self) -> list[tuple[int, Motion]]:
+        """The unknowns along the chain, by number, and their motions as drawn."""
+        variables = self.structure.mechanism.variables
+        numbers = map(self.closures.unknown_of, self.closures.moves)
+        return [
+            (number, variables[move.variable].motion)
+            for number, move in zip(numbers, self.closures.moves, strict=True)
+            if number is not None
+        ]
 
     def _of_ring(self, family: ClosureFamily, held: Held) -> np.ndarray | None:
         """All solutions (16, 12) of a ring of six turns by the paths of such loops; None
@@ -289,13 +318,13 @@ def _links(held: Held) -> tuple[np.ndarray, np.ndarray]:
         normals = np.cross(here, there)
         sines = np.sqrt(_dots(normals, normals))
         normals /= sines[:, None]
-        # where a normal comes to the next axis, and where it leaves its own one
+        # where a normal comes to the next axis
         ends = (cosines * along - _dots(ways, there)) / sines**2
-        starts = along + cosines * ends
     before = np.roll(normals, 1, axis=0)
     before[0] = held.turn.T @ before[0]
     zero = _angles(_dots(before, normals), _dots(here, np.cross(before, normals)))
-    offsets = starts - np.roll(ends, 1)
+    # from where a normal comes to an axis to where the next one leaves it
+    offsets = along + cosines * ends - np.roll(ends, 1)
     return np.array([_dots(ways, normals), _angles(cosines, sines), offsets]), zero
 
 
