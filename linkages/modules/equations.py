@@ -520,11 +520,11 @@ def solutions_of(
     """
     paths = family.paths_to_regular(given)
     if np.any(paths.ends == PathEnd.AT_INFINITY):
-        _require_no_short_length(structure)
+        require_no_short_length(structure)
     return paths.regular
 
 
-def _require_no_short_length(structure: Structure) -> None:
+def require_no_short_length(structure: Structure) -> None:
     """Raise `UnfollowedError` where paths may come back that seem to end at infinity."""
     points = [
         variable.motion.point / structure.unit

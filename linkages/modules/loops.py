@@ -9,16 +9,19 @@ any loop where an unknown has some value, real or not.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import product
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from linkages.decisions import is_degenerate_dyad, meets_in_one_point
+from linkages.decisions import (
+    is_degenerate_dyad,
+    meets_in_one_point,
+)
 from linkages.dyads.generic import SOLVED, UnfollowedError
 from linkages.mechanisms.joint import Joint, JointKind, Motion
 from linkages.mechanisms.mechanism import Mechanism
@@ -27,7 +30,7 @@ from linkages.modules.equations import (
     Move,
     mirror_of,
     quaternion,
-    solutions_of,
+    require_no_short_length,
 )
 from linkages.slices.assemblies import regular_complex
 from linkages.structure.structure import Closure, ClosureKind, Share, Structure
@@ -138,22 +141,35 @@ class SingleLoop:
         Raises `UnfollowedError` where it is not known that they are all.
         """
         family = self.family(driver)
+        own = self.closures if driver == NOTHING else self.closures.driven_by((driver,))
+        if not own.is_regular:
+            raise UnfollowedError("it moves, or more holds it than has to")
         held = self._held(self._chain(family, driver), driver, place)
         found = self._of_ring(family, held)
         if found is None:
-            found = solutions_of(family, self._member(family, held), self.structure)
+            found = self._ends(family, self._member(family, held))
         points = np.empty((len(found), self.closures.n), dtype=complex)
         columns = self.closures.columns
-        for number, own in zip(held.unknowns, _columns(family), strict=True):
-            points[:, columns[number]] = found[:, own]
-        given = self.closures.given
+        for number, there in zip(held.unknowns, _columns(family), strict=True):
+            points[:, columns[number]] = found[:, there]
+        given = own.given
         if driver != NOTHING:
-            given = self.closures.driven_by((driver,)).given_at(place)
+            given = own.given_at(place)
             is_angle = self.structure.unknowns[driver].is_angle
             at = [np.exp(1j * place), np.exp(-1j * place)] if is_angle else place
             points[:, columns[driver]] = at
         self._require_solved(points, given)
         return points
+
+    def _ends(self, family: ClosureFamily, member: np.ndarray) -> np.ndarray:
+        """All solutions (k, n) of a member (q,) of a family: where paths to it are lost at
+        once, as beside those that end where what is special moves, it is not worth more."""
+        paths = family.followed(family.generic.fibre, member, again=1)
+        if not np.all(paths.is_regular | ~paths.is_finite):
+            raise UnfollowedError("some configurations are singular, or not reached")
+        if not np.all(paths.is_finite):
+            require_no_short_length(self.structure)
+        return paths.regular
 
     def _require_solved(self, points: np.ndarray, given: np.ndarray) -> None:
         gaps = np.abs(self.closures.family.residuals(points, given))
@@ -229,7 +245,7 @@ class SingleLoop:
             return None
         table, zero = _links(held)
         if not np.all(np.isfinite(table)):
-            return None
+            raise UnfollowedError("axes are parallel")
         angles, singular = regular_complex(table)
         if singular:
             raise UnfollowedError("some configurations are singular or move")
@@ -396,7 +412,7 @@ def _ring() -> ClosureFamily:
 def letters_of(kind: ClosureKind) -> tuple[Letters, ...]:
     """The types of chains, passed the way in which the letters are first."""
     words = set()
-    for letters in map("".join, product(SLIDE + TURN, repeat=LENGTHS[kind])):
+    for letters in map("".join, itertools.product(SLIDE + TURN, repeat=LENGTHS[kind])):
         starts = range(len(letters) if kind is ClosureKind.CYCLE else 1)
         ways = (letters, letters[::-1])
         words.add(min(way[k:] + way[:k] for way in ways for k in starts))

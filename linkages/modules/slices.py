@@ -31,12 +31,12 @@ from linkages.modules.equations import ClosureFamily, solutions_of
 from linkages.modules.loops import single_loop
 from linkages.structure.structure import Structure, Unknown
 
-MOST_COORDINATES = 11  # of a mechanism that is looked at: with more, paths take long
+MOST_COORDINATES = 10  # of what is no single loop: with more, paths take long
 MOST_DRIVERS = 1
 # Complex places all round the values of a driver, and how far beside these they are, over
 # the way round: less than between them.
 HUBS, BESIDE = 5, 0.04
-PLACES = 4  # that are tried for all configurations at one
+PLACES = 2  # that are tried for all configurations at one
 
 
 class Motions:
