@@ -102,13 +102,26 @@ public:
           precise_values_(tape.slots()),
           sweep_(tape),
           series_(tape, order, unknowns),
-          series_of_logarithm_(tape, order, unknowns, Change::exponentially) {}
+          series_of_logarithm_(tape, order, unknowns, Change::exponentially),
+          is_standing_(tape.unknowns()) {
+        for (Index row = 0; row < tape.equations(); ++row) {
+            std::vector<Index>& cone = cones_.emplace_back();
+            for (Index slot : tape.cone(row)) {
+                if (series_.is_moving(slot)) cone.push_back(slot);
+            }
+        }
+    }
 
     Index unknowns() const { return n_; }
     void set_line(Vector<const Complex> first, Vector<const Complex> last) {
         std::copy(first.begin(), first.end(), first_.begin());
         std::copy(last.begin(), last.end(), last_.begin());
-        for (std::size_t i = 0; i < change_.size(); ++i) change_[i] = first_[i] - last_[i];
+        for (std::size_t i = 0; i < change_.size(); ++i) {
+            change_[i] = first_[i] - last_[i];
+            is_standing_[n_ + i] = change_[i] == 0.0;
+        }
+        series_.set_standing(is_standing_);
+        series_of_logarithm_.set_standing(is_standing_);
     }
     void set_precise(bool is_precise) { is_precise_ = is_precise; }
 
@@ -123,15 +136,11 @@ public:
         std::fill_n(matrix.data, n_ * n_, Complex(0.0));
         for (Index row = 0; row < tape_.equations(); ++row) {
             if (!combinations_.rows) {
-                sweep_.gradient(row, [&](Index unknown, const Complex& entry) {
-                    if (unknown < n_) matrix(row, unknown) += entry;
-                });
+                sweep_.gradient(row, cones_[row], [&](Index unknown, const Complex& entry) { matrix(row, unknown) += entry; });
                 continue;
             }
             std::fill(row_.begin(), row_.end(), Complex(0.0));
-            sweep_.gradient(row, [&](Index unknown, const Complex& entry) {
-                if (unknown < n_) row_[unknown] += entry;
-            });
+            sweep_.gradient(row, cones_[row], [&](Index unknown, const Complex& entry) { row_[unknown] += entry; });
             for (Index i = 0; i < n_; ++i) {
                 for (Index j = 0; j < n_; ++j) matrix(i, j) += combinations_(i, row) * row_[j];
             }
@@ -193,6 +202,8 @@ private:
     std::vector<TwofoldComplex> precise_point_, precise_values_;
     Sweep<Complex> sweep_;
     SeriesSweep<Complex> series_, series_of_logarithm_;
+    std::vector<char> is_standing_;          // which unknowns of the tape do not change on the line
+    std::vector<std::vector<Index>> cones_;  // of every equation, of what depends on x
 };
 
 class PathTracker {
@@ -224,7 +235,7 @@ public:
         PathPlace place{1.0};
         if (!begin(out.point, place)) return out;
         const double near_end = settings_.ends_regular ? 0.0 : paths::near_end;
-        while (place.t().real() > near_end && !out.is_over) advance(out, place, 0.0);
+        while (!out.is_over && (place.t().real() > near_end || trusted_length() >= place.t().real())) advance(out, place, 0.0);
         Circuit before;
         for (int turns = paths::first_turns; !out.is_over; turns += paths::first_turns) {
             const double t = place.t().real();

@@ -416,8 +416,15 @@ public:
     // each of its slots, backwards from the equation (Griewank and Walther 2008, chapter 3).
     template <class Visitor>
     void gradient(Index equation, Visitor visit) {
+        gradient(equation, tape_.cone(equation), visit);
+    }
+
+    // The same for some unknowns, by the slots of the ``cone`` that depend on these: always the same ones, as what
+    // comes to others is not taken away.
+    template <class Visitor>
+    void gradient(Index equation, Vector<const Index> cone, Visitor visit) {
         adjoints_[tape_.output(equation)] = T(1.0);
-        for (Index slot : tape_.cone(equation)) {
+        for (Index slot : cone) {
             const Instruction& instruction = tape_[slot];
             const T adjoint = adjoints_[slot];
             adjoints_[slot] = T(0.0);
@@ -672,11 +679,22 @@ public:
           rates_(tape.unknowns()),
           coefficients_(tape.slots(), order + 1),
           steps_(tape.slots()),
-          is_zero_(tape.slots()) {
-        for (Index slot = 0; slot < tape.slots(); ++slot) find_degree(slot, order);
+          is_zero_(tape.slots()),
+          is_standing_(tape.unknowns()) {
+        find_degrees();
     }
 
     const T& coefficient(Index equation, Index k) const { return coefficients_(tape_.output(equation), k); }
+
+    // Whether an operation depends on free unknowns.
+    bool is_moving(Index slot) const { return is_moving_[slot]; }
+
+    // Which of the unknowns that are not free do not change.
+    void set_standing(const std::vector<char>& is_standing) {
+        if (is_standing == is_standing_) return;
+        is_standing_ = is_standing;
+        find_degrees();
+    }
 
     // How fast an unknown that is not free changes at first.
     void set_rate(Index unknown, const T& rate) { rates_[unknown] = rate; }
@@ -707,7 +725,16 @@ public:
     }
 
 private:
-    // The number of the last coefficient of a slot that is not zero; and whether it depends on free unknowns.
+    // Of every slot the number of the last coefficient that is not zero, and whether it depends on free unknowns.
+    void find_degrees() {
+        degrees_.clear();
+        is_moving_.clear();
+        moving_.clear();
+        const View<T> all = coefficients_.view();
+        std::fill_n(all.data, all.rows * all.columns, T(0.0));
+        for (Index slot = 0; slot < tape_.slots(); ++slot) find_degree(slot, coefficients_.columns() - 1);
+    }
+
     void find_degree(Index slot, Index order) {
         const Instruction& instruction = tape_[slot];
         const Operation operation = instruction.operation;
@@ -717,6 +744,7 @@ private:
         if (operation == Operation::unknown) {
             is_moving = instruction.left < free_;
             degree = is_moving || change_ == Change::exponentially ? order : 1;
+            if (is_standing_[instruction.left]) degree = 0;
         }
         if (Tape::has_left(operation)) {
             is_moving = is_moving_[instruction.left];
@@ -782,7 +810,7 @@ private:
     Matrix<T> coefficients_;
     const Partials<T>* partials_ = nullptr;
     std::vector<T> steps_;
-    std::vector<char> is_zero_, is_moving_;
+    std::vector<char> is_zero_, is_moving_, is_standing_;
     std::vector<Index> degrees_, moving_;
 };
 

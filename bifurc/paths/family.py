@@ -77,7 +77,8 @@ class Family:
         return complex_normal(rng, (self.n, self.tape.m))
 
     def residuals(self, points: np.ndarray, parameters: np.ndarray) -> np.ndarray:
-        """F (k, m) at points (k, n) of the member with ``parameters`` (q,)."""
+        """F (k, m) at points (k, n) of the member with ``parameters`` (q,), or each of
+        a member of its own (k, q)."""
         at = self._with_parameters(points, parameters)
         values: np.ndarray = self.tape.compiled.complex_residuals(at)
         return values

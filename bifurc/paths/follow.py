@@ -170,7 +170,7 @@ def follow_paths(
 ) -> Paths:
     """The paths of solutions ``starts`` (k, n), all different, of the member with the
     parameters ``first`` (q,), or each of a member of its own (k, q), to that with
-    ``last`` (q,).
+    ``last``, (q,) or (k, q).
 
     Paths that come to one regular end, and those that are lost, are followed again in
     smaller steps and with residuals of twice the digits, so often (``again``), and past
@@ -192,8 +192,8 @@ def follow_paths(
         paths.replace(doubtful, others, np.arange(len(doubtful)))
         for place in DETOURS[2 * attempt : 2 * attempt + 2]:
             _lead_round(way, starts, paths, tolerance, place)
-    _tell_meetings(family, paths, last)
-    _tell_apart(family, paths, last)
+    _tell_meetings(way, paths)
+    _tell_apart(way, paths)
     return paths
 
 
@@ -229,7 +229,7 @@ def _lead_round(
             paths.replace(np.array([number]), after, np.array([own]))
 
 
-def _tell_meetings(family: Family, paths: Paths, last: np.ndarray) -> None:
+def _tell_meetings(way: _Way, paths: Paths) -> None:
     """Correct the ends of paths that still meet at regular ones: where the equations are
     dependent but for half of the digits, as of two paths that come to a double solution
     and do not turn round it, they are singular; else it is not known what is right."""
@@ -240,6 +240,7 @@ def _tell_meetings(family: Family, paths: Paths, last: np.ndarray) -> None:
     meeting = at_ends[is_met & paths.is_regular[at_ends]]
     if not len(meeting):
         return
+    family, last = way.family, way.last[meeting]
     matrices = family.jacobians(paths.points[meeting], last)
     beside = paths.points[meeting]
     shifts = complex_normal(np.random.default_rng(0), beside.shape)
@@ -250,7 +251,7 @@ def _tell_meetings(family: Family, paths: Paths, last: np.ndarray) -> None:
     paths.ends[meeting[is_singular]] = PathEnd.SINGULAR
 
 
-def _tell_apart(family: Family, paths: Paths, last: np.ndarray) -> None:
+def _tell_apart(way: _Way, paths: Paths) -> None:
     """Put regular solutions in the place of a singular end of several paths where there
     are as many beside it: from farther away they look like one."""
     singular = np.flatnonzero(paths.ends == PathEnd.SINGULAR)
@@ -259,7 +260,8 @@ def _tell_apart(family: Family, paths: Paths, last: np.ndarray) -> None:
         members = singular[copies == first]
         if len(members) < 2:
             continue
-        found = _regular_solutions_beside(family, paths.points[members[0]], last)
+        last = way.last[members[0]]
+        found = _regular_solutions_beside(way.family, paths.points[members[0]], last)
         if len(found) == len(members):
             paths.points[members] = found
             paths.ends[members] = PathEnd.REGULAR

@@ -44,8 +44,8 @@ TESTS = 10  # trace tests, with further closed ways between them
 
 @dataclass(frozen=True, eq=False)
 class Fibre:
-    """The ``solutions`` (k, n) that are known of the member with ``parameters``
-    (q,)."""
+    """The ``solutions`` (k, n) that are known of the member with ``parameters`` (q,),
+    or of one with some (k, q) each."""
 
     parameters: np.ndarray
     solutions: np.ndarray
@@ -55,11 +55,11 @@ class Fibre:
 class Projection:
     """What is enough to vary and to look at: the ``targets`` (q,), parameters such that
     the solutions of all members that differ in these alone are one irreducible variety;
-    and ``blocks`` of coordinates, of which one that tells all solutions apart will
-    do."""
+    and ``blocks`` of coordinates, slices or numbers, of which one that tells all
+    solutions apart will do: also those that are not known, of which it is not asked."""
 
     targets: np.ndarray
-    blocks: tuple[slice, ...]
+    blocks: tuple[Any, ...]
 
     def coordinates_of(self, solutions: np.ndarray) -> np.ndarray:
         """Which coordinates (n,) of the solutions (k, n) are looked at."""

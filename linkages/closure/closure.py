@@ -12,6 +12,8 @@ from linkages.closure.system import ClosureSystem
 from linkages.loop import Loop
 from linkages.slices.completeness import sliced_seeds
 
+RING = 7  # joints of a loop that is sliced as a mechanism: with one held it stands
+
 
 class Closure(ClosureSystem):
     """The closure equations of a subject, and where a search of them begins: a loop at
@@ -30,9 +32,11 @@ class Closure(ClosureSystem):
     ) -> Seeds:
         """Closed configurations to start from, ``count`` random starts among what they
         come of, and what judges the branches that are traced from them."""
-        if isinstance(self.subject, Loop):
+        is_loop = isinstance(self.subject, Loop)
+        if isinstance(self.subject, Loop) and self.subject.n != RING:
             return sliced_seeds(self.subject, self, rng, count, deadline)
-        # it imports networkx, which a loop does not need
-        from linkages.closure.mechanism_seeds import mechanism_seeds
+        # it imports networkx, which other loops do not need
+        from linkages.closure.mechanism_seeds import mechanism_seeds, ring_seeds
 
-        return mechanism_seeds(self, rng, count, deadline)
+        seeds = ring_seeds if is_loop else mechanism_seeds
+        return seeds(self, rng, count, deadline)

@@ -23,8 +23,11 @@ from linkages.closure.system import ClosureSystem
 from linkages.closure.within_limits import brought_within_limits
 from linkages.dyads import slices as dyads
 from linkages.dyads.slices import DyadSlices
+from linkages.loop import Loop
+from linkages.mechanisms.of_loop import mechanism_of_loop
 from linkages.modules import assemblies
 from linkages.modules import slices as modules
+from linkages.slices.completeness import sliced_seeds
 from linkages.statements import LinkageClaim, estimated
 from linkages.structure.structure import Structure
 from linkages.turns import whole_turns
@@ -167,6 +170,32 @@ def _judged(problem: ClosureSystem, seeds: Seeds) -> Seeds:
             return seeds
     creases = len(structure.stay_flat)
     return replace(seeds, audit=BesideFlatCreases(creases, problem.n, seeds.audit))
+
+
+def ring_seeds(
+    problem: ClosureSystem,
+    rng: np.random.Generator,
+    count: int,
+    deadline: Deadline | None,
+) -> Seeds:
+    """What ``count`` random starts of a loop of turns lead to, and the slices of the
+    mechanism that it is, drawn as the first of these."""
+    loop = problem.subject
+    assert isinstance(loop, Loop)
+    deadline = deadline or current_deadline()
+    drawn = sliced_seeds(loop, problem, rng, count, deadline)
+    if not len(drawn.points):
+        return drawn
+    reference = drawn.points[0]
+    structure = Structure(mechanism_of_loop(loop, reference))
+    make = partial(modules.for_subject, problem, structure, rng, count)
+    with until(deadline.share(JUDGING)):
+        slices = made_in_time(make)
+    if slices is None:
+        return drawn
+    points, gaps = problem.project(reference + slices.starts)
+    points = points[is_start_solved(gaps)]
+    return replace(drawn.with_constructed(points), audit=slices)
 
 
 def _sources(

@@ -22,7 +22,7 @@ from platformdirs import user_cache_path
 
 from bifurc.limits import current_deadline
 from bifurc.paths.family import Family
-from bifurc.paths.follow import PathEnd, Paths, copy_of, follow_paths
+from bifurc.paths.follow import AGAIN, PathEnd, Paths, copy_of, follow_paths
 from bifurc.paths.monodromy import (
     PATHS_EACH,
     Effort,
@@ -77,6 +77,11 @@ class RealFamily(ABC):
     def conjugates(self, points: np.ndarray) -> np.ndarray:
         """The conjugates (k, n) of solutions (k, n)."""
 
+    @property
+    def name(self) -> str:
+        """What its equations are called: the same have the same name."""
+        return name_of(self.family)
+
     @cached_property
     def generic(self) -> GenericSolutions:
         """The solutions of one generic member: of a common type, known, or found.
@@ -84,7 +89,7 @@ class RealFamily(ABC):
         Raises `UnfollowedError` where it moves, where there are more than are looked
         for, and where the time is over.
         """
-        name = name_of(self.family)
+        name = self.name
         if name in _unknown:
             raise UnfollowedError(_unknown[name])
         if name not in _known:
@@ -105,9 +110,10 @@ class RealFamily(ABC):
         start, parameters = self.generic_member(np.random.default_rng(SEED), 0)
         return self.family.is_regular(start, parameters)
 
-    def paths_to(self, last: np.ndarray) -> Paths:
+    def paths_to(self, last: np.ndarray, are_regular: bool = False) -> Paths:
         """The paths to all isolated solutions of the member with the parameters
-        ``last`` (q,); where one is lost, from another generic member.
+        ``last`` (q,); where one is lost, from another generic member, unless some end at
+        singular ones where all are to be regular (``are_regular``).
 
         Raises `UnfollowedError` unless every path came to a solution, or to infinity.
         """
@@ -115,7 +121,8 @@ class RealFamily(ABC):
         rng = np.random.default_rng(SEED)
         for attempt in reversed(range(ATTEMPTS)):
             paths = self.followed(start, last)
-            if not np.any(paths.is_lost) or current_deadline().passed:
+            is_over = are_regular and len(paths.singular) > 0
+            if is_over or not np.any(paths.is_lost) or current_deadline().passed:
                 break
             _, moved = self.generic_member(rng, attempt)
             elsewhere = self.followed(start, moved)
@@ -127,28 +134,41 @@ class RealFamily(ABC):
 
     def paths_to_regular(self, last: np.ndarray) -> Paths:
         """The same. Raises `UnfollowedError` where some ends are singular, too."""
-        paths = self.paths_to(last)
+        paths = self.paths_to(last, are_regular=True)
         if np.any(paths.ends == PathEnd.SINGULAR):
             raise UnfollowedError("some configurations are singular or move")
         return paths
 
-    def followed(self, start: Fibre, last: np.ndarray) -> Paths:
-        """The paths from the solutions of one member to the one with the parameters
-        ``last`` (q,)."""
-        solutions, first = start.solutions, start.parameters
-        return follow_paths(self.family, solutions, first, last, current_deadline())
+    def followed(self, start: Fibre, last: np.ndarray, again: int = AGAIN) -> Paths:
+        """The paths from the solutions of one member, or of one each, to the one with
+        the parameters ``last``, (q,) or (k, q); so often ``again`` where they are
+        lost."""
+        return follow_paths(
+            self.family,
+            start.solutions,
+            start.parameters,
+            last,
+            current_deadline(),
+            again=again,
+        )
 
-    def real_ends(self, paths: Paths) -> np.ndarray:
-        """The ends (k, n) that are real: each is its own conjugate.
+    def are_real(self, ends: np.ndarray) -> np.ndarray:
+        """Which of all ends (k, n) of real members are real (k,): each is its own
+        conjugate.
 
         Raises `UnfollowedError` unless the conjugate of each end is one of them.
         """
-        ends = paths.regular
         count = len(ends)
         partners = copy_of(np.concatenate([ends, self.conjugates(ends)]))[count:]
         if np.any(partners >= count):
             raise UnfollowedError("a configuration has no conjugate one")
-        real: np.ndarray = ends[partners == np.arange(count)]
+        are_real: np.ndarray = partners == np.arange(count)
+        return are_real
+
+    def real_ends(self, paths: Paths) -> np.ndarray:
+        """The ends (k, n) that are real. Raises `UnfollowedError`, as `are_real`."""
+        ends = paths.regular
+        real: np.ndarray = ends[self.are_real(ends)]
         return real
 
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from bifurc.limits import current_deadline, until
-from bifurc.paths.follow import PathEnd
+from bifurc.paths.monodromy import GenericSolutions
 from bifurc.problem import Problem
-from linkages.decisions import is_short_bar
 from linkages.dyads.generic import UnfollowedError
 from linkages.dyads.slices import (
     DyadSlices,
@@ -16,12 +15,12 @@ from linkages.dyads.slices import (
     stands,
     within_limits,
 )
-from linkages.modules.equations import ClosureFamily
+from linkages.modules.equations import ClosureFamily, solutions_of
+from linkages.modules.loops import single_loop
 from linkages.structure.structure import Structure
 
 MOST_COORDINATES = 30  # of a mechanism that is looked at
 TIME = 0.4  # of what is left of a budget, for generic solutions and paths
-ROUNDING = 1e-12  # of a length: it is none
 
 
 class Module:
@@ -40,26 +39,25 @@ class Module:
             self.family = ClosureFamily(structure)
         except ValueError as error:
             raise UnfollowedError(str(error)) from error
+        self.loop = single_loop(self.family)
         if self.family.n > MOST_COORDINATES:
             raise UnfollowedError("there are too many unknowns")
 
     @property
-    def count(self) -> int:
-        """How many complex configurations there are for generic lengths."""
-        return self.family.generic.count
-
-    @property
-    def trace(self) -> float:
-        """The trace test of them."""
-        return self.family.generic.trace or 0.0
+    def generic(self) -> GenericSolutions:
+        """The complex configurations for generic lengths."""
+        return self.loop.family().generic if self.loop else self.family.generic
 
     def configurations(self) -> np.ndarray:
         """All real configurations (k, n), angles between -pi and pi."""
-        family = self.family
-        paths = family.paths_to_regular(family.given)
-        if np.any(paths.ends == PathEnd.AT_INFINITY):
-            require_no_short_length(self.structure)
-        return family.points(family.real_ends(paths))
+        ends = self._solutions()
+        return self.family.points(ends[self.family.are_real(ends)])
+
+    def _solutions(self) -> np.ndarray:
+        """All complex ones (k, c), as coordinates of the family."""
+        if self.loop:
+            return self.loop.solutions()
+        return solutions_of(self.family, self.family.given, self.structure)
 
 
 def for_subject(
@@ -86,25 +84,6 @@ def _assemblies(module: Module) -> DyadSlices:
         (),
         (),
         misses_none=True,
-        counts=(module.count,),
-        trace=module.trace,
+        counts=(module.generic.count,),
+        trace=module.generic.trace or 0.0,
     )
-
-
-def require_no_short_length(structure: Structure) -> None:
-    """Raise `UnfollowedError` where paths may come back that seem to end at infinity."""
-    points = [
-        variable.motion.point / structure.unit
-        for variable in structure.mechanism.variables
-        if variable.motion.is_turn
-    ]
-    places = [
-        place / structure.unit
-        for closure in structure.closures
-        for place in (closure.first, closure.second)
-    ]
-    rows = np.array(points + places)
-    gaps = np.linalg.norm(rows[:, None] - rows[None], axis=2)
-    gaps = gaps[gaps > ROUNDING]
-    if len(gaps) and is_short_bar(float((gaps.min() / gaps.max()) ** 2)):
-        raise UnfollowedError("a length is so short that paths seem to end at infinity")

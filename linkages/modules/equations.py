@@ -15,23 +15,26 @@ tangent of its half, and a rotation is that of a quaternion of any length.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
+from copy import copy
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import chain
-from typing import Any, ClassVar, TypeAlias
+from typing import Any, ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 
 from bifurc.equations.recorded import RecordedNumber
 from bifurc.paths.family import Family
+from bifurc.paths.follow import PathEnd
 from bifurc.paths.monodromy import Projection
-from linkages.decisions import meets_in_one_point
-from linkages.dyads.generic import RealFamily
+from linkages.decisions import is_short_bar, meets_in_one_point
+from linkages.dyads.generic import RealFamily, UnfollowedError
 from linkages.mechanisms.joint import Motion
 from linkages.mechanisms.mechanism import Variable
 from linkages.structure.cycles import Step
 from linkages.structure.placement import Placement
+from linkages.structure.rods import Rod
 from linkages.structure.structure import (
     CONSTRAINTS,
     Closure,
@@ -43,11 +46,14 @@ from linkages.structure.structure import (
 Number: TypeAlias = Any
 Point: TypeAlias = Any  # three of them, in any sequence
 
-DRIVER = "driver"  # the block of its value
+# the blocks of the linear function that is held: its weights and its value
+WEIGHTS, DRIVER = "weights", "driver"
 ROTATION = 6  # numbers of an embedded rotation: two orthonormal vectors
 X_AXIS, Y_AXIS, ORIGIN = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 0.0)
 OF_SINES = -0.5j  # the sine of x is this times exp(i x) - exp(-i x)
 FLAT = {ClosureKind.CYCLE: 3, ClosureKind.POINT: 2, ClosureKind.ROD: 1}
+# of a length, and of the square of a vector: it is none
+NO_LENGTH, ROUNDING = 1e-12, 1e-20
 # Complex ones of a generic member that are looked for. Types with more of them are at
 # hand, or are not followed.
 MOST_SOLUTIONS = 48
@@ -74,6 +80,14 @@ class Parameters:
         self.blocks[name, number] = slice(first, len(self.given))
 
 
+class Move(NamedTuple):
+    """A ``variable``, by number, that a chain passes, the other way round where the
+    ``sign`` is -1."""
+
+    sign: int
+    variable: int
+
+
 class Places:
     """Vectors (3,), each with a number: the same where they are the same to rounding,
     lengths over that of the mechanism."""
@@ -91,9 +105,9 @@ class Places:
 
 
 class ClosureFamily(RealFamily):
-    """The closures of a ``structure``, with a linear function of the unknowns of some
-    numbers, the ``drivers``, at a value that is a parameter: of the unknown itself where
-    there is one, and without any there is no such function.
+    """The closures of a ``structure``, and a linear function of the unknowns if it
+    ``is_driven``: of those of some numbers, the ``drivers``, it is of the unknown itself
+    where there is one. Its weights and its value are parameters.
 
     Raises `ValueError` where they are more or fewer than the other unknowns, and for
     what is no polynomial: helical joints, ratios of coupled turns other than 1 and -1.
@@ -104,15 +118,27 @@ class ClosureFamily(RealFamily):
     @property
     def most_paths(self) -> int:
         """How many paths are followed at most to find them."""
-        return MOST_DRIVEN_PATHS if self.drivers else super().most_paths
+        return MOST_DRIVEN_PATHS if self.is_driven else super().most_paths
 
-    def __init__(self, structure: Structure, drivers: tuple[int, ...] = ()):
-        self.structure, self.drivers = structure, drivers
+    def __init__(self, structure: Structure, is_driven: bool = False):
+        self.structure, self.is_driven = structure, is_driven
+        self.drivers: tuple[int, ...] = ()
         self.placement = self._placement()
         self._require_square()
         _require_polynomials(structure)
         self._directions, self._points = Places(), Places()
         self.parameters = self._parameters()
+
+    def driven_by(self, drivers: tuple[int, ...]) -> ClosureFamily:
+        """The same with these drivers."""
+        other = copy(self)
+        other.family, other.drivers = self.family, drivers
+        return other
+
+    @property
+    def name(self) -> str:
+        """What its equations, and the drivers among its unknowns, are called."""
+        return "-".join([super().name, *map(str, self.drivers)])
 
     # --- the frame --------------------------------------------------------------------
 
@@ -125,7 +151,10 @@ class ClosureFamily(RealFamily):
         motions = [one.motion for one in variables if one.locked != 0.0]
         placement = Placement.of_chain(motions, structure.unit)
         slides = [placement.direction(one) for one in motions if not one.is_turn]
-        leave_plane = placement.is_planar and any(abs(one[2]) > 0.0 for one in slides)
+        leave_plane = placement.is_planar and (
+            any(abs(one[2]) > 0.0 for one in slides)
+            or any(map(partial(_rises, placement), structure.rods))
+        )
         if leave_plane or (placement.is_spherical and slides):
             return Placement(np.zeros(3), np.eye(3), structure.unit)
         return placement
@@ -143,7 +172,7 @@ class ClosureFamily(RealFamily):
         unknowns = len(structure.unknowns) - len(self.standing)
         unknowns -= 3 * len(structure.embedded)
         equations = sum(map(self.freedoms, self.closures))
-        equations += bool(self.drivers)
+        equations += self.is_driven
         if unknowns != equations:
             raise ValueError("it moves, or more holds it than has to")
 
@@ -175,6 +204,40 @@ class ClosureFamily(RealFamily):
             if not closure.chain
             or any(step.pair not in self._standing_pairs for step in closure.chain)
         ]
+
+    @property
+    def is_single(self) -> bool:
+        """Whether there is a single chain, of joints alone."""
+        if len(self.closures) > 1:
+            return False
+        steps = self.closures[0].chain
+        return all(self.structure.variables_of(step.pair) for step in steps)
+
+    @cached_property
+    def moves(self) -> list[Move]:
+        """What all chains pass, but for what is locked at 0."""
+        return [
+            move
+            for closure in self.closures
+            for step in closure.chain
+            for move in self.moves_of(step)
+        ]
+
+    def moves_of(self, step: Step) -> list[Move]:
+        """The variables of a step, in the order in which it passes them, but for those
+        locked at 0."""
+        numbers = self.structure.variables_of(step.pair)[:: step.sign]
+        variables = self.structure.mechanism.variables
+        return [
+            Move(step.sign, number)
+            for number in numbers
+            if variables[number].locked != 0.0
+        ]
+
+    def unknown_of(self, move: Move) -> int | None:
+        """The unknown, by number, that a move is of; None where it is locked."""
+        share = self.structure.share(move.variable)
+        return None if share is None else share.column
 
     @cached_property
     def columns(self) -> list[slice]:
@@ -223,7 +286,7 @@ class ClosureFamily(RealFamily):
         self._number_geometry()
         parameters.add("of sines", 0, [OF_SINES])
         for k, direction in enumerate(self._directions.vectors):
-            parameters.add("direction", k, _mirror_of(direction))
+            parameters.add("direction", k, mirror_of(direction))
         for k, point in enumerate(self._points.vectors):
             parameters.add("point", k, point[: 2 if placement.is_planar else 3])
         for pair, free in structure.point_pairs.items():
@@ -231,13 +294,19 @@ class ClosureFamily(RealFamily):
         for number, variable in enumerate(structure.mechanism.variables):
             if variable.locked:
                 parameters.add("locked", number, self._locked(variable))
+        self._add_targets(parameters)
+        return parameters
+
+    def _add_targets(self, parameters: Parameters) -> None:
+        """Where chains have to lead, and what is held."""
+        unit, unknowns = self.structure.unit, self.structure.unknowns
         for k, closure in enumerate(self.closures):
             if closure.rod is not None and closure.rod.leg is not None:
-                parameters.add("leg", k, [closure.rod.length / structure.unit])
-            parameters.add("target", k, self._given_target(closure))
-        if self.drivers:
+                parameters.add("leg", k, [closure.rod.length / unit])
+            parameters.add("target", k, self.target_of(closure))
+        if self.is_driven:
+            parameters.add(WEIGHTS, 0, [0.0] * len(unknowns))
             parameters.add(DRIVER, 0, [1.0])
-        return parameters
 
     def _locked(self, variable: Variable) -> list[float]:
         """The parameters of what is locked: cosine and sine of half an angle, or a
@@ -247,7 +316,7 @@ class ClosureFamily(RealFamily):
             return [np.cos(0.5 * value), np.sin(0.5 * value)]
         return [value / self.structure.unit]
 
-    def _given_target(self, closure: Closure) -> Sequence[float]:
+    def target_of(self, closure: Closure) -> Sequence[float]:
         """Where the chain of a closure has to lead."""
         if closure.kind is ClosureKind.CYCLE:
             return self._rest_frame()
@@ -275,28 +344,19 @@ class ClosureFamily(RealFamily):
 
     def _number_geometry(self) -> None:
         """Number all directions and points, in a fixed order."""
-        for _, motion in self._all_motions():
-            self._direction_of(motion)
-            self._point_of(motion)
+        for move in self.moves:
+            motion = self.structure.mechanism.variables[move.variable].motion
+            self.direction_of(motion)
+            self.point_of(motion)
         for pair in self.structure.embedded:
-            self._place_of(self.structure.center(pair))
+            self.place_of(self.structure.center(pair))
         for closure in self.closures:
             if closure.kind is not ClosureKind.CYCLE:
-                self._place_of(closure.second)
+                self.place_of(closure.second)
             if closure.kind is ClosureKind.ROD:
-                self._place_of(closure.first)
+                self.place_of(closure.first)
 
-    def _all_motions(self) -> Iterator[tuple[int, Motion]]:
-        """The variables, by number, of all chains that are not locked at 0."""
-        structure = self.structure
-        for closure in self.closures:
-            for step in closure.chain:
-                for number in structure.variables_of(step.pair):
-                    variable = structure.mechanism.variables[number]
-                    if variable.locked != 0.0:
-                        yield number, variable.motion
-
-    def _direction_of(self, motion: Motion) -> tuple[str, int]:
+    def direction_of(self, motion: Motion) -> tuple[str, int]:
         """The block of a direction."""
         direction = self.placement.direction(motion)
         if not self.placement.is_planar:
@@ -305,13 +365,13 @@ class ClosureFamily(RealFamily):
             return "normal", int(np.sign(direction[2]))
         return "point", self._points.number(direction)
 
-    def _point_of(self, motion: Motion) -> tuple[str, int]:
+    def point_of(self, motion: Motion) -> tuple[str, int]:
         """The block of a point on the axis of a turn."""
         if not motion.is_turn or self.placement.is_spherical:
             return "origin", 0
         return "point", self._points.number(self.placement.point_on_axis(motion))
 
-    def _place_of(self, place: np.ndarray) -> tuple[str, int]:
+    def place_of(self, place: np.ndarray) -> tuple[str, int]:
         """The block of a place of a body: on a sphere one on an axis."""
         point = self.placement.point(place)
         if self.placement.is_spherical:
@@ -333,13 +393,23 @@ class ClosureFamily(RealFamily):
     def are_fixed(self) -> np.ndarray:
         """Which parameters (q,) are the same for all members."""
         are_fixed = np.zeros(len(self.parameters.given), dtype=bool)
-        are_fixed[self.parameters.blocks["of sines", 0]] = True
+        for name in ("of sines", WEIGHTS):
+            if (name, 0) in self.parameters.blocks:
+                are_fixed[self.parameters.blocks[name, 0]] = True
         return are_fixed
 
     @property
     def given(self) -> np.ndarray:
         """The parameters (q,) of the structure."""
-        return np.array(self.parameters.given, dtype=complex)
+        given = np.array(self.parameters.given, dtype=complex)
+        if self.is_driven:
+            drawn = np.random.default_rng(len(self.drivers)).normal(
+                size=len(self.drivers)
+            )
+            weights = given[self.parameters.blocks[WEIGHTS, 0]]
+            weights[list(self.drivers)] = drawn
+            weights[list(self.drivers[:1])] = 1.0
+        return given
 
     def given_at(self, value: complex) -> np.ndarray:
         """The same with the drivers at a value, a single angle in rad."""
@@ -350,20 +420,32 @@ class ClosureFamily(RealFamily):
         given[self.parameters.blocks[DRIVER, 0]] = at
         return given
 
-    def driven(self, x: np.ndarray) -> Number:
-        """The linear function of coordinates x (n,) that is held."""
-        firsts = [self.columns[number].start for number in self.drivers]
-        value = x[firsts[0]]
-        weights = np.random.default_rng(len(firsts)).normal(size=len(firsts))
-        for weight, first in zip(weights[1:].tolist(), firsts[1:], strict=True):
+    def driven(self, x: np.ndarray, p: np.ndarray) -> Number:
+        """The linear function of coordinates x (n,) that is held, with its weights."""
+        weights = p[self.parameters.blocks[WEIGHTS, 0]]
+        firsts = [place.start for place in self.columns]
+        value = weights[0] * x[firsts[0]]
+        for weight, first in zip(weights[1:], firsts[1:], strict=True):
             value = value + weight * x[first]
         return value
 
-    @cached_property
+    @property
     def projection(self) -> Projection:
-        """The targets vary, and one unknown is looked at."""
-        blocks = (one for one in self.columns if one.start < one.stop)
-        return Projection(self.are_targets, tuple(blocks))
+        """The targets vary, and so many unknowns are looked at that the others follow: no
+        driver that is given, and no slide where turns decide, as chains are linear in
+        slides unless they lead to a distance; of the turns of a single cycle the others
+        leave one displacement for the last one."""
+        unknowns, kinds = self.structure.unknowns, [one.kind for one in self.closures]
+        deciding = [k for k in range(len(unknowns)) if k not in self.standing]
+        if ClosureKind.ROD not in kinds:
+            deciding = [k for k in deciding if not unknowns[k].is_length]
+        if len(self.drivers) == 1:
+            deciding = [k for k in deciding if k != self.drivers[0]]
+        is_coupled = len(self.moves) > len(unknowns)
+        if kinds == [ClosureKind.CYCLE] and not is_coupled:
+            deciding = deciding[:-1]
+        block = np.array([self.columns[k].start for k in deciding], dtype=int)
+        return Projection(self.are_targets, (block,))
 
     # --- equations --------------------------------------------------------------------
 
@@ -403,9 +485,15 @@ class ClosureFamily(RealFamily):
         chains = _Chains(self, x, p)
         for k, closure in enumerate(self.closures):
             p[self.parameters.blocks["target", k]] = chains.reached(k, closure)
-        if self.drivers:
-            p[self.parameters.blocks[DRIVER, 0]] = self.driven(x)
+        if self.is_driven:
+            p[self.parameters.blocks[DRIVER, 0]] = self.driven(x, p)
         return x, p
+
+
+def _rises(placement: Placement, rod: Rod) -> bool:
+    """Whether a rod leads out of a plane."""
+    first, second = map(placement.point, rod.centers)
+    return not meets_in_one_point(abs(float(first[2] - second[2])), 1.0)
 
 
 def _generic(rng: np.random.Generator, count: int, imaginary: float) -> np.ndarray:
@@ -416,10 +504,43 @@ def _generic(rng: np.random.Generator, count: int, imaginary: float) -> np.ndarr
     return numbers
 
 
-def _mirror_of(direction: np.ndarray) -> np.ndarray:
+def mirror_of(direction: np.ndarray) -> np.ndarray:
     """A vector (3,) in which e_x reflected is a unit ``direction`` (3,)."""
     between = direction + X_AXIS
-    return between if between @ between > 1e-2 else np.cross(direction, Y_AXIS)
+    return between if abs(between @ between) > ROUNDING else np.array(Y_AXIS)
+
+
+def solutions_of(
+    family: ClosureFamily, given: np.ndarray, structure: Structure
+) -> np.ndarray:
+    """All isolated solutions (k, n) of the member of a family with parameters (q,) that
+    are those of a ``structure``.
+
+    Raises `UnfollowedError` where it is not known that they are all.
+    """
+    paths = family.paths_to_regular(given)
+    if np.any(paths.ends == PathEnd.AT_INFINITY):
+        require_no_short_length(structure)
+    return paths.regular
+
+
+def require_no_short_length(structure: Structure) -> None:
+    """Raise `UnfollowedError` where paths may come back that seem to end at infinity."""
+    points = [
+        variable.motion.point / structure.unit
+        for variable in structure.mechanism.variables
+        if variable.motion.is_turn
+    ]
+    places = [
+        place / structure.unit
+        for closure in structure.closures
+        for place in (closure.first, closure.second)
+    ]
+    rows = np.array(points + places)
+    gaps = np.linalg.norm(rows[:, None] - rows[None], axis=2)
+    gaps = gaps[gaps > NO_LENGTH]
+    if len(gaps) and is_short_bar(float((gaps.min() / gaps.max()) ** 2)):
+        raise UnfollowedError("a length is so short that paths seem to end at infinity")
 
 
 # --- numbers, recorded or not ---------------------------------------------------------
@@ -472,7 +593,7 @@ def _rotation(q: Point) -> tuple[list[Number], list[Number]]:
     return [one / size for one in first], [one / size for one in second]
 
 
-def _quaternion(first: Point, second: Point) -> list[complex]:
+def quaternion(first: Point, second: Point) -> list[complex]:
     """A quaternion of a complex rotation by its first two columns."""
     matrix = np.array([first, second, _cross(first, second)]).T
     # times one number of the quaternion; the longest of four such
@@ -488,8 +609,8 @@ def _quaternion(first: Point, second: Point) -> list[complex]:
     table[0, 1:] = table[1:, 0] = skew
     table[1:, 1:] = matrix + matrix.T + (1.0 - np.trace(matrix)) * np.eye(3)
     row = table[np.argmax(np.abs(np.diag(table)))]
-    quaternion: list[complex] = (row / np.linalg.norm(row)).tolist()
-    return quaternion
+    numbers: list[complex] = (row / np.linalg.norm(row)).tolist()
+    return numbers
 
 
 class _Chains:
@@ -560,23 +681,21 @@ class _Chains:
             return self._carried(step, point)
         if step.pair in structure.embedded:
             return self._turned_freely(step, point)
-        for number in structure.variables_of(step.pair)[:: -step.sign]:
-            variable = structure.mechanism.variables[number]
-            if variable.locked == 0.0:
-                continue
+        for sign, number in reversed(self.family.moves_of(step)):
+            motion = structure.mechanism.variables[number].motion
             value = self._value(number)
-            direction = self._vector(*self.family._direction_of(variable.motion))
-            if not variable.motion.is_turn:
+            direction = self._vector(*self.family.direction_of(motion))
+            if not motion.is_turn:
                 if is_place:
-                    point = _plus(point, _times(step.sign * value, direction))
+                    point = _plus(point, _times(sign * value, direction))
                 continue
             cosine, sine = value
             center = ORIGIN
             if is_place:
-                center = self._vector(*self.family._point_of(variable.motion))
+                center = self._vector(*self.family.point_of(motion))
             offset = _less(point, center)
             along = (1.0 - cosine) * _dot(direction, offset)
-            turned = _times(step.sign * sine, _cross(direction, offset))
+            turned = _times(sign * sine, _cross(direction, offset))
             turned = _plus(turned, _times(cosine, offset))
             point = _plus(center, _plus(turned, _times(along, direction)))
         return point
@@ -596,7 +715,7 @@ class _Chains:
     def _turned_freely(self, step: Step, point: Point) -> Point:
         """A point turned by an embedded rotation, and moved by a free pair."""
         structure = self.structure
-        place = self.family._place_of(structure.center(step.pair))
+        place = self.family.place_of(structure.center(step.pair))
         center = self._vector(*place)
         columns = structure.embedded[step.pair]
         first = self.family.columns[columns[0]].start
@@ -623,8 +742,8 @@ class _Chains:
 
     def _square(self, number: int, closure: Closure) -> Number:
         """The square of the distance of two points less that of the length of a leg."""
-        first = self._vector(*self.family._place_of(closure.first))
-        second = self._vector(*self.family._place_of(closure.second))
+        first = self._vector(*self.family.place_of(closure.first))
+        second = self._vector(*self.family.place_of(closure.second))
         gap = _less(self._moved(closure, second, is_place=True), first)
         assert closure.rod is not None
         leg = closure.rod.leg
@@ -636,7 +755,7 @@ class _Chains:
 
     def _arrival(self, closure: Closure) -> Point:
         """Where the point of a closure comes to."""
-        second = self._vector(*self.family._place_of(closure.second))
+        second = self._vector(*self.family.place_of(closure.second))
         return self._moved(closure, second, is_place=True)
 
     def gaps(self, number: int, closure: Closure) -> list[Number]:
@@ -664,11 +783,11 @@ class _Chains:
         if closure.kind is ClosureKind.POINT:
             return list(self._arrival(closure))[: size.stop - size.start]
         a, b, place = self._frame(closure)
-        quaternion = _quaternion(a, b)
+        turn = quaternion(a, b)
         if self.family.placement.is_planar:
-            return [quaternion[0], quaternion[3], *place[:2]]
+            return [turn[0], turn[3], *place[:2]]
         is_spherical = self.family.placement.is_spherical
-        return quaternion if is_spherical else [*quaternion, *place]
+        return turn if is_spherical else [*turn, *place]
 
     def own_gaps(self) -> list[Number]:
         """By how much the coordinates are none of angles and rotations, and then the
@@ -684,9 +803,9 @@ class _Chains:
             numbers = list(self.x[first : first + ROTATION])
             a, b = numbers[:3], numbers[3:]
             gaps += [_dot(a, a) - 1.0, _dot(b, b) - 1.0, _dot(a, b)]
-        if self.family.drivers:
+        if self.family.is_driven:
             (value,) = self._block(DRIVER, 0)
-            gaps.append(self.family.driven(self.x) - value)
+            gaps.append(self.family.driven(self.x, self.p) - value)
         return gaps
 
 
@@ -697,7 +816,9 @@ def _require_polynomials(structure: Structure) -> None:
         if variable.motion.is_turn and variable.motion.advance != 0.0:
             raise ValueError("a joint advances as it turns")
         share = structure.share(number)
-        if share is None or not variable.motion.is_turn:
+        if share is None:
             continue
-        if abs(share.rate) != 1.0 or not structure.unknowns[share.column].is_angle:
+        if variable.motion.is_turn != structure.unknowns[share.column].is_angle:
+            raise ValueError("a turn follows a slide, or a slide a turn")
+        if variable.motion.is_turn and abs(share.rate) != 1.0:
             raise ValueError("a turn is coupled with another ratio than 1 and -1")

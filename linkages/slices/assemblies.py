@@ -129,6 +129,22 @@ def isolated_assemblies(loop: Loop, seconds: float = np.inf) -> Assemblies:
     )
 
 
+def regular_complex(table: np.ndarray) -> tuple[np.ndarray, int]:
+    """Configurations (k, 6), complex, rad, of six joints with a complex geometry ``table``
+    (3, 6), lengths, twists (rad) and offsets, which are all of them if they are 16; and
+    how many paths ended at others, at which the closure has no full rank."""
+    for attempt in range(ATTEMPTS):
+        start = _generic_loop(attempt)
+        paths = follow_paths(start, table)
+        arrived = paths.angles[paths.ends == PathEnd.ARRIVED]
+        smallest = _core.smallest_singular_values(arrived, table)
+        is_regular = ~is_nearly_singular_end(smallest)
+        regular = _distinct(arrived[is_regular])
+        if len(regular) == len(start.configurations):
+            break
+    return regular, int(np.count_nonzero(~is_regular))
+
+
 def follow_paths(
     start: GenericLoop,
     table: np.ndarray,

@@ -135,16 +135,30 @@ def test_seeds_of_a_short_loop_are_closed_and_come_from_complete_slices_and_rand
     assert np.linalg.norm(problem.residuals(seeds.points), axis=1).max() < 1e-12
 
 
-def test_seeds_of_a_long_loop_are_random_and_claim_nothing_complete():
+def random_loop(joints):
     rng = np.random.default_rng(5)
-    lengths = rng.uniform(0.5, 1, 7)
-    twists = rng.uniform(-3, 3, 7)
-    offsets = rng.uniform(-0.5, 0.5, 7)
-    problem = Closure(Loop(lengths, twists, offsets))
-    seeds = problem.seeds(rng, 40)
+    lengths = rng.uniform(0.5, 1, joints)
+    twists = rng.uniform(-3, 3, joints)
+    return Loop(lengths, twists, rng.uniform(-0.5, 0.5, joints))
+
+
+def test_seeds_of_a_long_loop_are_random_and_claim_nothing_complete():
+    problem = Closure(random_loop(8))
+    seeds = problem.seeds(np.random.default_rng(0), 40)
     assert seeds.random.all()
     assert seeds.audit is None
     assert len(seeds.points) + len(seeds.gaps) == 40
+
+
+def test_a_loop_of_seven_joints_is_sliced_by_the_rings_of_six_that_are_left():
+    problem = Closure(random_loop(7))
+    seeds = problem.seeds(np.random.default_rng(0), 40)
+    assert seeds.audit.counts == (16,)
+    assert np.linalg.norm(problem.residuals(seeds.points), axis=1).max() < 1e-10
+    (driver,) = seeds.audit.drivers
+    sliced = seeds.points[~seeds.random][:, driver]
+    gaps = np.diff(np.unique(np.round(np.mod(sliced, 2 * np.pi), 9)))
+    assert np.allclose(gaps / np.radians(10), np.round(gaps / np.radians(10)))
 
 
 def test_seeds_of_a_surface_do_not_claim_completeness():

@@ -1,7 +1,7 @@
-"""Common types of modules with many complex configurations.
+"""Common types of modules, and of chains in single loops.
 
 ``python -m tests.linkages.modules.common_types`` makes their generic solutions anew, and
-writes them where they are read.
+writes them where they are read, in ten minutes.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ from linkages.dyads.group import Pattern, group_of
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Mechanism
 from linkages.modules.assemblies import Module
-from linkages.structure.structure import Structure
+from linkages.modules.loops import chains_of
+from linkages.structure.structure import ClosureKind, Structure
 
 PRISM = [(0, 1), (0, 2), (1, 2), (0, 3), (1, 4), (2, 5), (3, 4), (3, 5), (4, 5)]
 LEG = 3  # of the prism
@@ -108,6 +109,29 @@ TYPES = {
         group_of_bars(PRISM, is_spherical=True, first=LEG), 32
     ),
     "K(3,3) on a sphere": CommonType(group_of_bars(K33, is_spherical=True), 16),
+}
+
+
+# Chains of single turns and slides. To a frame: Raghavan and Roth 1993; to a point: Pieper
+# 1968 for three turns; to a distance: where a line or a circle meets a sphere.
+CHAINS = {
+    ClosureKind.ROD: {"P": 2, "R": 2},
+    ClosureKind.POINT: {"PPP": 1, "PPR": 2, "PRP": 2, "PRR": 4, "RPR": 4, "RRR": 4},
+    ClosureKind.CYCLE: {
+        "PPPRRR": 2,
+        "PPRPRR": 2,
+        "PRPRPR": 2,
+        "PPRRRR": 8,
+        "PRPRRR": 8,
+        "PRRPRR": 8,
+        "PRRRRR": 16,
+        "RRRRRR": 16,
+    },
+}
+TYPES |= {
+    letters: CommonType(chains_of(kind, letters), count)
+    for kind, counts in CHAINS.items()
+    for letters, count in counts.items()
 }
 
 

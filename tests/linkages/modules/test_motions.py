@@ -32,7 +32,7 @@ def test_a_slice_holds_what_random_starts_reach_there():
     mechanism = loop("RSUR", np.random.default_rng(2))
     motions = Motions(Structure(mechanism))
     assert 0 in motions.drivers(np.random.default_rng(0))
-    known = motions.points(0, 0.7)
+    known = motions.points(0, [0.7])
     closure = Closure(mechanism)
     starts = np.random.default_rng(0).uniform(-np.pi, np.pi, (150, closure.n))
     starts[:, 0] = 0.7
@@ -73,4 +73,4 @@ def test_what_stands_on_a_motion_is_no_driver():
 def test_a_mechanism_with_slides_is_on_no_sphere():
     """All turns of PUPS, those of one universal joint, meet at a point."""
     structure = Structure(loop("PUPS", np.random.default_rng(0)))
-    assert not ClosureFamily(structure, (0,)).placement.is_spherical
+    assert not ClosureFamily(structure, is_driven=True).placement.is_spherical
