@@ -3,10 +3,10 @@ parts, and the charts about a point."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Self
 
 import numpy as np
 
@@ -27,8 +27,8 @@ NEAR_THE_NEAREST = 2.0
 # Distance from the centre, over the radius, up to which a chart holds a solution.
 RIM = 1.1
 # Height of a solution above the plane of a chart that holds it, over the distance in
-# the plane, at most; rounding is allowed for.
-STEEPEST, ROUNDING = 0.25, 1e-9
+# the plane, at most, of a surface and of other components; rounding is allowed for.
+STEEPEST, STEEPEST_OF_OTHERS, ROUNDING = 0.25, 0.4, 1e-9
 
 
 class Covering(Enum):
@@ -58,40 +58,30 @@ class Covering(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class ChartAtlas:
-    """A surface of solutions, or several, as charts that overlap.
+class Charts:
+    """A component of solutions of dimension d, or several, as charts that overlap.
 
-    ``centers`` (c, n) are solutions, ``bases`` (c, n, 2) orthonormal bases of the
-    tangent planes there, ``radii`` (c,) those of the disks. The polygon of a chart
-    lists the ``vertices`` (v, n) around it, solutions that it shares with its
-    neighbours; the ``polygons``, with ``polygon_sizes`` (c,) entries each, stand one
-    behind the other; their ``areas`` (c,) on the surface are known to within
-    ``area_errors`` (c,). ``neighbours`` (p, 2) are the pairs of charts whose polygons have
-    an edge in common.
+    ``centers`` (c, n) are solutions, ``bases`` (c, n, d) orthonormal bases of the
+    tangent spaces there, ``radii`` (c,) those of the disks. Each disk holds a cell, cut
+    by those of other charts: ``neighbours`` (p, 2) are the pairs of charts whose cells
+    have a side in common.
     """
 
     centers: np.ndarray
     bases: np.ndarray
     radii: np.ndarray
     neighbours: np.ndarray
-    vertices: np.ndarray
-    polygons: np.ndarray
-    polygon_sizes: np.ndarray
-    areas: np.ndarray
-    area_errors: np.ndarray
     periods: np.ndarray
     outcome: Covering
 
     def __len__(self) -> int:
         return len(self.centers)
 
-    def __repr__(self) -> str:
-        euler = self.euler_characteristic
-        return (
-            f"ChartAtlas({count_of(len(self), 'chart')}, {self.outcome.name},\n"
-            f"           area {self.area_words}, "
-            f"Euler characteristic {'unknown' if euler is None else euler})"
-        )
+    @property
+    def dimension(self) -> int:
+        """That of the component."""
+        dimension: int = self.bases.shape[-1]
+        return dimension
 
     @property
     def complete(self) -> bool:
@@ -111,6 +101,161 @@ class ChartAtlas:
     def difference(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         """a - b (..., n) with periodic unknowns taken to within half a period of 0."""
         return torus.difference(a, b, self.periods)
+
+    # --- connected parts --------------------------------------------------------------
+
+    @cached_property
+    def part(self) -> np.ndarray:
+        """Number (c,) of the connected surface that each chart belongs to; number 0 has
+        most charts."""
+        from scipy.sparse import csr_array
+        from scipy.sparse.csgraph import connected_components
+
+        links = np.ones(len(self.neighbours))
+        size = len(self)
+        graph = csr_array((links, tuple(self.neighbours.T)), shape=(size, size))
+        count, label = connected_components(graph, directed=False)
+        sizes = np.bincount(label, minlength=count)
+        largest_first = np.argsort(-sizes, kind="stable")
+        number: np.ndarray = np.argsort(largest_first)[label]
+        return number
+
+    def joined_to(self, chart: int, among: np.ndarray) -> set[int]:
+        """Numbers of the charts to which neighbours lead from one, over those ``among``
+        (c,) which it is looked for."""
+        pairs = self.neighbours[among[self.neighbours].all(axis=1)]
+        joined, waiting = {chart}, [chart]
+        while waiting:
+            here = waiting.pop()
+            beside = pairs[(pairs == here).any(axis=1)]
+            more = set(beside.ravel().tolist()) - joined
+            joined |= more
+            waiting += more
+        return joined
+
+    def parts(self) -> tuple[Self, ...]:
+        """The connected surfaces, the one with most charts first."""
+        count = int(self.part.max(initial=-1)) + 1
+        parts = []
+        for k in range(count):
+            parts.append(self._only(np.flatnonzero(self.part == k)))
+        return tuple(parts)
+
+    def _only(self, charts: np.ndarray) -> Self:
+        """The charts of these numbers (k,) alone."""
+        number = np.full(len(self), -1)
+        number[charts] = np.arange(len(charts))
+        is_inside = np.all(number[self.neighbours] >= 0, axis=1)
+        return replace(
+            self,
+            centers=self.centers[charts],
+            bases=self.bases[charts],
+            radii=self.radii[charts],
+            neighbours=number[self.neighbours[is_inside]],
+        )
+
+    # --- charts about a point ---------------------------------------------------------
+
+    def chart_at(self, points: np.ndarray) -> np.ndarray:
+        """Numbers (k,) of charts in which solutions (k, n) lie, one for each; -1 where
+        there is none."""
+        order = np.arange(1, min(NEAREST, len(self)) + 1)
+        _, near = self._tree.query(self._in_box(points), k=order)
+        holds = self._hold(points, near)  # (k, count)
+        nearest = np.argmax(holds, axis=1)
+        numbers = near[np.arange(len(near)), nearest]
+        return np.where(holds.any(axis=1), numbers, -1)
+
+    def covers(self, points: np.ndarray) -> np.ndarray:
+        """Which solutions (k, n) lie in a chart (k,)."""
+        return self.chart_at(points) >= 0
+
+    def nearest_charts(self, points: np.ndarray) -> np.ndarray:
+        """Numbers (k,) of the charts whose centres are nearest to points (k, n)."""
+        _, nearest = self._tree.query(self._in_box(points))
+        numbers: np.ndarray = nearest
+        return numbers
+
+    def charts_about(self, point: np.ndarray) -> np.ndarray:
+        """Numbers (k,) of all charts in which a solution (n,) lies."""
+        charts = np.arange(len(self))
+        holds = self._hold(point[None], charts[None])
+        return np.flatnonzero(holds[0])
+
+    def passes_beside(self, point: np.ndarray) -> bool:
+        """Whether a chart lies below or above a point (n,): the surface has no hole
+        there."""
+        offsets = self.difference(point, self.centers)
+        along = np.einsum("cij,ci->cj", self.bases, offsets)
+        is_within = np.linalg.norm(along, axis=1) < self.radii
+        is_near = np.linalg.norm(offsets, axis=1) < 2.0 * self.radii
+        return bool(np.any(is_within & is_near))
+
+    def charts_next_to(self, point: np.ndarray) -> np.ndarray:
+        """Numbers (k,) of the charts that may be next to a singular point (n,) about
+        which there is none.
+
+        As at the tip of a cone: charts are the smaller the nearer they are to it, and
+        the hole that they leave is no larger than the largest of them.
+        """
+        gaps = self.difference(point, self.centers)
+        distance = np.linalg.norm(gaps, axis=1)
+        farthest = self.radii.max(initial=0.0)
+        by_radius = distance < np.minimum(NEXT_TO * self.radii, farthest)
+        by_nearest = distance < NEAR_THE_NEAREST * distance.min(initial=np.inf)
+        return np.flatnonzero(by_radius & by_nearest)
+
+    def _hold(self, points: np.ndarray, charts: np.ndarray) -> np.ndarray:
+        """Whether solutions (k, n) lie in the disks of ``charts`` (k, c), and not well
+        above them: (k, c)."""
+        bases = self.bases[charts]
+        offset = self.difference(points[:, None], self.centers[charts])
+        y = np.einsum("kci,kcij->kcj", offset, bases)
+        distance = np.linalg.norm(y, axis=2)
+        in_plane = np.einsum("kcij,kcj->kci", bases, y)
+        height = np.linalg.norm(offset - in_plane, axis=2)
+        is_inside = distance < RIM * self.radii[charts]
+        steepest = STEEPEST if self.dimension == 2 else STEEPEST_OF_OTHERS
+        is_low = height < steepest * distance + ROUNDING
+        holds: np.ndarray = is_inside & is_low
+        return holds
+
+    @cached_property
+    def _tree(self) -> cKDTree:
+        """The centres of the charts, for the search of the nearest."""
+        from scipy.spatial import cKDTree
+
+        box = torus.tree_box(self.periods)
+        return cKDTree(self._in_box(self.centers), boxsize=box)
+
+    def _in_box(self, points: np.ndarray) -> np.ndarray:
+        """Points with periodic unknowns taken into [0, period)."""
+        return torus.into_box(points, self.periods)
+
+
+@dataclass(frozen=True, eq=False)
+class ChartAtlas(Charts):
+    """Charts of a surface, whose cells are polygons.
+
+    The polygon of a chart lists the ``vertices`` (v, n) around it, solutions that it
+    shares with its neighbours; the ``polygons``, with ``polygon_sizes`` (c,) entries
+    each, stand one behind the other; their ``areas`` (c,) on the surface are known to
+    within ``area_errors`` (c,).
+    """
+
+    vertices: np.ndarray
+    polygons: np.ndarray
+    polygon_sizes: np.ndarray
+    areas: np.ndarray
+    area_errors: np.ndarray
+
+    def __repr__(self) -> str:
+        euler = self.euler_characteristic
+        return (
+            f"ChartAtlas({count_of(len(self), 'chart')}, {self.outcome.name},\n"
+            f"           area {self.area_words}, "
+            f"Euler characteristic {'unknown' if euler is None else euler})"
+        )
 
     # --- size and shape ---------------------------------------------------------------
 
@@ -175,142 +320,19 @@ class ChartAtlas:
         edges = len(self._polygons_at_edge)
         return vertices - edges + int(np.count_nonzero(self.polygon_sizes))
 
-    # --- connected parts --------------------------------------------------------------
-
-    @cached_property
-    def part(self) -> np.ndarray:
-        """Number (c,) of the connected surface that each chart belongs to; number 0 has
-        most charts."""
-        from scipy.sparse import csr_array
-        from scipy.sparse.csgraph import connected_components
-
-        links = np.ones(len(self.neighbours))
-        size = len(self)
-        graph = csr_array((links, tuple(self.neighbours.T)), shape=(size, size))
-        count, label = connected_components(graph, directed=False)
-        sizes = np.bincount(label, minlength=count)
-        largest_first = np.argsort(-sizes, kind="stable")
-        number: np.ndarray = np.argsort(largest_first)[label]
-        return number
-
-    def joined_to(self, chart: int, among: np.ndarray) -> set[int]:
-        """Numbers of the charts to which neighbours lead from one, over those ``among``
-        (c,) which it is looked for."""
-        pairs = self.neighbours[among[self.neighbours].all(axis=1)]
-        joined, waiting = {chart}, [chart]
-        while waiting:
-            here = waiting.pop()
-            beside = pairs[(pairs == here).any(axis=1)]
-            more = set(beside.ravel().tolist()) - joined
-            joined |= more
-            waiting += more
-        return joined
-
-    def parts(self) -> tuple[ChartAtlas, ...]:
-        """The connected surfaces, the one with most charts first."""
-        count = int(self.part.max(initial=-1)) + 1
-        parts = []
-        for k in range(count):
-            parts.append(self._only(np.flatnonzero(self.part == k)))
-        return tuple(parts)
-
-    def _only(self, charts: np.ndarray) -> ChartAtlas:
-        """The atlas of the charts of these numbers (k,) alone."""
-        number = np.full(len(self), -1)
-        number[charts] = np.arange(len(charts))
-        is_inside = np.all(number[self.neighbours] >= 0, axis=1)
-        corners = self.polygons[np.repeat(number >= 0, self.polygon_sizes)]
+    def _only(self, charts: np.ndarray) -> Self:
+        is_own = np.zeros(len(self), dtype=bool)
+        is_own[charts] = True
+        corners = self.polygons[np.repeat(is_own, self.polygon_sizes)]
         vertices, renumbered = np.unique(corners, return_inverse=True)
-        return ChartAtlas(
-            centers=self.centers[charts],
-            bases=self.bases[charts],
-            radii=self.radii[charts],
-            neighbours=number[self.neighbours[is_inside]],
+        return replace(
+            super()._only(charts),
             vertices=self.vertices[vertices],
             polygons=renumbered,
             polygon_sizes=self.polygon_sizes[charts],
             areas=self.areas[charts],
             area_errors=self.area_errors[charts],
-            periods=self.periods,
-            outcome=self.outcome,
         )
-
-    # --- charts about a point ---------------------------------------------------------
-
-    def chart_at(self, points: np.ndarray) -> np.ndarray:
-        """Numbers (k,) of charts in which solutions (k, n) lie, one for each; -1 where
-        there is none."""
-        order = np.arange(1, min(NEAREST, len(self)) + 1)
-        _, near = self._tree.query(self._in_box(points), k=order)
-        holds = self._hold(points, near)  # (k, count)
-        nearest = np.argmax(holds, axis=1)
-        numbers = near[np.arange(len(near)), nearest]
-        return np.where(holds.any(axis=1), numbers, -1)
-
-    def covers(self, points: np.ndarray) -> np.ndarray:
-        """Which solutions (k, n) lie in a chart (k,)."""
-        return self.chart_at(points) >= 0
-
-    def nearest_charts(self, points: np.ndarray) -> np.ndarray:
-        """Numbers (k,) of the charts whose centres are nearest to points (k, n)."""
-        _, nearest = self._tree.query(self._in_box(points))
-        numbers: np.ndarray = nearest
-        return numbers
-
-    def charts_about(self, point: np.ndarray) -> np.ndarray:
-        """Numbers (k,) of all charts in which a solution (n,) lies."""
-        charts = np.arange(len(self))
-        holds = self._hold(point[None], charts[None])
-        return np.flatnonzero(holds[0])
-
-    def passes_beside(self, point: np.ndarray) -> bool:
-        """Whether a chart lies below or above a point (n,): the surface has no hole
-        there."""
-        offsets = self.difference(point, self.centers)
-        along = np.einsum("cij,ci->cj", self.bases, offsets)
-        is_within = np.linalg.norm(along, axis=1) < self.radii
-        is_near = np.linalg.norm(offsets, axis=1) < 2.0 * self.radii
-        return bool(np.any(is_within & is_near))
-
-    def charts_next_to(self, point: np.ndarray) -> np.ndarray:
-        """Numbers (k,) of the charts that may be next to a singular point (n,) about
-        which there is none.
-
-        As at the tip of a cone: charts are the smaller the nearer they are to it, and
-        the hole that they leave is no larger than the largest of them.
-        """
-        gaps = self.difference(point, self.centers)
-        distance = np.linalg.norm(gaps, axis=1)
-        farthest = self.radii.max(initial=0.0)
-        by_radius = distance < np.minimum(NEXT_TO * self.radii, farthest)
-        by_nearest = distance < NEAR_THE_NEAREST * distance.min(initial=np.inf)
-        return np.flatnonzero(by_radius & by_nearest)
-
-    def _hold(self, points: np.ndarray, charts: np.ndarray) -> np.ndarray:
-        """Whether solutions (k, n) lie in the disks of ``charts`` (k, c), and not well
-        above them: (k, c)."""
-        bases = self.bases[charts]
-        offset = self.difference(points[:, None], self.centers[charts])
-        y = np.einsum("kci,kcij->kcj", offset, bases)
-        distance = np.linalg.norm(y, axis=2)
-        in_plane = np.einsum("kcij,kcj->kci", bases, y)
-        height = np.linalg.norm(offset - in_plane, axis=2)
-        is_inside = distance < RIM * self.radii[charts]
-        is_low = height < STEEPEST * distance + ROUNDING
-        holds: np.ndarray = is_inside & is_low
-        return holds
-
-    @cached_property
-    def _tree(self) -> cKDTree:
-        """The centres of the charts, for the search of the nearest."""
-        from scipy.spatial import cKDTree
-
-        box = torus.tree_box(self.periods)
-        return cKDTree(self._in_box(self.centers), boxsize=box)
-
-    def _in_box(self, points: np.ndarray) -> np.ndarray:
-        """Points with periodic unknowns taken into [0, period)."""
-        return torus.into_box(points, self.periods)
 
     # --- the complex of polygons ------------------------------------------------------
 

@@ -17,7 +17,7 @@ from bifurc.numerics.null_spaces import cosines_between_planes
 from bifurc.numerics.singular_values import factors_of
 from bifurc.problem import Problem
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
-from bifurc.surfaces.chart_atlas import ChartAtlas
+from bifurc.surfaces.chart_atlas import Charts
 
 # Determinant of the turn between two spaces above which its sign counts.
 CLEAR = 0.3
@@ -36,13 +36,13 @@ NEXT, NEXT_TO_ERROR = (0.02, 1e-3, 5e-5), 100
 OTHER, OTHER_TO_ERROR = 0.2, 10
 
 
-def has_uncovered_crossing(problem: Problem, charts: ChartAtlas, agree: float) -> bool:
+def has_uncovered_crossing(problem: Problem, charts: Charts, agree: float) -> bool:
     """Whether a sheet crosses the covered surface, and no chart lies on it.
 
     Charts whose tangent planes turn by a cosine below ``agree`` lie on different
     sheets.
     """
-    uncovered = []
+    uncovered, nullity = [], charts.dimension + 1
     for crossing in sign_changes(problem, charts):
         if not _is_covered(charts, crossing, agree):
             uncovered.append(crossing)
@@ -50,7 +50,7 @@ def has_uncovered_crossing(problem: Problem, charts: ChartAtlas, agree: float) -
     for k in spread[: len(uncovered)]:
         crossing = uncovered[k]
         reach = REACH * float(charts.radii[crossing.pair].max())
-        located = locate_singular_point(problem, crossing.place, 3, reach)
+        located = locate_singular_point(problem, crossing.place, nullity, reach)
         if located is not None and is_on_singular_curve(problem, located):
             return True
     return False
@@ -91,13 +91,13 @@ class SignChange(NamedTuple):
     place: np.ndarray
 
 
-def sign_changes(problem: Problem, charts: ChartAtlas) -> list[SignChange]:
+def sign_changes(problem: Problem, charts: Charts) -> list[SignChange]:
     """All neighbours between which F' changes its orientation.
 
-    With F' = L S R^T of rank n - 2 at two charts, the determinant of F' at the second
+    With F' = L S R^T of rank n - d at two charts, the determinant of F' at the second
     one, in the bases L and R of the first, has the sign of det(L1^T L2) det(R1^T R2).
     """
-    rank = problem.n - 2
+    rank = problem.n - charts.dimension
     jacobians = problem.jacobians(charts.centers)
     left, sigma, right = factors_of(jacobians, full_matrices=False)
     if rank < 1 or sigma.shape[1] < rank:
@@ -121,7 +121,7 @@ def sign_changes(problem: Problem, charts: ChartAtlas) -> list[SignChange]:
     return crossings
 
 
-def _is_covered(charts: ChartAtlas, crossing: SignChange, agree: float) -> bool:
+def _is_covered(charts: Charts, crossing: SignChange, agree: float) -> bool:
     """Whether a chart on another sheet lies about a crossing: it is turned, or no
     neighbours lead to it from those between which the crossing is."""
     gaps = charts.difference(crossing.place, charts.centers)
