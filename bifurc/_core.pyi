@@ -335,6 +335,7 @@ class _Cover:
         periods: np.ndarray,
         bounds: np.ndarray,
         agree: float,
+        smooth: float,
         largest: float,
         smallest: float,
         bend: float,

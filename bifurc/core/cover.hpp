@@ -13,7 +13,6 @@ namespace bifurc {
 namespace cover {
 constexpr double growth = 1.4;     // radius of a chart, over that of the one from which it was made, at most
 constexpr double expected = 0.95;  // height of the surface above the disk that is tried, over the most
-constexpr double smooth = 0.85;    // smallest cosine between tangent planes of a chart and the next one on its sheet
 constexpr double too_close = 0.2;  // distance from another centre, over the radius there, that is not worth a chart
 constexpr double too_far = 0.5;    // distance, over the radius, beyond which a centre was corrected onto another sheet
 constexpr double solved = 1e-10;   // residual above which a centre is no solution
@@ -52,12 +51,14 @@ enum class Growth { complete, out_of_time, undecided, chart_limit, doubt };
 template <Index d>
 class Cover {
 public:
-    // Charts may be neighbours whose tangent planes ``agree`` by a cosine above that.
+    // Charts may be neighbours whose tangent planes ``agree`` by a cosine above that, and follow one another where
+    // it is above ``smooth``.
     Cover(const Equations& equations, double scale, Vector<const double> periods, View<const double> bounds,
-          double agree, const DiskLimits& disks)
+          double agree, double smooth, const DiskLimits& disks)
         : n_(equations.unknowns()),
           scale_(scale),
           bounds_(bounds.data, bounds.data + 2 * n_),
+          smooth_(smooth),
           limits_(disks),
           // in two disks of radius R that touch, one centre lies up to 4 bend R above the other's plane
           front_(periods, {cover::higher * disks.bend, agree, cover::on_disk, cover::towards}),
@@ -106,7 +107,7 @@ public:
     Candidate candidate(Vector<const double> center, View<const double> near, double radius) {
         Candidate out{Placement::unfit, {center.begin(), center.end()}, planes_.at(center, near, limits_.negligible),
                       std::min(radius, limits_.largest), {}};
-        if (out.plane.cosine < cover::smooth) return out;
+        if (out.plane.cosine < smooth_) return out;
         if (is_close_to_a_center(center, out.plane.basis)) {
             out.placement = Placement::covered;
             return out;
@@ -249,6 +250,7 @@ private:
     Index n_;
     double scale_;
     std::vector<double> bounds_;
+    double smooth_;
     DiskLimits limits_;
     Front<d> front_;
     NormalCorrector corrector_;

@@ -243,8 +243,8 @@ template <Index d>
 class OwnedCover : public Cover<d> {
 public:
     OwnedCover(const nb::capsule& equations, double scale, const Doubles& periods, const Table& bounds,
-               double agree, const DiskLimits& disks)
-        : Cover<d>(equations_in(equations), scale, numpy::view(periods), numpy::view(bounds), agree, disks),
+               double agree, double smooth, const DiskLimits& disks)
+        : Cover<d>(equations_in(equations), scale, numpy::view(periods), numpy::view(bounds), agree, smooth, disks),
           unknowns(equations_in(equations).unknowns()),
           equations_(equations) {}
 
@@ -386,11 +386,13 @@ void bind_cover(nb::module_& module, const char* name) {
         .def(
             "__init__",
             [](Own* place, const nb::capsule& equations, double scale, const Doubles& periods, const Table& bounds,
-               double agree, double largest, double smallest, double bend, double flat, double negligible) {
-                new (place) Own(equations, scale, periods, bounds, agree, {largest, smallest, bend, flat, negligible});
+               double agree, double smooth, double largest, double smallest, double bend, double flat,
+               double negligible) {
+                const DiskLimits disks{largest, smallest, bend, flat, negligible};
+                new (place) Own(equations, scale, periods, bounds, agree, smooth, disks);
             },
-            arg("equations"), arg("scale"), arg("periods"), arg("bounds"), arg("agree"), arg("largest"),
-            arg("smallest"), arg("bend"), arg("flat"), arg("negligible"))
+            arg("equations"), arg("scale"), arg("periods"), arg("bounds"), arg("agree"), arg("smooth"),
+            arg("largest"), arg("smallest"), arg("bend"), arg("flat"), arg("negligible"))
         .def("__len__", [](const Own& cover) { return cover.front().count(); })
         .def_prop_ro("undecided", &Own::undecided)
         .def("grow", &grow<d>, arg("charts"), arg("undecided"), arg("seconds"))

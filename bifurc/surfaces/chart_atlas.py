@@ -1,12 +1,12 @@
-"""A surface of solutions as an atlas of charts: area, Euler characteristic, connected
-parts, and the charts about a point."""
+"""A surface of solutions, or a component of more dimensions, as an atlas of charts: area,
+Euler characteristic, connected parts, and the charts about a point."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -58,30 +58,57 @@ class Covering(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Charts:
-    """A component of solutions of dimension d, or several, as charts that overlap.
+class ChartAtlas:
+    """A surface of solutions, or a component of dimension d, or several, as charts that
+    overlap.
 
     ``centers`` (c, n) are solutions, ``bases`` (c, n, d) orthonormal bases of the
-    tangent spaces there, ``radii`` (c,) those of the disks. Each disk holds a cell, cut
-    by those of other charts: ``neighbours`` (p, 2) are the pairs of charts whose cells
-    have a side in common.
+    tangent planes there, ``radii`` (c,) those of the disks. The polygon of a chart
+    lists the ``vertices`` (v, n) around it, solutions that it shares with its
+    neighbours; the ``polygons``, with ``polygon_sizes`` (c,) entries each, stand one
+    behind the other; their ``areas`` (c,) on the surface are known to within
+    ``area_errors`` (c,). ``neighbours`` (p, 2) are the pairs of charts whose polygons have
+    an edge in common. Where d is 3 or more, cells are polytopes, which are not kept and
+    not measured: there are no vertices, polygons are empty and areas not a number.
     """
 
     centers: np.ndarray
     bases: np.ndarray
     radii: np.ndarray
     neighbours: np.ndarray
+    vertices: np.ndarray
+    polygons: np.ndarray
+    polygon_sizes: np.ndarray
+    areas: np.ndarray
+    area_errors: np.ndarray
     periods: np.ndarray
     outcome: Covering
 
     def __len__(self) -> int:
         return len(self.centers)
 
+    def __repr__(self) -> str:
+        if not self.is_measured:
+            charts = count_of(len(self), "chart")
+            words = f"{charts} of dimension {self.dimension}"
+            return f"ChartAtlas({words}, {self.outcome.name})"
+        euler = self.euler_characteristic
+        return (
+            f"ChartAtlas({count_of(len(self), 'chart')}, {self.outcome.name},\n"
+            f"           area {self.area_words}, "
+            f"Euler characteristic {'unknown' if euler is None else euler})"
+        )
+
     @property
     def dimension(self) -> int:
         """That of the component."""
         dimension: int = self.bases.shape[-1]
         return dimension
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether there are areas: those of surfaces."""
+        return self.dimension == 2
 
     @property
     def complete(self) -> bool:
@@ -101,6 +128,71 @@ class Charts:
     def difference(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         """a - b (..., n) with periodic unknowns taken to within half a period of 0."""
         return torus.difference(a, b, self.periods)
+
+    # --- size and shape ---------------------------------------------------------------
+
+    @cached_property
+    def triangles(self) -> np.ndarray:
+        """Corners (t, 3, n) of flat triangles that follow the surface: from each centre
+        to the edges of its polygon.
+
+        The corners are solutions; those of one triangle lie together, across the ends
+        of a period where need be.
+        """
+        edges = self._edges
+        tip = self.centers[edges.chart]
+        begin = tip + self.difference(self.vertices[edges.begin], tip)
+        end = tip + self.difference(self.vertices[edges.end], tip)
+        return np.stack([tip, begin, end], axis=1)
+
+    @cached_property
+    def triangle_areas(self) -> np.ndarray:
+        """Area (t,) of every triangle."""
+        a = self.triangles[:, 1] - self.triangles[:, 0]
+        b = self.triangles[:, 2] - self.triangles[:, 0]
+        aa = np.einsum("ti,ti->t", a, a)
+        bb = np.einsum("ti,ti->t", b, b)
+        ab = np.einsum("ti,ti->t", a, b)
+        gram = aa * bb - ab**2
+        areas: np.ndarray = 0.5 * np.sqrt(np.maximum(gram, 0.0))
+        return areas
+
+    @cached_property
+    def area(self) -> float:
+        """Area of the charts, by quadrature over their polygons."""
+        return float(self.areas.sum())
+
+    @cached_property
+    def area_error(self) -> float:
+        """How far the area may be off, by the errors of all polygons."""
+        return float(self.area_errors.sum())
+
+    @property
+    def area_words(self) -> str:
+        """The area as text, with the digits that are sure; of an unfinished covering it
+        says that there is more. Empty where it is not measured."""
+        if not self.is_measured:
+            return ""
+        share = max(self.area_error / self.area, 10.0**-MOST_DIGITS)
+        digits = max(1, int(-np.log10(share)))
+        words = f"{self.area:.{digits}g}"
+        return words if self.complete else f"more than {words}"
+
+    @cached_property
+    def border(self) -> int:
+        """Number of edges that belong to one polygon alone: where surface meets bounds,
+        or the covering ends."""
+        return int(np.count_nonzero(self._polygons_at_edge == 1))
+
+    @cached_property
+    def euler_characteristic(self) -> int | None:
+        """Vertices - edges + polygons; None for an incomplete covering, or where
+        polygons do not fit together; and of what is no surface."""
+        if self.outcome is not Covering.COMPLETE or not self.is_measured:
+            return None
+        vertices = len(np.unique(self.polygons))
+        edges = len(self._polygons_at_edge)
+        return vertices - edges + int(np.count_nonzero(self.polygon_sizes))
 
     # --- connected parts --------------------------------------------------------------
 
@@ -133,7 +225,7 @@ class Charts:
             waiting += more
         return joined
 
-    def parts(self) -> tuple[Self, ...]:
+    def parts(self) -> tuple[ChartAtlas, ...]:
         """The connected surfaces, the one with most charts first."""
         count = int(self.part.max(initial=-1)) + 1
         parts = []
@@ -141,17 +233,25 @@ class Charts:
             parts.append(self._only(np.flatnonzero(self.part == k)))
         return tuple(parts)
 
-    def _only(self, charts: np.ndarray) -> Self:
-        """The charts of these numbers (k,) alone."""
+    def _only(self, charts: np.ndarray) -> ChartAtlas:
+        """The atlas of the charts of these numbers (k,) alone."""
         number = np.full(len(self), -1)
         number[charts] = np.arange(len(charts))
         is_inside = np.all(number[self.neighbours] >= 0, axis=1)
-        return replace(
-            self,
+        corners = self.polygons[np.repeat(number >= 0, self.polygon_sizes)]
+        vertices, renumbered = np.unique(corners, return_inverse=True)
+        return ChartAtlas(
             centers=self.centers[charts],
             bases=self.bases[charts],
             radii=self.radii[charts],
             neighbours=number[self.neighbours[is_inside]],
+            vertices=self.vertices[vertices],
+            polygons=renumbered,
+            polygon_sizes=self.polygon_sizes[charts],
+            areas=self.areas[charts],
+            area_errors=self.area_errors[charts],
+            periods=self.periods,
+            outcome=self.outcome,
         )
 
     # --- charts about a point ---------------------------------------------------------
@@ -215,7 +315,7 @@ class Charts:
         in_plane = np.einsum("kcij,kcj->kci", bases, y)
         height = np.linalg.norm(offset - in_plane, axis=2)
         is_inside = distance < RIM * self.radii[charts]
-        steepest = STEEPEST if self.dimension == 2 else STEEPEST_OF_OTHERS
+        steepest = STEEPEST if self.is_measured else STEEPEST_OF_OTHERS
         is_low = height < steepest * distance + ROUNDING
         holds: np.ndarray = is_inside & is_low
         return holds
@@ -231,108 +331,6 @@ class Charts:
     def _in_box(self, points: np.ndarray) -> np.ndarray:
         """Points with periodic unknowns taken into [0, period)."""
         return torus.into_box(points, self.periods)
-
-
-@dataclass(frozen=True, eq=False)
-class ChartAtlas(Charts):
-    """Charts of a surface, whose cells are polygons.
-
-    The polygon of a chart lists the ``vertices`` (v, n) around it, solutions that it
-    shares with its neighbours; the ``polygons``, with ``polygon_sizes`` (c,) entries
-    each, stand one behind the other; their ``areas`` (c,) on the surface are known to
-    within ``area_errors`` (c,).
-    """
-
-    vertices: np.ndarray
-    polygons: np.ndarray
-    polygon_sizes: np.ndarray
-    areas: np.ndarray
-    area_errors: np.ndarray
-
-    def __repr__(self) -> str:
-        euler = self.euler_characteristic
-        return (
-            f"ChartAtlas({count_of(len(self), 'chart')}, {self.outcome.name},\n"
-            f"           area {self.area_words}, "
-            f"Euler characteristic {'unknown' if euler is None else euler})"
-        )
-
-    # --- size and shape ---------------------------------------------------------------
-
-    @cached_property
-    def triangles(self) -> np.ndarray:
-        """Corners (t, 3, n) of flat triangles that follow the surface: from each centre
-        to the edges of its polygon.
-
-        The corners are solutions; those of one triangle lie together, across the ends
-        of a period where need be.
-        """
-        edges = self._edges
-        tip = self.centers[edges.chart]
-        begin = tip + self.difference(self.vertices[edges.begin], tip)
-        end = tip + self.difference(self.vertices[edges.end], tip)
-        return np.stack([tip, begin, end], axis=1)
-
-    @cached_property
-    def triangle_areas(self) -> np.ndarray:
-        """Area (t,) of every triangle."""
-        a = self.triangles[:, 1] - self.triangles[:, 0]
-        b = self.triangles[:, 2] - self.triangles[:, 0]
-        aa = np.einsum("ti,ti->t", a, a)
-        bb = np.einsum("ti,ti->t", b, b)
-        ab = np.einsum("ti,ti->t", a, b)
-        gram = aa * bb - ab**2
-        areas: np.ndarray = 0.5 * np.sqrt(np.maximum(gram, 0.0))
-        return areas
-
-    @cached_property
-    def area(self) -> float:
-        """Area of the charts, by quadrature over their polygons."""
-        return float(self.areas.sum())
-
-    @cached_property
-    def area_error(self) -> float:
-        """How far the area may be off, by the errors of all polygons."""
-        return float(self.area_errors.sum())
-
-    @property
-    def area_words(self) -> str:
-        """The area as text, with the digits that are sure; of an unfinished covering it
-        says that there is more."""
-        share = max(self.area_error / self.area, 10.0**-MOST_DIGITS)
-        digits = max(1, int(-np.log10(share)))
-        words = f"{self.area:.{digits}g}"
-        return words if self.complete else f"more than {words}"
-
-    @cached_property
-    def border(self) -> int:
-        """Number of edges that belong to one polygon alone: where surface meets bounds,
-        or the covering ends."""
-        return int(np.count_nonzero(self._polygons_at_edge == 1))
-
-    @cached_property
-    def euler_characteristic(self) -> int | None:
-        """Vertices - edges + polygons; None for an incomplete covering, or where
-        polygons do not fit together."""
-        if self.outcome is not Covering.COMPLETE:
-            return None
-        vertices = len(np.unique(self.polygons))
-        edges = len(self._polygons_at_edge)
-        return vertices - edges + int(np.count_nonzero(self.polygon_sizes))
-
-    def _only(self, charts: np.ndarray) -> Self:
-        is_own = np.zeros(len(self), dtype=bool)
-        is_own[charts] = True
-        corners = self.polygons[np.repeat(is_own, self.polygon_sizes)]
-        vertices, renumbered = np.unique(corners, return_inverse=True)
-        return replace(
-            super()._only(charts),
-            vertices=self.vertices[vertices],
-            polygons=renumbered,
-            polygon_sizes=self.polygon_sizes[charts],
-            areas=self.areas[charts],
-            area_errors=self.area_errors[charts],
-        )
 
     # --- the complex of polygons ------------------------------------------------------
 

@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc import _core
+from bifurc import _core, torus
 from bifurc.decisions import is_null
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
@@ -32,7 +32,7 @@ from bifurc.numerics.null_spaces import null_spaces
 from bifurc.problem import Problem
 from bifurc.surfaces.area import Sizes, cell_sizes
 from bifurc.surfaces.beside_bounds import disk_beside_bounds, turns_back
-from bifurc.surfaces.chart_atlas import ChartAtlas, Charts, Covering
+from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.complex import (
     Cells,
     fitted_cells,
@@ -117,10 +117,10 @@ def cover_component(
     seeds: np.ndarray,
     dimension: int,
     *,
-    radius: float = 0.7,
+    radius: float = 1.2,
     charts: int = 2000,
     seconds: float = np.inf,
-) -> Charts:
+) -> ChartAtlas:
     """Charts over the components of a ``dimension`` up to `MOST_DIMENSIONS` that the
     regular solutions ``seeds`` (k, n) lie on, as `cover_surface` makes them; they are
     not measured. Raises `ProblemError` as that does, and for other dimensions.
@@ -129,9 +129,11 @@ def cover_component(
     _check(problem, seeds, radius=radius, charts=charts, seconds=seconds)
     if dimension not in COVERS:
         raise ProblemError("dimension", dimension, f"2 to {MOST_DIMENSIONS}")
-    cover = _Cover(problem, radius * problem.domain.scale, dimension)
+    # no farther than periods tell on which side of a centre another one is
+    largest = min(radius * problem.domain.scale, problem.domain.periods.min() / 4)
+    cover = _Cover(problem, largest, dimension)
     outcome = cover.finish(seeds, charts, Deadline(seconds))
-    covering = cover.charts(outcome)
+    covering = cover.unmeasured(outcome)
     if covering.is_finished and has_uncovered_crossing(
         problem, covering, cover.fit.agree
     ):
@@ -292,6 +294,7 @@ class _Cover:
             domain.periods,
             np.ascontiguousarray(domain.bounds),
             agree=self.fit.agree,
+            smooth=self.fit.smooth,
             largest=self._largest,
             smallest=SMALLEST * self._largest,
             bend=self.fit.bend,
@@ -311,9 +314,9 @@ class _Cover:
         charts = without_empty_polygons(FlatCharts(*self._charts(), polygons))
         return charts, fitted_cells(self.problem, charts)
 
-    def charts(self, outcome: Covering) -> Charts:
+    def unmeasured(self, outcome: Covering) -> ChartAtlas:
         """The charts made so far, but for those of whose cells nothing is left, as the
-        ``outcome`` of covering a component of dimension 3 and more."""
+        ``outcome`` of covering components of dimension 3 and more."""
         assert not isinstance(self._front, _core.Cover)
         facets = [self._front.facets(i) for i in range(len(self._front))]
         sizes = [len(own) for own in facets]
@@ -324,11 +327,17 @@ class _Cover:
         number = np.cumsum(has_cell) - 1
         pairs = pairs[has_cell[pairs].all(axis=1)]
         charts = self._charts()
-        return Charts(
+        count = np.count_nonzero(has_cell)
+        return ChartAtlas(
             centers=charts.centers[has_cell],
             bases=charts.bases[has_cell],
             radii=charts.radii[has_cell],
             neighbours=np.unique(number[pairs], axis=0),
+            vertices=np.empty((0, self.problem.n)),
+            polygons=np.empty(0, dtype=int),
+            polygon_sizes=np.zeros(count, dtype=int),
+            areas=np.full(count, np.nan),
+            area_errors=np.full(count, np.nan),
             periods=self.problem.domain.periods,
             outcome=outcome,
         )
@@ -373,10 +382,21 @@ class _Cover:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Numbers (p,) of solutions (k, n), and of charts (p,) in whose disks they lie or
         little above them, with the positions (p, d) there."""
-        offset = self.problem.domain.difference(points[:, None], charts.centers)
-        distance = np.linalg.norm(offset, axis=2)
-        point, chart = np.nonzero(distance < RIM * charts.radii)
-        offset = offset[point, chart]
+        from scipy.spatial import cKDTree
+
+        domain = self.problem.domain
+        tree = cKDTree(
+            torus.into_box(charts.centers, domain.periods),
+            boxsize=torus.tree_box(domain.periods),
+        )
+        in_box = torus.into_box(points, domain.periods)
+        farthest = RIM * charts.radii.max(initial=0.0)
+        near = tree.query_ball_point(in_box, farthest, return_sorted=True)
+        point = np.repeat(np.arange(len(points)), [len(own) for own in near])
+        chart = np.concatenate([np.empty(0, dtype=int), *near]).astype(int)
+        offset = domain.difference(points[point], charts.centers[chart])
+        is_near = np.linalg.norm(offset, axis=1) < RIM * charts.radii[chart]
+        point, chart, offset = point[is_near], chart[is_near], offset[is_near]
         y = np.einsum("ki,kij->kj", offset, charts.bases[chart])
         in_plane = np.einsum("kij,kj->ki", charts.bases[chart], y)
         height = np.linalg.norm(offset - in_plane, axis=1)

@@ -17,7 +17,7 @@ from bifurc.numerics.null_spaces import cosines_between_planes
 from bifurc.numerics.singular_values import factors_of
 from bifurc.problem import Problem
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
-from bifurc.surfaces.chart_atlas import Charts
+from bifurc.surfaces.chart_atlas import ChartAtlas
 
 # Determinant of the turn between two spaces above which its sign counts.
 CLEAR = 0.3
@@ -36,7 +36,7 @@ NEXT, NEXT_TO_ERROR = (0.02, 1e-3, 5e-5), 100
 OTHER, OTHER_TO_ERROR = 0.2, 10
 
 
-def has_uncovered_crossing(problem: Problem, charts: Charts, agree: float) -> bool:
+def has_uncovered_crossing(problem: Problem, charts: ChartAtlas, agree: float) -> bool:
     """Whether a sheet crosses the covered surface, and no chart lies on it.
 
     Charts whose tangent planes turn by a cosine below ``agree`` lie on different
@@ -91,7 +91,7 @@ class SignChange(NamedTuple):
     place: np.ndarray
 
 
-def sign_changes(problem: Problem, charts: Charts) -> list[SignChange]:
+def sign_changes(problem: Problem, charts: ChartAtlas) -> list[SignChange]:
     """All neighbours between which F' changes its orientation.
 
     With F' = L S R^T of rank n - d at two charts, the determinant of F' at the second
@@ -121,7 +121,7 @@ def sign_changes(problem: Problem, charts: Charts) -> list[SignChange]:
     return crossings
 
 
-def _is_covered(charts: Charts, crossing: SignChange, agree: float) -> bool:
+def _is_covered(charts: ChartAtlas, crossing: SignChange, agree: float) -> bool:
     """Whether a chart on another sheet lies about a crossing: it is turned, or no
     neighbours lead to it from those between which the crossing is."""
     gaps = charts.difference(crossing.place, charts.centers)

@@ -11,15 +11,18 @@ import numpy as np
 class Fit(NamedTuple):
     """How closely charts follow a component: the largest height of it above a disk,
     over the radius, ``bend``, and the smallest cosines between tangent planes of a disk
-    and above its rim, ``flat``, and of charts that may be neighbours, ``agree``."""
+    and above its rim, ``flat``, of a chart and the next one on its sheet, ``smooth``, and
+    of charts that may be neighbours, ``agree``."""
 
     bend: float
     flat: float
+    smooth: float
     agree: float
 
 
 # Those of surfaces are measured; of other components there are to be few.
-OF_SURFACES, OF_OTHERS = Fit(0.16, 0.92, 0.8), Fit(0.25, 0.85, 0.7)
+OF_SURFACES = Fit(bend=0.16, flat=0.92, smooth=0.85, agree=0.8)
+OF_OTHERS = Fit(bend=0.25, flat=0.85, smooth=0.75, agree=0.7)
 
 
 class TangentPlane(NamedTuple):

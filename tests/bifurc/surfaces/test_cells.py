@@ -22,6 +22,7 @@ def cover_with_a_chart(dimension, radius, cuts=()):
         problem.domain.periods,
         problem.domain.bounds,
         agree=0.8,
+        smooth=0.8,
         largest=radius,
         smallest=0.1 * radius,
         bend=0.2,
