@@ -20,6 +20,9 @@ constexpr double same = 1e-7;      // distance, over the scale, below which the 
 constexpr double on_disk = 1e-9;   // share of the radius by which a vertex is outside the disk only by rounding
 constexpr double towards = 0.97;   // cosine between directions that lead to the same place
 constexpr double higher = 3.0;     // height of an overlapping chart's centre, over the distance and that of a surface
+// Height of a centre above another disk, over that of a parabola with the bend of the disks, and over the distance beside
+// that, which is on their sheet for sure where no other is near.
+constexpr double bent = 2.0, slant = 0.02;
 constexpr double hole = 1e-3;      // share of the radius by which a vertex outside the disk shows a hole at the end
 constexpr double roomy = 2.0;      // distance from bounds, over the radius, from which on they do not matter
 }  // namespace cover
@@ -209,7 +212,8 @@ private:
                                   std::vector<Overlap<d>> others) {
         std::vector<Index> open;
         for (std::size_t i = 0; i < others.size(); ++i) {
-            if (!(disk.is_clear && front_.is_clear(others[i].number))) open.push_back(static_cast<Index>(i));
+            const bool are_clear = disk.is_clear && front_.is_clear(others[i].number);
+            if (!are_clear || is_too_high(others[i], disk)) open.push_back(static_cast<Index>(i));
         }
         if (open.empty()) return others;
         const auto count = static_cast<Index>(open.size());
@@ -245,6 +249,15 @@ private:
             if (!is_elsewhere[i]) same.push_back(others[i]);
         }
         return same;
+    }
+
+    // Whether the centre of a chart is higher above a disk than the bend of both makes it: it may be on a sheet that is
+    // farther away than others are looked for.
+    bool is_too_high(const Overlap<d>& other, const FittingDisk& disk) const {
+        const double there = heights_[other.number] / front_.radius(other.number);
+        const double here = disk.radius > 0.0 ? disk.height / disk.radius : 0.0;
+        const double square = squared_length(other.position);
+        return other.height > cover::bent * std::max(here, there) * square + cover::slant * std::sqrt(square);
     }
 
     Index n_;

@@ -28,9 +28,10 @@ ON_CURVES = (
 UNEXAMINED = "its singular points, and where forms meet it, are not looked for"
 # of a component of dimension 3 and more
 UNFOLLOWED = (
-    "singular points of it are looked for at charts where F' is weakest, and what they "
-    "form is not followed"
+    "its singular points are looked for next to charts; what they form is not followed"
 )
+# of what lies beyond charts that ran out
+BEYOND = "no walk led from it to charts: it may be a part of what they cover"
 # the same where curves of singular points were reached by chance
 UNEXAMINED_ELSE = "others, and where forms meet it, are not looked for"
 
@@ -292,6 +293,8 @@ class Components:
         """What those of the samples (k, n) show that are left, on nothing that is known:
         a surface for each part in which they are joined, unless there are many."""
         note = self._note_of(dimension, -1)
+        if dimension in self.charts:
+            note = "; ".join(filter(None, [note, BEYOND]))
         unknown = np.full(len(samples), -1)
         parts = self.joined.get(dimension, unknown)[is_left]
         samples = samples[is_left]

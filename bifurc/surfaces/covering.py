@@ -43,7 +43,7 @@ from bifurc.surfaces.crossing_sheets import has_uncovered_crossing
 from bifurc.surfaces.disk import OF_OTHERS, OF_SURFACES, Disk, TangentPlane
 from bifurc.surfaces.other_sheets import solutions_across
 from bifurc.surfaces.polygon import BORDER, FlatCharts, Polygon
-from bifurc.surfaces.sheet import follow_sheets
+from bifurc.surfaces.sheet import SOLVED, follow_sheets
 from bifurc.surfaces.singular_places import SingularPlaces
 
 # Largest height above a disk at which a solution lies in it, over the distance in its
@@ -426,6 +426,19 @@ class _Cover:
             outcome = self.spread(seeds, charts, deadline)
         while outcome is Covering.COMPLETE and self.has_charts_to_look_from:
             outcome = self.spread(self.look_across(), charts, deadline)
+        if outcome is Covering.COMPLETE:
+            outcome = self.judge()
+        if outcome is Covering.UNFIT:
+            outcome = self.fill_holes(charts, deadline)
+        return outcome
+
+    def fill_holes(self, charts: int, deadline: Deadline) -> Covering:
+        """Cover what is next to places to which no chart led, from there: a chart that is
+        made for itself need not agree with the one that leads to it."""
+        ends, gaps = self.problem.project(self._front.holes())
+        for end in ends[gaps < SOLVED]:
+            self._start(end)
+        outcome = self.grow(charts, deadline)
         return self.judge() if outcome is Covering.COMPLETE else outcome
 
     def spread(self, seeds: np.ndarray, charts: int, deadline: Deadline) -> Covering:
