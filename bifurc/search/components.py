@@ -9,6 +9,7 @@ no higher rank are equations of which the curve is a regular solution
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
@@ -53,13 +54,18 @@ WHOLE = (Outcome.CLOSED, Outcome.LEFT_REGION)
 
 # Share of the time that is left in which charts are made; they are measured in the rest.
 GROWING = 0.35
+GROWING_OTHERS = (
+    0.6  # the same, of components of more dimensions, which are not measured
+)
 RECOGNISING = 0.2  # the same, to find products
 JOINING = 0.1  # and to see which samples are joined
 RADIUS = 0.7  # of the largest charts of surfaces, over the problem's scale
 # Singular value, over the median on the surface, below which a singular point is looked
 # for.
 SMALL = 0.2
-MOST_POINTS = 200  # singular points of surfaces that are located
+# Singular points of surfaces that are located, and places at which those of components of
+# more dimensions are looked for.
+MOST_POINTS, MOST_LOOKS = 200, 24
 # Those among them that are samples of curves of singular points, which have no end.
 MOST_SAMPLES = 24
 NULLITY = 3  # of F' at a singular point of a surface
@@ -69,7 +75,7 @@ MOST_WIDER = 2
 # Charts over components of five dimensions, over those that surfaces may have, and
 # the factor from five dimensions to four, and to three. They are not measured, which takes
 # most of the time of a surface, and the more dimensions, the longer a cell takes to cut.
-OF_FIVE, FEWER = 1, 2
+OF_FIVE, FEWER = 1, 2.5
 # Distance from a chart's centre at which its singular point is looked for: over the
 # chart's radius, which counts as no smaller than a share of the problem's scale.
 REACH = 4.0
@@ -240,7 +246,7 @@ def _take_charts(
     components.charts[dimension] = covering
     chart = covering.chart_at(samples)
     # also beside charts that are complete: where surfaces cross they leave slivers
-    beside = chart < 0
+    beside = (chart < 0) & (dimension == 2 or covering.is_finished)
     if dimension > 2:
         beside &= ~components.are_on_products(dimension)
     chart[beside] = reached_charts(regular, covering, samples[beside], deadline)
@@ -271,7 +277,8 @@ def _covered(
         cover_surface,
     )
 
-    seconds = GROWING * deadline.left
+    share = GROWING if dimension == 2 else GROWING_OTHERS
+    seconds = share * deadline.left
     if not seconds or dimension > MOST_DIMENSIONS:
         return None
     are_on_products = components.are_on_products(dimension)
@@ -290,7 +297,7 @@ def _covered(
     seeds = samples[is_regular & ~are_on_products]
     if not len(seeds) or problem.domain.is_large:
         return None
-    most = charts * OF_FIVE * FEWER ** (MOST_DIMENSIONS - dimension)
+    most = math.ceil(charts * OF_FIVE * FEWER ** (MOST_DIMENSIONS - dimension))
     return cover_component(problem, seeds, dimension, charts=most, seconds=seconds)
 
 
@@ -438,8 +445,8 @@ def singular_points_of(
     They are looked for at the charts where the smallest regular singular value is
     smaller than at all neighbours, the clearest first, and then between charts among
     which it passes through zero; at most `MOST_POINTS`, and `MOST_SAMPLES` of those
-    that form curves. At how many places none was looked for becomes a note on the
-    component.
+    that form curves; of more dimensions than two, at `MOST_LOOKS` charts. At how many
+    places none was looked for becomes a note on the component.
     """
     for dimension, charts in components.charts.items():
         is_double = dimension == 2 and components.deflated is not None
@@ -449,7 +456,9 @@ def singular_points_of(
         points: list[SurfacePoint] = []
         looked_at = samples = 0
         for chart in candidates:
-            if deadline.passed or len(points) >= MOST_POINTS:
+            is_enough = len(points) >= MOST_POINTS
+            is_enough |= dimension > 2 and looked_at >= MOST_LOOKS
+            if deadline.passed or is_enough:
                 break
             looked_at += 1
             place, radius = charts.centers[chart], float(charts.radii[chart])

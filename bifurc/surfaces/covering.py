@@ -65,6 +65,9 @@ SMALLER, MENDING = 0.7, 6
 ROUNDS, UNFINISHED = 3, (Covering.CHART_LIMIT, Covering.OUT_OF_TIME)
 # Distance, over the scale, below which the end of a ray is a solution that is known.
 SAME = 1e-7
+# Work for a chart beside other sheets, to which all those about it have to be told apart,
+# over that for another one, in more than two dimensions.
+UNCLEAR = 4
 # Pairs of charts of which it is not known whether they are on one sheet, at most.
 MOST_UNDECIDED = 20
 
@@ -123,7 +126,8 @@ def cover_component(
 ) -> ChartAtlas:
     """Charts over the components of a ``dimension`` up to `MOST_DIMENSIONS` that the
     regular solutions ``seeds`` (k, n) lie on, as `cover_surface` makes them; they are
-    not measured. Raises `ProblemError` as that does, and for other dimensions.
+    not measured. ``charts`` is for those that are far from other sheets; any other one
+    counts as `UNCLEAR` of them. Raises `ProblemError` as that does, and for other dimensions.
     """
     seeds = np.asarray(seeds, dtype=float)
     _check(problem, seeds, radius=radius, charts=charts, seconds=seconds)
@@ -426,11 +430,12 @@ class _Cover:
             outcome = self.spread(seeds, charts, deadline)
         while outcome is Covering.COMPLETE and self.has_charts_to_look_from:
             outcome = self.spread(self.look_across(), charts, deadline)
-        if outcome is Covering.COMPLETE:
-            outcome = self.judge()
-        if outcome is Covering.UNFIT:
-            outcome = self.fill_holes(charts, deadline)
-        return outcome
+        if outcome is not Covering.COMPLETE:
+            return outcome
+        outcome = self.judge()
+        return (
+            self.fill_holes(charts, deadline) if outcome is Covering.UNFIT else outcome
+        )
 
     def fill_holes(self, charts: int, deadline: Deadline) -> Covering:
         """Cover what is next to places to which no chart led, from there: a chart that is
@@ -480,9 +485,14 @@ class _Cover:
     def grow(self, charts: int, deadline: Deadline) -> Covering:
         """Add charts at open vertices until there are none, or until a limit is
         reached."""
+        most = self._most_charts(charts)
         while True:
             undecided = MOST_UNDECIDED - self._undecided
-            growth, doubt = self._front.grow(charts, undecided, deadline.left)
+            growth, doubt = self._front.grow(most, undecided, deadline.left)
+            if growth is _core.Growth.CHART_LIMIT:
+                before, most = most, self._most_charts(charts)
+                if most > before:
+                    continue
             if doubt is None:
                 return Covering[growth.name]
             candidate, chart, direction = doubt
@@ -490,6 +500,15 @@ class _Cover:
             if placement is not Placement.FITS:
                 is_unfit = placement is Placement.UNFIT
                 self._front.refuse(chart, direction, is_unfit)
+
+    def _most_charts(self, charts: int) -> int:
+        """How many there may be for now, with work for so many: of no surface, the fewer
+        the more of those made are beside other sheets."""
+        if self.dimension == 2:
+            return charts
+        are_clear = self._charts().are_clear
+        work = len(are_clear) + (UNCLEAR - 1) * np.count_nonzero(~are_clear)
+        return len(are_clear) + max(charts - int(work), 0) // UNCLEAR
 
     def judge(self) -> Covering:
         """What is known when no more charts are wanted: places at which none fits may

@@ -111,7 +111,7 @@ def test_charts_close_around_the_periods_of_angles() -> None:
 def test_a_covering_ends_with_its_charts_and_with_its_time() -> None:
     problem = problem_of(sphere, 4)
     few = cover_component(problem, starts(problem), 3, charts=50)
-    assert few.outcome is Covering.CHART_LIMIT and len(few) == 50
+    assert few.outcome is Covering.CHART_LIMIT and 40 < len(few) <= 50
     none = cover_component(problem, starts(problem), 3, seconds=1e-9)
     assert none.outcome is Covering.OUT_OF_TIME
     with pytest.raises(ProblemError, match="dimension"):
