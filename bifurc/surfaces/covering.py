@@ -17,7 +17,7 @@ both charts are cut along the same line up to fourth order.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -25,6 +25,7 @@ import numpy as np
 
 from bifurc import _core, torus
 from bifurc.decisions import is_null
+from bifurc.domain import Domain
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.corrector import compiled_equations
@@ -323,25 +324,19 @@ class _Cover:
         ``outcome`` of covering components of dimension 3 and more."""
         assert not isinstance(self._front, _core.Cover)
         facets = [self._front.facets(i) for i in range(len(self._front))]
-        sizes = [len(own) for own in facets]
-        own = np.repeat(np.arange(len(facets)), sizes)
-        other = np.concatenate([np.empty(0, dtype=int), *facets])
-        pairs = np.sort(np.stack([own, other], axis=1)[other >= 0], axis=1)
-        has_cell = np.array(sizes, dtype=int) > 0
-        number = np.cumsum(has_cell) - 1
-        pairs = pairs[has_cell[pairs].all(axis=1)]
+        has_cell = np.array([len(own) > 0 for own in facets], dtype=bool)
         charts = self._charts()
-        count = np.count_nonzero(has_cell)
+        unknown = np.full(np.count_nonzero(has_cell), np.nan)
         return ChartAtlas(
             centers=charts.centers[has_cell],
             bases=charts.bases[has_cell],
             radii=charts.radii[has_cell],
-            neighbours=np.unique(number[pairs], axis=0),
+            neighbours=_neighbours_by(facets, has_cell),
             vertices=np.empty((0, self.problem.n)),
             polygons=np.empty(0, dtype=int),
-            polygon_sizes=np.zeros(count, dtype=int),
-            areas=np.full(count, np.nan),
-            area_errors=np.full(count, np.nan),
+            polygon_sizes=np.zeros(len(unknown), dtype=int),
+            areas=unknown,
+            area_errors=unknown,
             periods=self.problem.domain.periods,
             outcome=outcome,
         )
@@ -386,18 +381,9 @@ class _Cover:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Numbers (p,) of solutions (k, n), and of charts (p,) in whose disks they lie or
         little above them, with the positions (p, d) there."""
-        from scipy.spatial import cKDTree
-
         domain = self.problem.domain
-        tree = cKDTree(
-            torus.into_box(charts.centers, domain.periods),
-            boxsize=torus.tree_box(domain.periods),
-        )
-        in_box = torus.into_box(points, domain.periods)
         farthest = RIM * charts.radii.max(initial=0.0)
-        near = tree.query_ball_point(in_box, farthest, return_sorted=True)
-        point = np.repeat(np.arange(len(points)), [len(own) for own in near])
-        chart = np.concatenate([np.empty(0, dtype=int), *near]).astype(int)
+        point, chart = _pairs_within(domain, points, charts.centers, farthest)
         offset = domain.difference(points[point], charts.centers[chart])
         is_near = np.linalg.norm(offset, axis=1) < RIM * charts.radii[chart]
         point, chart, offset = point[is_near], chart[is_near], offset[is_near]
@@ -593,3 +579,30 @@ class _Cover:
                 ):
                     cuts.append(_Cut(normal, room, BORDER - 2 * int(k) - side))
         return cuts
+
+
+def _pairs_within(
+    domain: Domain, points: np.ndarray, centers: np.ndarray, reach: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Numbers (p,) of points (k, n), and of centers (c, n) that are within ``reach``."""
+    from scipy.spatial import cKDTree
+
+    box = torus.tree_box(domain.periods)
+    tree = cKDTree(torus.into_box(centers, domain.periods), boxsize=box)
+    in_box = torus.into_box(points, domain.periods)
+    near = tree.query_ball_point(in_box, reach, return_sorted=True)
+    point = np.repeat(np.arange(len(points)), [len(own) for own in near])
+    chart = np.concatenate([np.empty(0, dtype=int), *near]).astype(int)
+    return point, chart
+
+
+def _neighbours_by(facets: Sequence[np.ndarray], has_cell: np.ndarray) -> np.ndarray:
+    """Pairs (p, 2) of charts, those alone numbered that have a cell (c,), by the labels
+    of the ``facets`` of their cells."""
+    own = np.repeat(np.arange(len(facets)), [len(labels) for labels in facets])
+    other = np.concatenate([np.empty(0, dtype=int), *facets])
+    pairs = np.sort(np.stack([own, other], axis=1)[other >= 0], axis=1)
+    pairs = pairs[has_cell[pairs].all(axis=1)]
+    number = np.cumsum(has_cell) - 1
+    neighbours: np.ndarray = np.unique(number[pairs], axis=0)
+    return neighbours
