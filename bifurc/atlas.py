@@ -113,7 +113,7 @@ class Event:
 @dataclass(frozen=True, eq=False)
 class Surface:
     """A component of ``dimension`` 2 or more: solutions (k, n) seen on it, and
-    ``charts`` that cover it.
+    ``charts`` that cover it, which are made up to dimension 5.
 
     Without charts or factors it may be several components of that dimension: whether
     they are connected is not known, but for what walks between samples show. Where the

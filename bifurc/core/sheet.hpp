@@ -511,10 +511,12 @@ constexpr double aside = 0.2, contraction = 0.15, back = 0.3;
 constexpr double steady = 0.7, negligible = 1e-12;
 }  // namespace disk
 
-// Unit vectors (2 d^2, d) to places on the rim of a disk of d dimensions at which a surface is looked at: both ways along
-// the axes and halfway between each two of them. They show its bend in all directions.
+// Unit vectors (r, d) to places on the rim of a disk of d dimensions at which a surface is looked at: both ways along the
+// axes, halfway between each two of them, and halfway between all of them where they are more. They show its bend in all
+// directions.
 inline Matrix<double> rim_of(Index d) {
-    Matrix<double> rim(2 * d * d, d);
+    const Index corners = d > 2 ? Index{1} << d : 0;
+    Matrix<double> rim(2 * d * d + corners, d);
     Index row = 0;
     for (Index one = 0; one < d; ++one) {
         for (Index other = one + 1; other < d; ++other) {
@@ -527,6 +529,9 @@ inline Matrix<double> rim_of(Index d) {
                 ++row;
             }
         }
+    }
+    for (Index corner = 0; corner < corners; ++corner, ++row) {
+        for (Index j = 0; j < d; ++j) rim(row, j) = ((corner >> j) & 1 ? 1.0 : -1.0) / std::sqrt(static_cast<double>(d));
     }
     return rim;
 }
