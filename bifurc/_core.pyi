@@ -300,14 +300,7 @@ def follow_rays(
     positions: np.ndarray,
     shares: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
-def clip(
-    vertices: np.ndarray,
-    labels: np.ndarray,
-    normal: np.ndarray,
-    offset: float,
-    label: int,
-) -> tuple[np.ndarray, np.ndarray]: ...
-def octagon(radius: float) -> tuple[np.ndarray, np.ndarray]: ...
+def rim_of(dimension: int) -> np.ndarray: ...
 
 class Placement(Enum):
     """What becomes of a place at which a chart is wanted."""
@@ -332,8 +325,8 @@ _Candidate = tuple[
     Placement, np.ndarray, np.ndarray, np.ndarray, float, float, bool, float
 ]
 
-class Cover:
-    """The charts of a surface that is being covered: `bifurc.surfaces.covering`."""
+class _Cover:
+    """The charts of a component that is being covered: `bifurc.surfaces.covering`."""
 
     def __init__(
         self,
@@ -342,6 +335,7 @@ class Cover:
         periods: np.ndarray,
         bounds: np.ndarray,
         agree: float,
+        smooth: float,
         largest: float,
         smallest: float,
         bend: float,
@@ -372,7 +366,8 @@ class Cover:
         radius: float,
         is_clear: bool,
         height: float,
-        vertices: np.ndarray,
+        normals: np.ndarray,
+        offsets: np.ndarray,
         labels: np.ndarray,
     ) -> None: ...
     def refuse(self, chart: int, direction: np.ndarray, is_unfit: bool) -> None: ...
@@ -380,4 +375,12 @@ class Cover:
     def charts(
         self, first: int, count: int
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]: ...
+
+class Cover(_Cover):
     def polygon(self, chart: int) -> tuple[np.ndarray, np.ndarray]: ...
+
+class Cover3(_Cover):
+    def facets(self, chart: int) -> np.ndarray: ...
+
+class Cover4(Cover3): ...
+class Cover5(Cover3): ...

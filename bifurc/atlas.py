@@ -113,7 +113,7 @@ class Event:
 @dataclass(frozen=True, eq=False)
 class Surface:
     """A component of ``dimension`` 2 or more: solutions (k, n) seen on it, and
-    ``charts`` that cover it.
+    ``charts`` that cover it, which are made up to dimension 5.
 
     Without charts or factors it may be several components of that dimension: whether
     they are connected is not known, but for what walks between samples show. Where the
@@ -151,21 +151,19 @@ class Surface:
 
 
 def samples_beyond_charts(surfaces: Sequence[Surface]) -> int:
-    """How many of the solutions seen on surfaces of dimension 2 that are no products lie
-    in no chart."""
-    of_dimension = [
-        surface
-        for surface in surfaces
-        if surface.dimension == 2 and not surface.factors
-    ]
-    charted = [one.charts for one in of_dimension if one.charts is not None]
-    if not of_dimension:
-        return 0
-    open_samples = np.concatenate([surface.samples for surface in of_dimension])
-    for charts in charted:
-        if len(open_samples):
-            open_samples = open_samples[~charts.covers(open_samples)]
-    return len(open_samples)
+    """How many of the solutions seen on components that are no products lie in no chart
+    of their dimension, where charts are made."""
+    others = [surface for surface in surfaces if not surface.factors]
+    count = 0
+    for dimension in {one.dimension for one in others if one.charts is not None}:
+        of_dimension = [one for one in others if one.dimension == dimension]
+        open_samples = np.concatenate([surface.samples for surface in of_dimension])
+        for surface in of_dimension:
+            if surface.charts is not None and len(open_samples):
+                covered = surface.charts.covers(open_samples)
+                open_samples = open_samples[~covered]
+        count += len(open_samples)
+    return count
 
 
 @dataclass(frozen=True, eq=False)
@@ -451,7 +449,8 @@ def _covering(surface: Surface) -> str:
         return count_of(len(surface.samples), "sample")
     extent = "complete" if surface.complete else "incomplete"
     charts = count_of(len(surface.charts), "chart")
-    return f"{charts}, area {surface.charts.area_words}, {extent}"
+    area = surface.charts.area_words
+    return ", ".join([charts, *([f"area {area}"] if area else []), extent])
 
 
 # --- what a notebook shows ------------------------------------------------------------

@@ -13,19 +13,26 @@ from linkages import _core as linkages_core
 
 
 def names_in(stub):
-    """The names that a stub states, those of a class after a dot."""
+    """The names that a stub states, those of a class after a dot. A class has what its
+    bases have, of which those with an underscore stand in the stub alone."""
     found = set()
+    members = {}
     for node in ast.parse(stub.read_text()).body:
-        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+        if isinstance(node, ast.FunctionDef):
             found.add(node.name)
         if isinstance(node, ast.ClassDef):
-            found |= {
-                f"{node.name}.{inner.name}"
+            own = {
+                inner.name
                 for inner in node.body
                 if isinstance(inner, ast.FunctionDef) and inner.name[:2] != "__"
             }
-            members = (inner for inner in node.body if isinstance(inner, ast.Assign))
-            found |= {f"{node.name}.{inner.targets[0].id}" for inner in members}
+            values = (inner for inner in node.body if isinstance(inner, ast.Assign))
+            own |= {inner.targets[0].id for inner in values}
+            bases = (base.id for base in node.bases if isinstance(base, ast.Name))
+            members[node.name] = own.union(*(members.get(base, ()) for base in bases))
+    for name, own in members.items():
+        if name[0] != "_":
+            found |= {name, *(f"{name}.{inner}" for inner in own)}
     return found
 
 

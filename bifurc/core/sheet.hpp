@@ -1,4 +1,4 @@
-// The sheet of a surface above a tangent plane: followed from the centre outwards, and never by distance.
+// The sheet of a surface, or of a component of more dimensions d, above a tangent plane: followed from the centre outwards, and never by distance.
 // Why an arc is one curve, and what a disk has to be, stands in `bifurc.surfaces.sheet`.
 #pragma once
 
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bifurc/core/corrections.hpp"
+#include "bifurc/core/gram.hpp"
 #include "bifurc/core/least_norm.hpp"
 #include "bifurc/core/singular_values.hpp"
 
@@ -42,13 +43,13 @@ class Slopes {
 public:
     explicit Slopes(const Equations& equations) : equations_(equations), n_(equations.unknowns()), values_(n_) {}
 
-    // Calls ``take(k, slopes)`` with the derivatives (n, 2) of the sheet by the position in the plane (n, 2)
+    // Calls ``take(k, slopes)`` with the derivatives (n, d) of the sheet by the position in the plane (n, d)
     // that ``plane`` gives, for each of the points (k, n). Where the plane does not say what they are, they are
     // the smallest ones; entries up to ``negligible`` of the largest say nothing.
     template <class PlaneOf, class Take>
     void at(View<const double> points, PlaneOf plane, double negligible, Take take) {
         const Index at_once = equations_.at_once();
-        Matrix<double> slopes(n_, 2);
+        Matrix<double> slopes(n_, points.rows > 0 ? plane(Index{0}).columns : 0);
         for (Index begin = 0; begin < points.rows; begin += at_once) {
             const Index count = std::min(at_once, points.rows - begin);
             equations_.fill({points.row(begin).data(), count, n_}, true, values_);
@@ -62,11 +63,11 @@ public:
     // [F'; T^T] S = [0; I]
     void solve(View<const double> jacobian, View<const double> plane, double negligible, View<double> slopes) {
         if (solve_regular(jacobian, plane, slopes)) return;
-        const Index m = jacobian.rows;
-        solver_.reserve(m + 2, n_, 2);
+        const Index m = jacobian.rows, d = plane.columns;
+        solver_.reserve(m + d, n_, d);
         const View<double> matrix = solver_.matrix();
         std::copy(jacobian.data, jacobian.data + m * n_, matrix.data);
-        for (Index side = 0; side < 2; ++side) {
+        for (Index side = 0; side < d; ++side) {
             for (Index j = 0; j < n_; ++j) matrix(m + side, j) = plane(j, side);
             solver_.sides()(m + side, side) = 1.0;
         }
@@ -76,16 +77,16 @@ public:
 private:
     // The same without pivots, where that is seen to be enough.
     bool solve_regular(View<const double> jacobian, View<const double> plane, View<double> slopes) {
-        const Index m = jacobian.rows;
-        if (m + 2 < n_) return false;
-        if (!regular_ || regular_->matrix().rows != m + 2) {
-            regular_.emplace(m + 2, n_);
-            right_.resize(m + 2);
+        const Index m = jacobian.rows, d = plane.columns;
+        if (m + d < n_) return false;
+        if (!regular_ || regular_->matrix().rows != m + d) {
+            regular_.emplace(m + d, n_);
+            right_.resize(m + d);
             solution_.resize(n_);
         }
         const View<double> matrix = regular_->matrix();
         std::copy(jacobian.data, jacobian.data + m * n_, matrix.data);
-        for (Index side = 0; side < 2; ++side) {
+        for (Index side = 0; side < d; ++side) {
             for (Index j = 0; j < n_; ++j) matrix(m + side, j) = plane(j, side);
         }
         regular_->factor();
@@ -95,7 +96,7 @@ private:
             most = std::max(most, std::abs(matrix(j, j)));
         }
         if (!(least > sheet::full_rank * most)) return false;
-        for (Index side = 0; side < 2; ++side) {
+        for (Index side = 0; side < d; ++side) {
             std::fill(right_.begin(), right_.end(), 0.0);
             right_[m + side] = 1.0;
             regular_->solve(right_, solution_);
@@ -112,7 +113,7 @@ private:
     std::vector<double> right_, solution_;
 };
 
-// The tangent plane (n, 2) at a solution, its smallest cosine with the plane that it was to be next to, and the
+// The tangent plane (n, d) at a solution, its smallest cosine with the plane that it was to be next to, and the
 // unit vector (n) across the surface along which F' is the weakest, zero where no equation is left.
 struct TangentPlane {
     Matrix<double> basis;
@@ -126,45 +127,29 @@ public:
     explicit TangentPlanes(const Equations& equations)
         : equations_(equations), n_(equations.unknowns()), values_(n_), slopes_(equations) {}
 
-    // That at a solution, turned as little as possible against the plane ``near`` (n, 2); where the null space
+    // That at a solution, turned as little as possible against the plane ``near`` (n, d); where the null space
     // is larger, the part of it that is nearest to that. Entries up to ``negligible`` of the largest say nothing.
     TangentPlane at(Vector<const double> center, View<const double> near, double negligible) {
         equations_.fill({center.data(), 1, n_}, true, values_);
         const View<const double> jacobian = values_.jacobian(0);
-        TangentPlane out{Matrix<double>(n_, 2), 0.0, std::vector<double>(n_)};
+        TangentPlane out{Matrix<double>(n_, near.columns), 0.0, std::vector<double>(n_)};
         slopes_.solve(jacobian, near, negligible, out.basis);
-        const double steepest = straighten(out.basis);
+        const Gram gram(out.basis);
+        const double steepest = gram.largest();
+        gram.straighten(out.basis);
         // where the plane is upright on the other one, no slopes say so
         // beside a rim of F it is not finite
         const bool is_plane = std::isfinite(steepest) && steepest > 0.0;
         out.cosine = is_plane && change_along(jacobian, out.basis) <= negligible ? 1.0 / steepest : 0.0;
-        if (n_ > 2) find_weakest(jacobian, out);
+        if (n_ > near.columns) find_weakest(jacobian, out);
         return out;
     }
 
 private:
-    // Makes the columns of slopes S orthonormal, S (S^T S)^-1/2; gives back the largest singular value.
-    static double straighten(View<double> slopes) {
-        double aa = 0.0, ab = 0.0, bb = 0.0;
-        for (Index j = 0; j < slopes.rows; ++j) {
-            aa += slopes(j, 0) * slopes(j, 0);
-            ab += slopes(j, 0) * slopes(j, 1);
-            bb += slopes(j, 1) * slopes(j, 1);
-        }
-        const double root = std::sqrt(std::max(aa * bb - ab * ab, sheet::tiny));
-        const double trace = std::sqrt(aa + bb + 2.0 * root), factor = 1.0 / (trace * root);
-        for (Index j = 0; j < slopes.rows; ++j) {
-            const double one = slopes(j, 0), other = slopes(j, 1);
-            slopes(j, 0) = factor * ((bb + root) * one - ab * other);
-            slopes(j, 1) = factor * ((aa + root) * other - ab * one);
-        }
-        return std::sqrt(0.5 * (aa + bb) + std::hypot(0.5 * (aa - bb), ab));
-    }
-
     // |F' plane|, of the column where it is larger.
     static double change_along(View<const double> jacobian, View<const double> plane) {
         double largest = 0.0;
-        for (Index side = 0; side < 2; ++side) {
+        for (Index side = 0; side < plane.columns; ++side) {
             double square = 0.0;
             for (Index row = 0; row < jacobian.rows; ++row) {
                 double change = 0.0;
@@ -177,7 +162,7 @@ private:
     }
 
     void find_weakest(View<const double> jacobian, TangentPlane& out) const {
-        const Index across = n_ - 2, count = std::min(jacobian.rows, n_);
+        const Index across = n_ - out.basis.columns(), count = std::min(jacobian.rows, n_);
         SingularValues decomposition(jacobian.rows, n_);
         Matrix<double> values(1, count);
         decomposition.of(jacobian, values);
@@ -195,7 +180,7 @@ private:
             out.normal[axis] = 1.0;
             for (int time = 0; time < 2; ++time) {
                 for (Index i = 0; i < rank; ++i) leave(regular.row(i), out.normal);
-                for (Index side = 0; side < 2; ++side) {
+                for (Index side = 0; side < out.basis.columns(); ++side) {
                     std::vector<double> column(n_);
                     for (Index j = 0; j < n_; ++j) column[j] = out.basis(j, side);
                     leave(column, out.normal);
@@ -218,8 +203,8 @@ private:
     Slopes slopes_;
 };
 
-// Rays of a surface: from the solutions ``centers`` (k, n) in tangent ``planes`` (k * n, 2) to ``positions`` (k,
-// 2), and places at ``shares`` (s) of their lengths.
+// Rays of a surface: from the solutions ``centers`` (k, n) in tangent ``planes`` (k * n, d) to ``positions`` (k,
+// d), and places at ``shares`` (s) of their lengths.
 struct RayBundle {
     View<const double> centers, planes, positions;
     Vector<const double> shares;
@@ -310,7 +295,7 @@ private:
             before_.t[ray] = -1.0;
             const View<const double> basis = plane(ray);
             for (Index j = 0; j < n_; ++j) {
-                const double way = basis(j, 0) * bundle_.positions(ray, 0) + basis(j, 1) * bundle_.positions(ray, 1);
+                const double way = along(basis, j, bundle_.positions.row(ray));
                 const double center = bundle_.centers(ray, j);
                 straight_[ray * n_ + j] = way;
                 at_.points(ray, j) = center;
@@ -348,7 +333,7 @@ private:
 
     void take_slopes(Index i, View<const double> slopes) {
         const Vector<const double> position = bundle_.positions.row(rays_[i]);
-        for (Index j = 0; j < n_; ++j) end_.slopes(i, j) = slopes(j, 0) * position[0] + slopes(j, 1) * position[1];
+        for (Index j = 0; j < n_; ++j) end_.slopes(i, j) = along(slopes, j, position);
         const bool is_flat = length(position) >= sheet::steep * length(end_.slopes.row(i));
         is_taken_[i] = is_flat && is_solved(corrections_[i]);
     }
@@ -362,13 +347,19 @@ private:
         on_cubic(before_, ray, at_, ray, t, point);
         // rounding grows as cubics are prolonged: the place in the plane is known
         const View<const double> basis = plane(ray);
-        double aside[2] = {0.0, 0.0};
+        std::array<double, Gram::most> aside{};
         for (Index j = 0; j < n_; ++j) {
             const double off = bundle_.centers(ray, j) + t * straight_[ray * n_ + j] - point[j];
-            aside[0] += basis(j, 0) * off;
-            aside[1] += basis(j, 1) * off;
+            for (Index side = 0; side < basis.columns; ++side) aside[side] += basis(j, side) * off;
         }
-        for (Index j = 0; j < n_; ++j) point[j] += basis(j, 0) * aside[0] + basis(j, 1) * aside[1];
+        for (Index j = 0; j < n_; ++j) point[j] += along(basis, j, aside);
+    }
+
+    // Entry j of the vector that a position in a plane is.
+    static double along(View<const double> plane, Index j, Vector<const double> position) {
+        double way = 0.0;
+        for (Index side = 0; side < plane.columns; ++side) way += plane(j, side) * position[side];
+        return way;
     }
 
     void on_cubic(const Nodes& begin, Index one, const Nodes& end, Index other, double t, Vector<double> point) const {
@@ -510,7 +501,6 @@ struct FittingDisk {
 };
 
 namespace disk {
-constexpr Index rim = 8;  // places on the rim of a disk at which the surface is looked at
 // How far from the centre, over the radius, other sheets are looked for. Where none is near, the second step of
 // Newton's method from there, over the first, and the distance of where it ends from the centre, over that of
 // where it begins, are smaller than these. With a factor for every two steps the first is 1/4 where the other sheet is
@@ -521,28 +511,50 @@ constexpr double aside = 0.2, contraction = 0.15, back = 0.3;
 constexpr double steady = 0.7, negligible = 1e-12;
 }  // namespace disk
 
-// Disks about solutions. Not for two threads at once.
+// Unit vectors (r, d) to places on the rim of a disk of d dimensions at which a surface is looked at: both ways along the
+// axes, halfway between each two of them, and halfway between all of them where they are more. They show its bend in all
+// directions.
+inline Matrix<double> rim_of(Index d) {
+    const Index corners = d > 2 ? Index{1} << d : 0;
+    Matrix<double> rim(2 * d * d + corners, d);
+    Index row = 0;
+    for (Index one = 0; one < d; ++one) {
+        for (Index other = one + 1; other < d; ++other) {
+            for (int eighth = 0; eighth < 8; ++eighth) {
+                // axes come with the first pair that has them
+                if (eighth % 2 == 0 && (one > 0 || (eighth % 4 == 0 && other > 1))) continue;
+                const double angle = std::numbers::pi / 4.0 * static_cast<double>(eighth);
+                rim(row, one) = std::cos(angle);
+                rim(row, other) = std::sin(angle);
+                ++row;
+            }
+        }
+    }
+    for (Index corner = 0; corner < corners; ++corner, ++row) {
+        for (Index j = 0; j < d; ++j) rim(row, j) = ((corner >> j) & 1 ? 1.0 : -1.0) / std::sqrt(static_cast<double>(d));
+    }
+    return rim;
+}
+
+// Disks about solutions, of ``dimension`` d. Not for two threads at once.
 class DiskFitter {
 public:
-    DiskFitter(const Equations& equations, double scale)
+    DiskFitter(const Equations& equations, double scale, Index dimension)
         : equations_(equations),
           n_(equations.unknowns()),
+          d_(dimension),
+          rim_(rim_of(d_)),
+          count_(rim_.rows()),
           corrector_(equations, scale),
           follower_(equations, scale),
           slopes_(equations),
           values_(n_),
-          flat_(disk::rim + 2, n_),
-          points_(disk::rim + 2, n_),
+          flat_(count_ + 2, n_),
+          points_(count_ + 2, n_),
           factor_(n_, n_),
-          at_rim_(n_, 2) {
-        for (Index i = 0; i < disk::rim; ++i) {
-            const double angle = std::numbers::pi / 4.0 * static_cast<double>(i);
-            rim_(i, 0) = std::cos(angle);
-            rim_(i, 1) = std::sin(angle);
-        }
-    }
+          at_rim_(n_, d_) {}
 
-    // The largest disk in the plane ``basis`` (n, 2) at a solution to which the surface stays close and where
+    // The largest disk in the plane ``basis`` (n, d) at a solution to which the surface stays close and where
     // tangent planes agree; another sheet may be near along the unit vector ``normal``, which may be zero.
     std::optional<FittingDisk> fit(Vector<const double> center, View<const double> basis, Vector<const double> normal,
                                    const DiskLimits& limits) {
@@ -567,27 +579,27 @@ public:
 private:
     static constexpr double infinite = std::numeric_limits<double>::infinity();
 
-    View<const double> rim_points() const { return {points_.view().data, disk::rim, n_}; }
+    View<const double> rim_points() const { return {points_.view().data, count_, n_}; }
 
     // Finds solutions straight above the rim, and whether Newton's method comes to them, and back to the centre from
     // beside it, at once, as it does where no other sheet is near.
     bool look_straight_above(double radius) {
         double offset = 0.0;
         for (Index j = 0; j < n_; ++j) {
-            for (Index i = 0; i < disk::rim; ++i) {
-                flat_(i, j) = center_[j] + radius * (rim_(i, 0) * basis_(j, 0) + rim_(i, 1) * basis_(j, 1));
+            for (Index i = 0; i < count_; ++i) {
+                flat_(i, j) = center_[j] + radius * dot(rim_.row(i), basis_.row(j));
             }
             const double step = disk::aside * radius * normal_[j];
-            flat_(disk::rim, j) = center_[j] + step;
-            flat_(disk::rim + 1, j) = center_[j] - step;
+            flat_(count_, j) = center_[j] + step;
+            flat_(count_ + 1, j) = center_[j] - step;
             offset += step * step;
         }
         std::copy_n(flat_.view().data, flat_.rows() * n_, points_.view().data);
         corrector_.correct(points_, [&](Index) { return basis_; }, corrections_);
         for (Index i = 0; i < flat_.rows(); ++i) {
             if (!(corrections_[i].contraction() < disk::contraction)) return false;
-            if (i < disk::rim && !(corrections_[i].gap < sheet::solved)) return false;
-            if (i >= disk::rim && !(distance_from_center(i) <= disk::back * std::sqrt(offset))) return false;
+            if (i < count_ && !(corrections_[i].gap < sheet::solved)) return false;
+            if (i >= count_ && !(distance_from_center(i) <= disk::back * std::sqrt(offset))) return false;
         }
         return true;
     }
@@ -607,21 +619,21 @@ private:
         Matrix<double> at_center(m, n_);
         across(values_.jacobian(0), at_center);
         equations_.fill(rim_points(), true, values_);
-        solver_.reserve(m + 2, n_, disk::rim * n_);
+        solver_.reserve(m + d_, n_, count_ * n_);
         std::copy_n(at_center.view().data, m * n_, solver_.matrix().data);
         for (Index j = 0; j < n_; ++j) {
-            for (Index side = 0; side < 2; ++side) solver_.matrix()(m + side, j) = basis_(j, side);
+            for (Index side = 0; side < d_; ++side) solver_.matrix()(m + side, j) = basis_(j, side);
         }
         Matrix<double> there(m, n_);
-        for (Index i = 0; i < disk::rim; ++i) {
+        for (Index i = 0; i < count_; ++i) {
             across(values_.jacobian(i), there);
             for (Index row = 0; row < m; ++row) {
                 for (Index j = 0; j < n_; ++j) solver_.sides()(row, i * n_ + j) = there(row, j) - at_center(row, j);
             }
         }
-        Matrix<double> changes(n_, disk::rim * n_);
+        Matrix<double> changes(n_, count_ * n_);
         solver_.solve(disk::negligible, changes);
-        for (Index i = 0; i < disk::rim; ++i) {
+        for (Index i = 0; i < count_; ++i) {
             if (!is_positive(changes, i * n_)) return false;
         }
         return true;
@@ -630,13 +642,12 @@ private:
     // F' without its part in the plane.
     void across(View<const double> jacobian, View<double> out) const {
         for (Index row = 0; row < jacobian.rows; ++row) {
-            double along[2] = {0.0, 0.0};
+            std::array<double, Gram::most> along{};
             for (Index j = 0; j < n_; ++j) {
-                along[0] += jacobian(row, j) * basis_(j, 0);
-                along[1] += jacobian(row, j) * basis_(j, 1);
+                for (Index side = 0; side < d_; ++side) along[side] += jacobian(row, j) * basis_(j, side);
             }
             for (Index j = 0; j < n_; ++j) {
-                out(row, j) = jacobian(row, j) - along[0] * basis_(j, 0) - along[1] * basis_(j, 1);
+                out(row, j) = jacobian(row, j) - dot({along.data(), static_cast<std::size_t>(d_)}, basis_.row(j));
             }
         }
     }
@@ -663,7 +674,7 @@ private:
     // How far the solutions are from the plane, the farthest.
     double highest() const {
         double largest = 0.0;
-        for (Index i = 0; i < disk::rim; ++i) {
+        for (Index i = 0; i < count_; ++i) {
             double square = 0.0;
             for (Index j = 0; j < n_; ++j) square += (points_(i, j) - flat_(i, j)) * (points_(i, j) - flat_(i, j));
             if (!(square <= largest)) largest = square;  // not a number is more than any
@@ -673,14 +684,14 @@ private:
 
     // Follows the sheet from the centre to the rim; whether all of it is reached.
     bool follow_to_rim(double radius) {
-        Matrix<double> centers(disk::rim, n_), planes(disk::rim * n_, 2), positions(disk::rim, 2);
-        for (Index i = 0; i < disk::rim; ++i) {
+        Matrix<double> centers(count_, n_), planes(count_ * n_, d_), positions(count_, d_);
+        for (Index i = 0; i < count_; ++i) {
             std::copy(center_.begin(), center_.end(), centers.row(i).begin());
-            std::copy_n(basis_.data, 2 * n_, planes.row(i * n_).data());
-            for (Index side = 0; side < 2; ++side) positions(i, side) = radius * rim_(i, side);
+            std::copy_n(basis_.data, d_ * n_, planes.row(i * n_).data());
+            for (Index side = 0; side < d_; ++side) positions(i, side) = radius * rim_(i, side);
         }
-        std::array<double, disk::rim> reached;
-        const View<double> ends{points_.view().data, disk::rim, n_};
+        std::vector<double> reached(count_);
+        const View<double> ends{points_.view().data, count_, n_};
         follower_.follow({centers, planes, positions, {}}, {ends, reached, {nullptr, 0, n_}, {}}, [] {});
         return std::all_of(reached.begin(), reached.end(), [](double t) { return t >= 1.0; });
     }
@@ -688,33 +699,25 @@ private:
     // The columns of the slopes have 1 over the cosines between the planes as singular values.
     bool planes_agree(const DiskLimits& limits, bool has_values) {
         if (!has_values) equations_.fill(rim_points(), true, values_);
-        for (Index i = 0; i < disk::rim; ++i) {
+        for (Index i = 0; i < count_; ++i) {
             slopes_.solve(values_.jacobian(i), basis_, limits.negligible, at_rim_);
-            if (!(smallest_cosine(at_rim_) > limits.agree)) return false;
+            const double steepest = Gram(at_rim_).largest();
+            // there are no slopes where F' is not finite
+            if (!(steepest > 0.0 && steepest * limits.agree < 1.0)) return false;
         }
         return true;
     }
 
-    double smallest_cosine(View<const double> slopes) const {
-        double aa = 0.0, ab = 0.0, bb = 0.0;
-        for (Index j = 0; j < n_; ++j) {
-            aa += slopes(j, 0) * slopes(j, 0);
-            ab += slopes(j, 0) * slopes(j, 1);
-            bb += slopes(j, 1) * slopes(j, 1);
-        }
-        const double largest = std::sqrt(0.5 * (aa + bb) + std::hypot(0.5 * (aa - bb), ab));
-        return largest > 0.0 ? 1.0 / largest : 0.0;  // no slopes where F' is not finite
-    }
-
     const Equations& equations_;
-    Index n_;
+    Index n_, d_;
+    Matrix<double> rim_;
+    Index count_;  // of places on the rim
     NormalCorrector corrector_;
     RayFollower follower_;
     Slopes slopes_;
     Values values_;
     LeastNorm solver_;
     Matrix<double> flat_, points_, factor_, at_rim_;
-    SmallMatrix<double, disk::rim, 2> rim_{};
     std::vector<Correction> corrections_;
     Vector<const double> center_, normal_;
     View<const double> basis_{};

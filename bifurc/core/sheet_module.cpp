@@ -8,6 +8,7 @@
 #include "bifurc/core/deadline.hpp"
 #include "bifurc/core/equations_bindings.hpp"
 #include "bifurc/core/cover.hpp"
+#include "bifurc/core/gram.hpp"
 #include "bifurc/core/rank_deflation.hpp"
 #include "bifurc/core/sheet.hpp"
 #include "bifurc/core/tape.hpp"
@@ -141,7 +142,9 @@ void check_spaces(const numpy::CubeIn<double>& planes, std::size_t count, Index 
 
 void check_planes(const numpy::CubeIn<double>& planes, std::size_t count, Index unknowns) {
     check_spaces(planes, count, unknowns);
-    if (planes.shape(2) != 2) throw nb::value_error("planes must have two columns each");
+    if (planes.shape(2) < 1 || static_cast<Index>(planes.shape(2)) > Gram::most) {
+        throw nb::value_error("planes must have one to eight columns each");
+    }
 }
 
 // Calls ``work(begin, some)`` for some of ``count`` points after the others; Ctrl-C gets through in between.
@@ -180,19 +183,20 @@ nb::tuple normal_corrections(const nb::capsule& equations, double scale, const T
     return nb::make_tuple(at.release(), gaps.release(), is_settled.release());
 }
 
-// (k, n, 2): `Slopes`.
+// (k, n, d): `Slopes`.
 nb::object slopes_above(const nb::capsule& equations, const Table& points, const numpy::CubeIn<double>& planes) {
     const Equations& own = equations_in(equations);
     const Index n = own.unknowns();
     check_unknowns("points", points.shape(1), n);
     check_planes(planes, points.shape(0), n);
-    numpy::Array<double> out({static_cast<Index>(points.shape(0)), n, 2});
+    const auto d = static_cast<Index>(planes.shape(2));
+    numpy::Array<double> out({static_cast<Index>(points.shape(0)), n, d});
     const View<const double> bases = numpy::rows(planes);
     Slopes slopes(own);
     in_parts(static_cast<Index>(points.shape(0)), own, [&](Index begin, Index some) {
         slopes.at({points.data() + begin * n, some, n}, [&](Index i) { return plane_of(bases, begin + i, n); },
                   sheet::any_rank, [&](Index i, View<const double> derivatives) {
-                      std::copy_n(derivatives.data, 2 * n, out.entry(begin + i).data);
+                      std::copy_n(derivatives.data, d * n, out.entry(begin + i).data);
                   });
     });
     return out.release();
@@ -207,7 +211,7 @@ nb::tuple follow_rays(const nb::capsule& equations, double scale, const Table& c
     check_unknowns("centers", centers.shape(1), n);
     check_planes(planes, centers.shape(0), n);
     check_rows("positions", positions.shape(0), centers.shape(0));
-    check_unknowns("positions", positions.shape(1), 2);
+    check_unknowns("positions", positions.shape(1), static_cast<Index>(planes.shape(2)));
     numpy::Array<double> ends({count, n}), reached({count}), passed({count, s, n});
     numpy::Array<bool> are_there({count, s});
     Deadline deadline(std::numeric_limits<double>::infinity(), raise_signals);
@@ -220,17 +224,6 @@ nb::tuple follow_rays(const nb::capsule& equations, double scale, const Table& c
 // --- the front of a covering ---------------------------------------------------------------------------------
 
 using Labels = numpy::VectorIn<std::int64_t>;
-
-ConvexPolygon polygon_of(const Table& vertices, const Labels& labels) {
-    check_unknowns("vertices", vertices.shape(1), 2);
-    check_rows("labels", labels.shape(0), vertices.shape(0));
-    ConvexPolygon polygon;
-    for (std::size_t i = 0; i < labels.shape(0); ++i) {
-        polygon.vertices.push_back({vertices.data()[2 * i], vertices.data()[2 * i + 1]});
-        polygon.labels.push_back(labels.data()[i]);
-    }
-    return polygon;
-}
 
 // (vertices (v, 2), labels (v))
 nb::tuple arrays_of(const ConvexPolygon& polygon) {
@@ -245,21 +238,13 @@ nb::tuple arrays_of(const ConvexPolygon& polygon) {
     return nb::make_tuple(vertices.release(), labels.release());
 }
 
-nb::tuple clip(const Table& vertices, const Labels& labels, const Doubles& normal, double offset, Index label) {
-    check_unknowns("normal", normal.shape(0), 2);
-    ConvexPolygon polygon = polygon_of(vertices, labels);
-    polygon.clip({normal.data()[0], normal.data()[1]}, offset, label);
-    return arrays_of(polygon);
-}
-
-nb::tuple octagon(double radius) { return arrays_of(ConvexPolygon::octagon(radius)); }
-
 // A cover with the equations that it refers to.
-class OwnedCover : public Cover {
+template <Index d>
+class OwnedCover : public Cover<d> {
 public:
     OwnedCover(const nb::capsule& equations, double scale, const Doubles& periods, const Table& bounds,
-               double agree, const DiskLimits& disks)
-        : Cover(equations_in(equations), scale, numpy::view(periods), numpy::view(bounds), agree, disks),
+               double agree, double smooth, const DiskLimits& disks)
+        : Cover<d>(equations_in(equations), scale, numpy::view(periods), numpy::view(bounds), agree, smooth, disks),
           unknowns(equations_in(equations).unknowns()),
           equations_(equations) {}
 
@@ -269,42 +254,52 @@ private:
     nb::capsule equations_;
 };
 
-void check_plane(const OwnedCover& cover, const Doubles& center, const Table& basis) {
+template <Index d>
+void check_plane(const OwnedCover<d>& cover, const Doubles& center, const Table& basis) {
     check_unknowns("center", center.shape(0), cover.unknowns);
     check_unknowns("basis", basis.shape(0), cover.unknowns);
-    check_unknowns("basis", basis.shape(1), 2);
+    check_unknowns("basis", basis.shape(1), d);
 }
 
-Lead lead_of(const OwnedCover& cover, Index chart, const Doubles& direction) {
+template <Index d>
+void check_chart(const OwnedCover<d>& cover, Index chart) {
     if (chart < 0 || chart >= cover.front().count()) throw nb::index_error("no such chart");
-    check_unknowns("direction", direction.shape(0), 2);
-    return {chart, {direction.data()[0], direction.data()[1]}};
 }
 
-// (placement, center (n), basis (n, 2), normal (n), largest, radius, is clear, height): `Candidate`.
+template <Index d>
+std::array<double, d> position_in(const double* entries) {
+    std::array<double, d> out;
+    std::copy_n(entries, d, out.begin());
+    return out;
+}
+
+// (placement, center (n), basis (n, d), normal (n), largest, radius, is clear, height): `Candidate`.
 nb::tuple tuple_of(const Candidate& candidate) {
     const auto n = static_cast<Index>(candidate.center.size());
-    numpy::Array<double> center({n}), basis({n, 2}), normal({n});
+    const Index d = candidate.plane.basis.columns();
+    numpy::Array<double> center({n}), basis({n, d}), normal({n});
     center.fill(candidate.center);
-    basis.fill({candidate.plane.basis.view().data, static_cast<std::size_t>(2 * n)});
+    basis.fill({candidate.plane.basis.view().data, static_cast<std::size_t>(d * n)});
     normal.fill(candidate.plane.normal);
     const FittingDisk& disk = candidate.disk;
     return nb::make_tuple(candidate.placement, center.release(), basis.release(), normal.release(), candidate.largest,
                           disk.radius, disk.is_clear, disk.height);
 }
 
-// (growth, None or (candidate, chart, direction (2))): `Cover::Stop`.
-nb::tuple grow(OwnedCover& cover, Index charts, Index undecided, double seconds) {
+// (growth, None or (candidate, chart, direction (d))): `Cover::Stop`.
+template <Index d>
+nb::tuple grow(OwnedCover<d>& cover, Index charts, Index undecided, double seconds) {
     Deadline deadline(seconds, raise_signals);
-    const Cover::Stop stop = cover.grow(charts, undecided, deadline);
+    const typename Cover<d>::Stop stop = cover.grow(charts, undecided, deadline);
     if (!stop.candidate) return nb::make_tuple(stop.growth, nb::none());
-    numpy::Array<double> direction({2});
+    numpy::Array<double> direction({d});
     direction.fill(stop.lead.direction);
     return nb::make_tuple(stop.growth, nb::make_tuple(tuple_of(*stop.candidate), stop.lead.chart, direction.release()));
 }
 
 // (radius, is clear, height) between two radii, or None.
-nb::object disk_of(OwnedCover& cover, const Doubles& center, const Table& basis, const Doubles& normal, double largest,
+template <Index d>
+nb::object disk_of(OwnedCover<d>& cover, const Doubles& center, const Table& basis, const Doubles& normal, double largest,
                    double smallest) {
     check_plane(cover, center, basis);
     check_unknowns("normal", normal.shape(0), cover.unknowns);
@@ -313,45 +308,102 @@ nb::object disk_of(OwnedCover& cover, const Doubles& center, const Table& basis,
     return nb::make_tuple(disk->radius, disk->is_clear, disk->height);
 }
 
-nb::tuple candidate(OwnedCover& cover, const Doubles& center, const Table& near, double radius) {
+template <Index d>
+nb::tuple candidate(OwnedCover<d>& cover, const Doubles& center, const Table& near, double radius) {
     check_plane(cover, center, near);
     return tuple_of(cover.candidate(numpy::view(center), numpy::view(near), radius));
 }
 
-void add_chart(OwnedCover& cover, const Doubles& center, const Table& basis, double radius, bool is_clear,
-               double height, const Table& vertices, const Labels& labels) {
+// The cell of the chart is the part of the one about its ball where normals (c, d) . y <= offsets (c).
+template <Index d>
+void add_chart(OwnedCover<d>& cover, const Doubles& center, const Table& basis, double radius, bool is_clear,
+               double height, const Table& normals, const Doubles& offsets, const Labels& labels) {
     check_plane(cover, center, basis);
-    cover.add(numpy::view(center), numpy::view(basis), {radius, height, is_clear}, polygon_of(vertices, labels));
+    check_unknowns("normals", normals.shape(1), d);
+    check_rows("offsets", offsets.shape(0), normals.shape(0));
+    check_rows("labels", labels.shape(0), normals.shape(0));
+    auto cell = Cover<d>::Cell::around(radius);
+    for (std::size_t i = 0; i < labels.shape(0); ++i) {
+        cell.clip(position_in<d>(normals.data() + d * i), offsets.data()[i], labels.data()[i]);
+    }
+    cover.add(numpy::view(center), numpy::view(basis), {radius, height, is_clear}, std::move(cell));
+}
+
+template <Index d>
+void refuse(OwnedCover<d>& cover, Index chart, const Doubles& direction, bool is_unfit) {
+    check_chart(cover, chart);
+    check_unknowns("direction", direction.shape(0), d);
+    cover.refuse({chart, position_in<d>(direction.data())}, is_unfit);
 }
 
 // (k, n): `Cover::holes`.
-nb::object holes(const OwnedCover& cover) {
+template <Index d>
+nb::object holes(const OwnedCover<d>& cover) {
     const std::vector<double> points = cover.holes();
     numpy::Array<double> out({static_cast<Index>(points.size()) / cover.unknowns, cover.unknowns});
     out.fill(points);
     return out.release();
 }
 
-// (centers (c, n), bases (c, n, 2), radii (c), are clear (c)) of ``count`` charts from number ``first`` on.
-nb::tuple charts(const OwnedCover& cover, Index first, Index count) {
-    const Front& front = cover.front();
+// (centers (c, n), bases (c, n, d), radii (c), are clear (c)) of ``count`` charts from number ``first`` on.
+template <Index d>
+nb::tuple charts(const OwnedCover<d>& cover, Index first, Index count) {
+    const Front<d>& front = cover.front();
     if (first < 0 || count < 0 || first + count > front.count()) throw nb::index_error("no such chart");
     const Index n = front.unknowns();
-    numpy::Array<double> centers({count, n}), bases({count, n, 2}), radii({count});
+    numpy::Array<double> centers({count, n}), bases({count, n, d}), radii({count});
     numpy::Array<bool> are_clear({count});
     for (Index i = 0; i < count; ++i) {
         const Vector<const double> center = front.center(first + i);
         std::copy(center.begin(), center.end(), centers.matrix().row(i).begin());
-        std::copy_n(front.basis(first + i).data, 2 * n, bases.entry(i).data);
+        std::copy_n(front.basis(first + i).data, d * n, bases.entry(i).data);
         radii.data()[i] = front.radius(first + i);
         are_clear.data()[i] = front.is_clear(first + i);
     }
     return nb::make_tuple(centers.release(), bases.release(), radii.release(), are_clear.release());
 }
 
-nb::tuple polygon_at(const OwnedCover& cover, Index chart) {
-    if (chart < 0 || chart >= cover.front().count()) throw nb::index_error("no such chart");
-    return arrays_of(cover.front().polygon(chart));
+// (vertices (v, 2), labels (v)) of the polygon of a chart; the labels (f) of the facets of a polytope.
+template <Index d>
+nb::object cell_at(const OwnedCover<d>& cover, Index chart) {
+    check_chart(cover, chart);
+    const auto& cell = cover.front().polygon(chart);
+    if constexpr (d == 2) {
+        return arrays_of(cell);
+    } else {
+        const std::vector<Index> own = cell.labels_of_facets();
+        numpy::Array<std::int64_t> labels({static_cast<Index>(own.size())});
+        std::copy(own.begin(), own.end(), labels.data());
+        return labels.release();
+    }
+}
+
+template <Index d>
+void bind_cover(nb::module_& module, const char* name) {
+    using nb::arg;
+    using Own = OwnedCover<d>;
+    nb::class_<Own>(module, name, "The charts of a component that is being covered.")
+        .def(
+            "__init__",
+            [](Own* place, const nb::capsule& equations, double scale, const Doubles& periods, const Table& bounds,
+               double agree, double smooth, double largest, double smallest, double bend, double flat,
+               double negligible) {
+                const DiskLimits disks{largest, smallest, bend, flat, negligible};
+                new (place) Own(equations, scale, periods, bounds, agree, smooth, disks);
+            },
+            arg("equations"), arg("scale"), arg("periods"), arg("bounds"), arg("agree"), arg("smooth"),
+            arg("largest"), arg("smallest"), arg("bend"), arg("flat"), arg("negligible"))
+        .def("__len__", [](const Own& cover) { return cover.front().count(); })
+        .def_prop_ro("undecided", &Own::undecided)
+        .def("grow", &grow<d>, arg("charts"), arg("undecided"), arg("seconds"))
+        .def("candidate", &candidate<d>, arg("center"), arg("near"), arg("radius"))
+        .def("disk", &disk_of<d>, arg("center"), arg("basis"), arg("normal"), arg("largest"), arg("smallest"))
+        .def("add", &add_chart<d>, arg("center"), arg("basis"), arg("radius"), arg("is_clear"), arg("height"),
+             arg("normals"), arg("offsets"), arg("labels"))
+        .def("refuse", &refuse<d>, arg("chart"), arg("direction"), arg("is_unfit"))
+        .def("holes", &holes<d>)
+        .def("charts", &charts<d>, arg("first"), arg("count"))
+        .def(d == 2 ? "polygon" : "facets", &cell_at<d>, arg("chart"));
 }
 
 }  // namespace
@@ -366,10 +418,14 @@ void bind_sheets(nb::module_& module) {
     module.def("tape_equations", &tape_equations, arg("tape"), arg("magnitude"));
     module.def("normal_corrections", &normal_corrections, arg("equations"), arg("scale"), arg("points"), arg("planes"));
     module.def("slopes_above", &slopes_above, arg("equations"), arg("points"), arg("planes"));
+    module.def("rim_of", [](Index dimension) {
+        const Matrix<double> rim = rim_of(dimension);
+        numpy::Array<double> out({rim.rows(), dimension});
+        out.fill({rim.view().data, static_cast<std::size_t>(rim.rows() * dimension)});
+        return out.release();
+    }, arg("dimension"));
     module.def("follow_rays", &follow_rays, arg("equations"), arg("scale"), arg("centers"), arg("planes"),
                arg("positions"), arg("shares"));
-    module.def("clip", &clip, arg("vertices"), arg("labels"), arg("normal"), arg("offset"), arg("label"));
-    module.def("octagon", &octagon, arg("radius"));
     nb::enum_<Placement>(module, "Placement")
         .value("FITS", Placement::fits)
         .value("COVERED", Placement::covered)
@@ -382,33 +438,10 @@ void bind_sheets(nb::module_& module) {
         .value("UNDECIDED", Growth::undecided)
         .value("CHART_LIMIT", Growth::chart_limit)
         .value("DOUBT", Growth::doubt);
-    nb::class_<OwnedCover>(module, "Cover", "The charts of a surface that is being covered.")
-        .def(
-            "__init__",
-            [](OwnedCover* place, const nb::capsule& equations, double scale, const Doubles& periods,
-               const Table& bounds, double agree, double largest, double smallest, double bend, double flat,
-               double negligible) {
-                new (place) OwnedCover(equations, scale, periods, bounds, agree,
-                                       {largest, smallest, bend, flat, negligible});
-            },
-            arg("equations"), arg("scale"), arg("periods"), arg("bounds"), arg("agree"), arg("largest"),
-            arg("smallest"), arg("bend"), arg("flat"), arg("negligible"))
-        .def("__len__", [](const OwnedCover& cover) { return cover.front().count(); })
-        .def_prop_ro("undecided", &OwnedCover::undecided)
-        .def("grow", &grow, arg("charts"), arg("undecided"), arg("seconds"))
-        .def("candidate", &candidate, arg("center"), arg("near"), arg("radius"))
-        .def("disk", &disk_of, arg("center"), arg("basis"), arg("normal"), arg("largest"), arg("smallest"))
-        .def("add", &add_chart, arg("center"), arg("basis"), arg("radius"), arg("is_clear"), arg("height"),
-             arg("vertices"), arg("labels"))
-        .def(
-            "refuse",
-            [](OwnedCover& cover, Index chart, const Doubles& direction, bool is_unfit) {
-                cover.refuse(lead_of(cover, chart, direction), is_unfit);
-            },
-            arg("chart"), arg("direction"), arg("is_unfit"))
-        .def("holes", &holes)
-        .def("charts", &charts, arg("first"), arg("count"))
-        .def("polygon", &polygon_at, arg("chart"));
+    bind_cover<2>(module, "Cover");
+    bind_cover<3>(module, "Cover3");
+    bind_cover<4>(module, "Cover4");
+    bind_cover<5>(module, "Cover5");
 }
 
 }  // namespace bifurc::python

@@ -186,7 +186,8 @@ def atlas_frame(atlas: Atlas) -> Frame:
     return Frame(
         joint=JOINT if angles else "unknown",
         unit=atlas.units[0] if shared else "1",
-        sizes=_sizes(len(atlas.names)) | {"power": max(orders, default=0) + 1},
+        sizes=_sizes(len(atlas.names))
+        | {"power": max(orders, default=0) + 1, "axis": _most_axes(atlas.surfaces)},
     )
 
 
@@ -195,13 +196,19 @@ def dataset_frame(dataset: xr.Dataset) -> Frame:
     joint = str(dataset.attrs.get("unknown_dimension", JOINT))
     filled = frozenset(str(dataset.attrs.get("filled_dimensions", "")).split())
     sizes = _sizes(dataset.sizes.get(joint, 0))
-    sizes |= {"power": dataset.sizes.get("power", 1)}
+    sizes |= {name: dataset.sizes.get(name, sizes[name]) for name in ("power", "axis")}
     return Frame(joint, "", sizes, filled)
 
 
 def _sizes(n: int) -> dict[str, int]:
     """Sizes of the dimensions that single values have, with ``n`` unknowns."""
-    return {JOINT: n, "singular_value": n, "axis": 2, "end": 2}
+    return {JOINT: n, "singular_value": n, "power": 1, "axis": 2, "end": 2}
+
+
+def _most_axes(surfaces: Sequence[Surface]) -> int:
+    """The largest dimension of a chart."""
+    charts = (surface.charts for surface in surfaces)
+    return max((one.dimension for one in charts if one is not None), default=2)
 
 
 # --- reading --------------------------------------------------------------------------
@@ -309,7 +316,10 @@ def _surface(row: Row, periods: np.ndarray) -> Surface:
     if row["covering"]:
         _check_charts(row)
         outcome = Covering[row["covering"]]
-        charts = make(ChartAtlas, row, "charts", periods=periods, outcome=outcome)
+        bases = row["chart_basis"][:, :, : row["surface_dimension"]]
+        charts = make(
+            ChartAtlas, row, "charts", bases=bases, periods=periods, outcome=outcome
+        )
     return make(Surface, row, charts=charts, factors=_factors(row["surface_factors"]))
 
 

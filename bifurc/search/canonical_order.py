@@ -132,12 +132,13 @@ def _surface_features(surface: Surface, scale: float) -> np.ndarray:
     charts = surface.charts
     kind = [float(surface.dimension), float(charts is None)]
     n = surface.samples.shape[1]
-    if charts is None or not charts.area > 0:
+    if charts is None or not len(charts):
         return np.concatenate([kind, np.zeros(1 + 2 * n)])
-    middles = charts.triangles.mean(axis=1)
-    shares = charts.triangle_areas / charts.triangle_areas.sum()
-    means = shares @ _embedded(middles, charts.periods, scale)
-    size = [-np.log(charts.area)]
+    middles, sizes = charts.centers, charts.radii**charts.dimension
+    if charts.is_measured:
+        middles, sizes = charts.triangles.mean(axis=1), charts.triangle_areas
+    means = (sizes / sizes.sum()) @ _embedded(middles, charts.periods, scale)
+    size = [-np.log(charts.area if charts.is_measured else sizes.sum())]
     return np.concatenate([kind, size, -means])
 
 

@@ -9,6 +9,7 @@ no higher rank are equations of which the curve is a regular solution
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import NamedTuple
@@ -26,6 +27,7 @@ from bifurc.decisions import (
     may_be_singular,
 )
 from bifurc.limits import Deadline
+from bifurc.numerics.null_spaces import null_spaces
 from bifurc.numerics.singular_values import factors_of, singular_values
 from bifurc.problem import Problem
 from bifurc.search.own_units.unit_problem import UnitProblem
@@ -37,7 +39,7 @@ from bifurc.surfaces.chart_atlas import ChartAtlas, Covering
 from bifurc.surfaces.crossing_sheets import is_on_singular_curve, sign_changes
 from bifurc.surfaces.geodesic import entrances
 from bifurc.surfaces.joined import joined_parts
-from bifurc.surfaces.products import products_among
+from bifurc.surfaces.products import products_among, solutions_beside
 from bifurc.surfaces.walk import reached_charts
 from bifurc.system import relative_jacobians, relative_residuals
 
@@ -52,17 +54,28 @@ WHOLE = (Outcome.CLOSED, Outcome.LEFT_REGION)
 
 # Share of the time that is left in which charts are made; they are measured in the rest.
 GROWING = 0.35
+GROWING_OTHERS = (
+    0.6  # the same, of components of more dimensions, which are not measured
+)
 RECOGNISING = 0.2  # the same, to find products
 JOINING = 0.1  # and to see which samples are joined
-RADIUS = 0.7  # of the largest charts, over the problem's scale
+RADIUS = 0.7  # of the largest charts of surfaces, over the problem's scale
 # Singular value, over the median on the surface, below which a singular point is looked
 # for.
 SMALL = 0.2
-MOST_POINTS = 200  # singular points of surfaces that are located
+# Singular points of surfaces that are located, and places at which those of components of
+# more dimensions are looked for.
+MOST_POINTS, MOST_LOOKS = 200, 24
 # Those among them that are samples of curves of singular points, which have no end.
 MOST_SAMPLES = 24
 NULLITY = 3  # of F' at a singular point of a surface
-MOST_NULLITY = 4  # where two surfaces share nothing but a point, their planes span that
+# What else the null space may have there besides the dimension of the component: where
+# two share nothing but a point, their planes span that.
+MOST_WIDER = 2
+# Charts over components of five dimensions, over those that surfaces may have, and
+# the factor from five dimensions to four, and to three. They are not measured, which takes
+# most of the time of a surface, and the more dimensions, the longer a cell takes to cut.
+OF_FIVE, FEWER = 1, 2.5
 # Distance from a chart's centre at which its singular point is looked for: over the
 # chart's radius, which counts as no smaller than a share of the problem's scale.
 REACH = 4.0
@@ -100,7 +113,7 @@ def singular_curve_through(
     """The curve of singular points of one ``rank`` on which a singular point ``u`` (n,)
     lies, one that is known or is traced now; None where it lies on none that is regular and can be
     followed to its end."""
-    for known in components.notes.all_curves():
+    for known in components.notes[2].all_curves():
         if known.rank == rank and _is_on_curve(problem, known, u):
             return known
     if problem.domain.is_large or deadline.passed:
@@ -192,74 +205,116 @@ def cover_components(
     any of them.
 
     Up to ``charts`` charts are made over the surfaces on which those of the seeds
-    ``points`` (k, n) lie. Where the covering is unfinished, the seeds beside the
-    charts walk over the surface to find out which they belong to.
+    ``points`` (k, n) lie, and, in about the time that these take, over components of
+    each higher dimension. Where the covering is unfinished, the seeds beside the charts
+    walk over the component to find out which they belong to.
     """
-    samples = components.samples(points, 2)
-    if not len(samples) or charts <= 0 or deadline.passed:
+    if charts <= 0:
         return []
-    covering = _covered(components, problem, samples, charts, deadline)
-    if covering is None:
-        return []
-    if len(covering):
-        is_double = components.deflated is not None and covering.complete
-        if is_double and _are_several(problem, covering):
+    for dimension in sorted(components.seeds):
+        samples = components.samples(points, dimension)
+        if deadline.passed:
+            return []
+        if dimension > 2:
+            samples = solutions_beside(problem, samples, dimension)
+        covering = _covered(components, problem, samples, dimension, charts, deadline)
+        if covering is not None and len(covering):
+            _take_charts(components, problem, samples, covering, deadline)
+        elif covering is not None and dimension == 2:
+            is_known = bool(components.are_on_products(2).any())
+            return [] if deadline.passed or is_known else components.seeds.pop(2)
+    return []
+
+
+def _take_charts(
+    components: Components,
+    problem: Problem,
+    samples: np.ndarray,
+    covering: ChartAtlas,
+    deadline: Deadline,
+) -> None:
+    """Record the charts over components of a dimension, and on which part of them each of
+    the ``samples`` (k, n) lies."""
+    dimension = covering.dimension
+    regular = problem
+    if dimension == 2 and components.deflated is not None:
+        regular = components.deflated
+        if covering.complete and _are_several(problem, covering):
             covering = replace(covering, outcome=Covering.UNDECIDED)
-        # where a walk is cut off, it is not known on which part samples are
-        components.part_of = np.full(len(samples), -1)
-        components.charts = covering
-        chart = covering.chart_at(samples)
-        # also beside charts that are complete: where surfaces cross they leave slivers
-        beside = chart < 0
-        regular = components.deflated or problem
-        chart[beside] = reached_charts(regular, covering, samples[beside], deadline)
-        components.part_of = np.where(chart >= 0, covering.part[chart], -1)
-        if not covering.is_finished:
-            _join_to_charts(components, regular, samples, deadline)
-        return []
-    is_known = bool(components.are_on_products(2).any())
-    return [] if deadline.passed or is_known else components.seeds.pop(2)
+    # where a walk is cut off, it is not known on which part samples are
+    components.part_of[dimension] = np.full(len(samples), -1)
+    components.charts[dimension] = covering
+    chart = covering.chart_at(samples)
+    # also beside charts that are complete: where surfaces cross they leave slivers
+    beside = (chart < 0) & (dimension == 2 or covering.is_finished)
+    if dimension > 2:
+        beside &= ~components.are_on_products(dimension)
+    chart[beside] = reached_charts(regular, covering, samples[beside], deadline)
+    part_of = np.where(chart >= 0, covering.part[chart], -1)
+    components.part_of[dimension] = part_of
+    if not covering.is_finished:
+        _join_to_charts(components, regular, samples, dimension, deadline)
 
 
 def _covered(
     components: Components,
     problem: Problem,
     samples: np.ndarray,
+    dimension: int,
     charts: int,
     deadline: Deadline,
 ) -> ChartAtlas | None:
-    """Charts over the surfaces on which the ``samples`` (k, n) lie, products last: there
-    they show nothing that is not known. None where there is no time."""
+    """Charts over the components of a ``dimension`` on which the ``samples`` (k, n) lie;
+    over surfaces that are products last, and over others that are none: there they show
+    nothing that is not known. None where there is no time, or none are made."""
     # what assembles the charts at the end is imported before: an import is not cut off
     import scipy.sparse.csgraph
     import scipy.spatial  # noqa: F401
 
-    from bifurc.surfaces.covering import cover_surface
-
-    seconds = GROWING * deadline.left
-    if not seconds:
-        return None
-    others_first = np.argsort(components.are_on_products(2), kind="stable")
-    return cover_surface(
-        components.deflated or problem,
-        samples[others_first],
-        radius=RADIUS,
-        charts=charts,
-        seconds=seconds,
-        metric=_metric_of(problem),
+    from bifurc.surfaces.covering import (
+        MOST_DIMENSIONS,
+        cover_component,
+        cover_surface,
     )
+
+    share = GROWING if dimension == 2 else GROWING_OTHERS
+    seconds = share * deadline.left
+    if not seconds or dimension > MOST_DIMENSIONS:
+        return None
+    are_on_products = components.are_on_products(dimension)
+    if dimension == 2:
+        others_first = np.argsort(are_on_products, kind="stable")
+        return cover_surface(
+            components.deflated or problem,
+            samples[others_first],
+            radius=RADIUS,
+            charts=charts,
+            seconds=seconds,
+            metric=_metric_of(problem),
+        )
+    sigma, _ = null_spaces(problem, samples)
+    is_regular = np.count_nonzero(may_be_null(sigma), axis=1) == dimension
+    seeds = samples[is_regular & ~are_on_products]
+    if not len(seeds) or problem.domain.is_large:
+        return None
+    most = math.ceil(charts * OF_FIVE * FEWER ** (MOST_DIMENSIONS - dimension))
+    return cover_component(problem, seeds, dimension, charts=most, seconds=seconds)
 
 
 def _join_to_charts(
-    components: Components, problem: Problem, samples: np.ndarray, deadline: Deadline
+    components: Components,
+    problem: Problem,
+    samples: np.ndarray,
+    dimension: int,
+    deadline: Deadline,
 ) -> None:
     """Count ``samples`` (k, n) beside charts that ran out to those parts of them on
     which others lie that they are joined to."""
-    part_of = components.part_of
-    beside = np.flatnonzero((part_of < 0) & ~components.are_on_products(2))
+    part_of = components.part_of[dimension]
+    beside = np.flatnonzero((part_of < 0) & ~components.are_on_products(dimension))
     if not len(beside):
         return
-    joined = joined_parts(problem, samples, 2, deadline.share(JOINING))
+    joined = joined_parts(problem, samples, dimension, deadline.share(JOINING))
     for number in beside[joined[beside] >= 0].tolist():
         known = part_of[(joined == joined[number]) & (part_of >= 0)]
         if len(known):
@@ -272,7 +327,8 @@ def join_samples(
     """See which of the seeds ``points`` (k, n) are joined on components that have no
     charts."""
     for dimension in components.seeds:
-        is_charted = dimension == 2 and components.has_surfaces
+        is_double = dimension == 2 and components.deflated is not None
+        is_charted = dimension in components.charts or is_double
         if is_charted or problem.domain.is_large or deadline.passed:
             continue
         samples = components.samples(points, dimension)
@@ -328,11 +384,11 @@ def parts_through(
 ) -> list[int]:
     """The parts of the charts on which a singular point (n,) lies; -1 alone where
     there are no charts."""
-    if components.charts is None:
+    if 2 not in components.charts:
         return [-1]
     return [
         k
-        for k, part in enumerate(components.charts.parts())
+        for k, part in enumerate(components.charts[2].parts())
         if len(entrances(problem, part, point))
     ]
 
@@ -382,35 +438,39 @@ class SurfacePoint(NamedTuple):
 
 def singular_points_of(
     problem: Problem, components: Components, deadline: Deadline
-) -> list[SurfacePoint]:
-    """Points of surfaces where the rank of F' is lower than n - 2, nothing twice.
+) -> Iterator[SurfacePoint]:
+    """Points of components of dimension d that charts cover where the rank of F' is
+    lower than n - d, of each dimension nothing twice.
 
     They are looked for at the charts where the smallest regular singular value is
     smaller than at all neighbours, the clearest first, and then between charts among
     which it passes through zero; at most `MOST_POINTS`, and `MOST_SAMPLES` of those
-    that form curves. At how many places none was looked for becomes a note on the
-    surface.
+    that form curves; of more dimensions than two, at `MOST_LOOKS` charts. At how many
+    places none was looked for becomes a note on the component.
     """
-    charts = components.charts
-    if charts is None or problem.n < NULLITY or components.deflated is not None:
-        return []
-    candidates = _lowest_charts(problem, charts)
-    points: list[SurfacePoint] = []
-    looked_at = samples = 0
-    for chart in candidates:
-        if deadline.passed or len(points) >= MOST_POINTS:
-            break
-        looked_at += 1
-        point = _point_next_to(
-            problem, charts.centers[chart], float(charts.radii[chart])
-        )
-        if point is None or (point.is_sample and samples >= MOST_SAMPLES):
+    for dimension, charts in components.charts.items():
+        is_double = dimension == 2 and components.deflated is not None
+        if problem.n <= dimension or is_double:
             continue
-        if not _is_listed(problem, points, point):
-            points.append(point)
-            samples += point.is_sample
-    components.notes.places.update(charts.part[candidates[looked_at:]].tolist())
-    return points
+        candidates = _lowest_charts(problem, charts)
+        points: list[SurfacePoint] = []
+        looked_at = samples = 0
+        for chart in candidates:
+            is_enough = len(points) >= MOST_POINTS
+            is_enough |= dimension > 2 and looked_at >= MOST_LOOKS
+            if deadline.passed or is_enough:
+                break
+            looked_at += 1
+            place, radius = charts.centers[chart], float(charts.radii[chart])
+            point = _point_next_to(problem, place, radius, dimension)
+            if point is None or (point.is_sample and samples >= MOST_SAMPLES):
+                continue
+            if not _is_listed(problem, points, point):
+                points.append(point)
+                samples += point.is_sample
+        unseen = charts.part[candidates[looked_at:]]
+        components.notes[dimension].places.update(unseen.tolist())
+        yield from points
 
 
 def crossings_beside_curves(
@@ -424,7 +484,7 @@ def crossings_beside_curves(
     of singular points. Where there are none, charts went over to another sheet, and the
     surface is `Covering.UNDECIDED`.
     """
-    charts = components.charts
+    charts = components.charts.get(2)
     if charts is None or problem.n < NULLITY or components.deflated is not None:
         return
     is_redundant = problem.jacobians(charts.centers[:1]).shape[1] > problem.n - 2
@@ -436,19 +496,19 @@ def crossings_beside_curves(
         if deadline.passed:
             return
         crossing, radius = crossings[k], float(radii[k])
-        if components.notes.is_beside_curve(crossing.place, BESIDE * radius):
+        if components.notes[2].is_beside_curve(crossing.place, BESIDE * radius):
             continue
         point = None
         if not is_redundant:
             point = _crossing_next_to(problem, crossing.place, radius)
         if point is None:
-            point = _point_next_to(problem, crossing.place, radius)
+            point = _point_next_to(problem, crossing.place, radius, 2)
         if point is not None and point.is_sample:
             samples += 1
             if samples <= MOST_SAMPLES:
                 yield point
         elif not is_redundant:
-            components.charts = replace(charts, outcome=Covering.UNDECIDED)
+            components.charts[2] = replace(charts, outcome=Covering.UNDECIDED)
             return
 
 
@@ -468,12 +528,13 @@ def _crossing_next_to(
 
 
 def _point_next_to(
-    problem: Problem, place: np.ndarray, radius: float
+    problem: Problem, place: np.ndarray, radius: float, dimension: int
 ) -> SurfacePoint | None:
-    """The singular point of a surface next to a ``place`` (n,) on a chart of a
-    ``radius``."""
+    """The singular point of a component of a ``dimension`` next to a ``place`` (n,) on
+    a chart of a ``radius``."""
     reach = REACH * max(radius, SMALLEST_RADIUS * problem.domain.scale)
-    nullities = range(NULLITY, min(problem.n, MOST_NULLITY) + 1)
+    most = min(problem.n, dimension + MOST_WIDER)
+    nullities = range(dimension + 1, most + 1)
     located = (locate_singular_point(problem, place, k, reach) for k in nullities)
     point = next((one for one in located if one is not None), None)
     if point is None:
@@ -488,14 +549,15 @@ def _point_next_to(
 def _lowest_charts(problem: Problem, charts: ChartAtlas) -> np.ndarray:
     """Numbers (k,) of the charts at which the smallest regular singular value is small
     and smaller than at all neighbours, the smallest first."""
-    sigma = singular_values(problem, charts.centers)[:, -NULLITY]
+    sigma = singular_values(problem, charts.centers)[:, -charts.dimension - 1]
     lowest_beside = np.full(len(charts), np.inf)
     one, other = charts.neighbours.T
     np.minimum.at(lowest_beside, one, sigma[other])
     np.minimum.at(lowest_beside, other, sigma[one])
     # the median over the surface: next to singular points there are many small charts
     order = np.argsort(sigma, kind="stable")
-    covered = np.cumsum(charts.areas[order])
+    sizes = charts.areas if charts.is_measured else charts.radii**charts.dimension
+    covered = np.cumsum(sizes[order])
     middle = np.searchsorted(covered, 0.5 * covered[-1])
     is_small = sigma < SMALL * sigma[order[min(middle, len(order) - 1)]]
     numbers = np.flatnonzero((sigma <= lowest_beside) & is_small)

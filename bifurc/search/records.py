@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -26,6 +26,12 @@ ON_CURVES = (
     "singular points are samples of curves of such points, which are not followed"
 )
 UNEXAMINED = "its singular points, and where forms meet it, are not looked for"
+# of a component of dimension 3 and more
+UNFOLLOWED = (
+    "its singular points are looked for next to charts; what they form is not followed"
+)
+# of what lies beyond charts that ran out
+BEYOND = "no walk led from it to charts: it may be a part of what they cover"
 # the same where curves of singular points were reached by chance
 UNEXAMINED_ELSE = "others, and where forms meet it, are not looked for"
 
@@ -192,15 +198,15 @@ class _ChartedPart(NamedTuple):
 
 @dataclass
 class Components:
-    """Numbers of the seeds on components of dimension 2 and more, by dimension, and
-    charts over the surfaces. The seeds ``on_shaky`` surfaces, on which F' has a lower
+    """Numbers of the seeds on components of dimension 2 and more, and charts over these,
+    by dimension. The seeds ``on_shaky`` surfaces, on which F' has a lower
     rank everywhere, are apart where one deflation does not make them regular: charts do
     not fit there.
 
     Parts of the charts that do not hang together are surfaces of their own: each but
     the last was finished, as far as its singular points, before the next was begun.
-    ``part_of`` (k,) is the part that each seed of dimension 2 belongs to, -1 where none
-    is known. The ``notes`` say what is known of the parts. ``deflated`` is the problem
+    ``part_of`` (k,) is the part that each seed belongs to, -1 where none is known. The
+    ``notes`` say what is known of the parts. ``deflated`` is the problem
     with which surfaces are corrected to along which F' has a lower rank; seeds of
     dimension 2 lie on such surfaces then. Components that are ``products``, by
     dimension, are known without charts: all parts that lie on one of them are one.
@@ -210,9 +216,9 @@ class Components:
 
     seeds: dict[int, list[int]] = field(default_factory=dict)
     on_shaky: list[int] = field(default_factory=list)
-    charts: ChartAtlas | None = None
-    part_of: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
-    notes: PartNotes = field(default_factory=PartNotes)
+    charts: dict[int, ChartAtlas] = field(default_factory=dict)
+    part_of: dict[int, np.ndarray] = field(default_factory=dict)
+    notes: dict[int, PartNotes] = field(default_factory=lambda: defaultdict(PartNotes))
     deflated: Problem | None = None
     products: dict[int, Products] = field(default_factory=dict)
     joined: dict[int, np.ndarray] = field(default_factory=dict)
@@ -220,12 +226,13 @@ class Components:
     @property
     def has_surfaces(self) -> bool:
         """Whether surfaces are known of which singular points may be known."""
-        return self.charts is not None or self.deflated is not None
+        return 2 in self.charts or self.deflated is not None
 
     @property
     def is_out_of_time(self) -> bool:
-        """Whether surfaces are not covered, as that took too long."""
-        return self.charts is not None and self.charts.outcome is Covering.OUT_OF_TIME
+        """Whether components are not covered, as that took too long."""
+        outcomes = [charts.outcome for charts in self.charts.values()]
+        return Covering.OUT_OF_TIME in outcomes
 
     def samples(self, points: np.ndarray, dimension: int) -> np.ndarray:
         """The seeds (k, n) of a dimension, as exact as can be known."""
@@ -234,21 +241,27 @@ class Components:
             return samples
         return self.deflated.project(samples)[0]
 
-    def _note_of(self, part: int) -> str:
+    def _note_of(self, dimension: int, part: int) -> str:
         """What is known of a part of the charts; -1: of seeds without charts."""
-        words = self.notes.of(part)
-        if self.deflated is None:
+        words = self.notes[dimension].of(part)
+        if dimension > 2 and part >= 0:
+            words.append(UNFOLLOWED)
+        if self.deflated is None or dimension > 2:
             return "; ".join(words)
         unexamined = [UNEXAMINED_ELSE if words else UNEXAMINED] * (part >= 0)
         return "; ".join([SHAKY, *words, *unexamined])
 
     @property
     def off_charts(self) -> int:
-        """How many seeds of dimension 2 lie on none of the charts, nor are joined to
-        any, although all surfaces on which charts fit are covered."""
-        if self.charts is None or not self.charts.is_finished:
-            return 0
-        return int(np.count_nonzero((self.part_of < 0) & ~self.are_on_products(2)))
+        """How many seeds lie on none of the charts of their dimension, nor are joined to
+        any, although all components on which charts fit are covered."""
+        count = 0
+        for dimension, charts in self.charts.items():
+            if charts.is_finished:
+                is_off = self.part_of[dimension] < 0
+                is_off &= ~self.are_on_products(dimension)
+                count += int(np.count_nonzero(is_off))
+        return count
 
     def are_on_products(self, dimension: int) -> np.ndarray:
         """Which seeds (k,) of a dimension lie on products."""
@@ -265,11 +278,12 @@ class Components:
         for dimension in sorted(self.seeds):
             samples = self.samples(points, dimension)
             is_left = ~self.are_on_products(dimension)
-            parts = self._charted_parts() if dimension == 2 else []
+            parts = self._charted_parts(dimension)
             surfaces += self._product_surfaces(samples, dimension, parts)
-            if dimension == 2 and self.charts is not None:
-                surfaces += self._charted_surfaces(samples, parts)
-                is_left &= (self.part_of < 0) & (not self.charts.is_finished)
+            if dimension in self.charts:
+                surfaces += self._charted_surfaces(samples, dimension, parts)
+                is_finished = self.charts[dimension].is_finished
+                is_left &= (self.part_of[dimension] < 0) & (not is_finished)
             surfaces += self._sampled_surfaces(samples, dimension, is_left)
         return tuple(surfaces)
 
@@ -278,7 +292,9 @@ class Components:
     ) -> list[Surface]:
         """What those of the samples (k, n) show that are left, on nothing that is known:
         a surface for each part in which they are joined, unless there are many."""
-        note = self._note_of(-1) if dimension == 2 else ""
+        note = self._note_of(dimension, -1)
+        if dimension in self.charts:
+            note = "; ".join(filter(None, [note, BEYOND]))
         unknown = np.full(len(samples), -1)
         parts = self.joined.get(dimension, unknown)[is_left]
         samples = samples[is_left]
@@ -298,10 +314,12 @@ class Components:
             Surface(dimension, samples[parts == part], note=words) for part in large
         ]
 
-    def _charted_parts(self) -> list[_ChartedPart]:
+    def _charted_parts(self, dimension: int) -> list[_ChartedPart]:
         """The parts of the charts, the one with most charts first."""
-        products = self.products[2].components if 2 in self.products else []
-        parts = () if self.charts is None else self.charts.parts()
+        products = []
+        if dimension in self.products:
+            products = self.products[dimension].components
+        parts = self.charts[dimension].parts() if dimension in self.charts else ()
         charted = []
         for number, part in enumerate(parts):
             place = part.centers[:1]
@@ -321,7 +339,7 @@ class Components:
         for number, product in enumerate(components):
             on_it = samples[of_sample == number]
             own = [part for part in parts if part.product == number]
-            notes = dict.fromkeys(self._note_of(part.number) for part in own)
+            notes = dict.fromkeys(self._note_of(dimension, part.number) for part in own)
             surface = Surface(
                 dimension,
                 on_it if len(on_it) else product.point[None],
@@ -333,7 +351,7 @@ class Components:
         return surfaces
 
     def _charted_surfaces(
-        self, samples: np.ndarray, parts: Sequence[_ChartedPart]
+        self, samples: np.ndarray, dimension: int, parts: Sequence[_ChartedPart]
     ) -> list[Surface]:
         """The surfaces that charts cover, with those of the samples (k, n) on them, but
         for products."""
@@ -341,9 +359,9 @@ class Components:
         for k, charts, product in parts:
             if product is not None:
                 continue
-            on_part = samples[self.part_of == k]
+            on_part = samples[self.part_of[dimension] == k]
             if not len(on_part):
                 on_part = charts.centers[:1]
-            surface = Surface(2, on_part, charts=charts, note=self._note_of(k))
-            surfaces.append(surface)
+            note = self._note_of(dimension, k)
+            surfaces.append(Surface(dimension, on_part, charts=charts, note=note))
         return surfaces

@@ -273,7 +273,9 @@ class Search:
         if not components.has_surfaces:
             return
         for number, point in reversed(list(findings.points.items())):
-            if not self.run.is_over and point.kind in (Kind.SURFACE, Kind.CURVE_SAMPLE):
+            is_of_surface = point.kind in (Kind.SURFACE, Kind.CURVE_SAMPLE)
+            is_of_surface &= point.dimension == 2
+            if not self.run.is_over and is_of_surface:
                 self._trace_singular_curve(number)
         deadline = self.run.deadline
         for found in crossings_beside_curves(self.problem, components, deadline):
@@ -282,7 +284,7 @@ class Search:
             parts = parts_through(components, self.problem, u)
             curve = self._singular_curve_through(u, rank)
             if curve is not None and len(parts) == 1:
-                components.notes.add_curve(curve, parts)
+                components.notes[2].add_curve(curve, parts)
                 continue
             sighting = self._sight_on_surface(found)
             if sighting.is_new and sighting.point.kind is Kind.CURVE_SAMPLE:
@@ -306,9 +308,9 @@ class Search:
         curve = self._singular_curve_through(point.u, point.rank)
         if curve is None or not parts:
             if point.is_sample:
-                components.notes.unfollowed.append(parts)
+                components.notes[2].unfollowed.append(parts)
             return
-        is_new = components.notes.add_curve(curve, parts)
+        is_new = components.notes[2].add_curve(curve, parts)
         if is_new and len(parts) > 1:
             # digits that show isolated points do not show a curve, which is known now
             sample = replace(point, is_sample=True, is_confirmed=True)

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from bifurc._core import rim_of
 from bifurc.numerics.corrector import correct_normal
 from bifurc.problem import Problem
-from bifurc.surfaces.disk import RIM, Disk, TangentPlane
+from bifurc.surfaces.disk import Disk, TangentPlane
 from bifurc.surfaces.sheet import slopes_above
 
 # Rise of the surface towards a bound above the tangent plane, over that in the plane, at
@@ -56,10 +57,11 @@ def turns_back(
     """Whether ``unknown`` times ``sign`` has its largest value on the surface next to
     a disk, and none outside the bound there: the surface comes up to it and turns
     back."""
-    bend = sign * _bend(_rises(problem, plane, radius)[:, unknown], radius)
+    rises = _rises(problem, plane, radius)[:, unknown]
+    bend = sign * _bend(rises, radius, plane.basis.shape[1])
     if np.linalg.eigvalsh(bend).max() >= 0.0:
         return False
-    y, step = np.zeros(2), -np.linalg.solve(bend, sign * plane.basis[unknown])
+    y, step = np.zeros(len(bend)), -np.linalg.solve(bend, sign * plane.basis[unknown])
     for _ in range(STEPS):
         y += step
         if np.linalg.norm(y) > FARTHEST * radius:
@@ -74,18 +76,20 @@ def turns_back(
 
 
 def _rises(problem: Problem, plane: TangentPlane, radius: float) -> np.ndarray:
-    """How far solutions (8, n) lie above the rim of a disk."""
-    flat = plane.center + radius * RIM @ plane.basis.T
-    planes = np.broadcast_to(plane.basis, (len(RIM), *plane.basis.shape))
-    points, _ = correct_normal(problem, flat, planes)
+    """How far solutions (r, n) lie above the places on the rim of a disk."""
+    flat = plane.center + radius * rim_of(plane.basis.shape[1]) @ plane.basis.T
+    points, _ = correct_normal(problem, flat, plane.basis)
     rises: np.ndarray = points - flat
     return rises
 
 
-def _bend(rises: np.ndarray, radius: float) -> np.ndarray:
-    """The second derivatives (2, 2) at the centre that ``rises`` (8,) on the rim
+def _bend(rises: np.ndarray, radius: float, dimension: int) -> np.ndarray:
+    """The second derivatives (d, d) at the centre that ``rises`` (r,) on the rim
     show."""
-    one, other = radius * RIM.T
-    terms = np.stack([one**2 / 2, one * other, other**2 / 2], axis=1)
-    a, b, c = np.linalg.lstsq(terms, rises, rcond=None)[0]
-    return np.array([[a, b], [b, c]])
+    one, other = np.triu_indices(dimension)
+    places = radius * rim_of(dimension)
+    terms = places[:, one] * places[:, other] / np.where(one == other, 2.0, 1.0)
+    bend = np.empty((dimension, dimension))
+    bend[one, other] = np.linalg.lstsq(terms, rises, rcond=None)[0]
+    bend[other, one] = bend[one, other]
+    return bend

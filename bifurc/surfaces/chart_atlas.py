@@ -1,5 +1,5 @@
-"""A surface of solutions as an atlas of charts: area, Euler characteristic, connected
-parts, and the charts about a point."""
+"""A surface of solutions, or a component of more dimensions, as an atlas of charts: area,
+Euler characteristic, connected parts, and the charts about a point."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ NEAR_THE_NEAREST = 2.0
 # Distance from the centre, over the radius, up to which a chart holds a solution.
 RIM = 1.1
 # Height of a solution above the plane of a chart that holds it, over the distance in
-# the plane, at most; rounding is allowed for.
-STEEPEST, ROUNDING = 0.25, 1e-9
+# the plane, at most, of a surface and of other components; rounding is allowed for.
+STEEPEST, STEEPEST_OF_OTHERS, ROUNDING = 0.25, 0.4, 1e-9
 
 
 class Covering(Enum):
@@ -59,15 +59,17 @@ class Covering(Enum):
 
 @dataclass(frozen=True, eq=False)
 class ChartAtlas:
-    """A surface of solutions, or several, as charts that overlap.
+    """A surface of solutions, or a component of dimension d, or several, as charts that
+    overlap.
 
-    ``centers`` (c, n) are solutions, ``bases`` (c, n, 2) orthonormal bases of the
+    ``centers`` (c, n) are solutions, ``bases`` (c, n, d) orthonormal bases of the
     tangent planes there, ``radii`` (c,) those of the disks. The polygon of a chart
     lists the ``vertices`` (v, n) around it, solutions that it shares with its
     neighbours; the ``polygons``, with ``polygon_sizes`` (c,) entries each, stand one
     behind the other; their ``areas`` (c,) on the surface are known to within
     ``area_errors`` (c,). ``neighbours`` (p, 2) are the pairs of charts whose polygons have
-    an edge in common.
+    an edge in common. Where d is 3 or more, cells are polytopes, which are not kept and
+    not measured: there are no vertices, polygons are empty and areas not a number.
     """
 
     centers: np.ndarray
@@ -86,12 +88,27 @@ class ChartAtlas:
         return len(self.centers)
 
     def __repr__(self) -> str:
+        if not self.is_measured:
+            charts = count_of(len(self), "chart")
+            words = f"{charts} of dimension {self.dimension}"
+            return f"ChartAtlas({words}, {self.outcome.name})"
         euler = self.euler_characteristic
         return (
             f"ChartAtlas({count_of(len(self), 'chart')}, {self.outcome.name},\n"
             f"           area {self.area_words}, "
             f"Euler characteristic {'unknown' if euler is None else euler})"
         )
+
+    @property
+    def dimension(self) -> int:
+        """That of the component."""
+        dimension: int = self.bases.shape[-1]
+        return dimension
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether there are areas: those of surfaces."""
+        return self.dimension == 2
 
     @property
     def complete(self) -> bool:
@@ -153,7 +170,9 @@ class ChartAtlas:
     @property
     def area_words(self) -> str:
         """The area as text, with the digits that are sure; of an unfinished covering it
-        says that there is more."""
+        says that there is more. Empty where it is not measured."""
+        if not self.is_measured:
+            return ""
         share = max(self.area_error / self.area, 10.0**-MOST_DIGITS)
         digits = max(1, int(-np.log10(share)))
         words = f"{self.area:.{digits}g}"
@@ -168,8 +187,8 @@ class ChartAtlas:
     @cached_property
     def euler_characteristic(self) -> int | None:
         """Vertices - edges + polygons; None for an incomplete covering, or where
-        polygons do not fit together."""
-        if self.outcome is not Covering.COMPLETE:
+        polygons do not fit together; and of what is no surface."""
+        if self.outcome is not Covering.COMPLETE or not self.is_measured:
             return None
         vertices = len(np.unique(self.polygons))
         edges = len(self._polygons_at_edge)
@@ -296,7 +315,8 @@ class ChartAtlas:
         in_plane = np.einsum("kcij,kcj->kci", bases, y)
         height = np.linalg.norm(offset - in_plane, axis=2)
         is_inside = distance < RIM * self.radii[charts]
-        is_low = height < STEEPEST * distance + ROUNDING
+        steepest = STEEPEST if self.is_measured else STEEPEST_OF_OTHERS
+        is_low = height < steepest * distance + ROUNDING
         holds: np.ndarray = is_inside & is_low
         return holds
 

@@ -1,10 +1,12 @@
-"""Components of dimension 2, covered by charts in their tangent planes (Henderson
-2002).
+"""Components of dimension 2 and more, covered by charts in their tangent planes
+(Henderson 2002).
 
 Every chart is a disk in a tangent plane and a polygon about its centre, cut by the line
 through the intersection with each chart that overlaps it. A vertex of the polygon
 outside the disk shows that the surface is not covered there: its direction leads to the
-centre of the next chart. The surface is covered when no vertex is outside.
+centre of the next chart. The surface is covered when no vertex is outside. In more
+dimensions disks are balls, polygons polytopes and lines planes; nothing else changes
+until the charts are measured, which those of surfaces alone are.
 
 M. E. Henderson 2002, Multiple parameter continuation: computing implicitly defined
 k-manifolds, Int. J. Bifurcation and Chaos 12, 451-476. In its formula for the cutting
@@ -14,14 +16,16 @@ both charts are cut along the same line up to fourth order.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from bifurc import _core
+from bifurc import _core, torus
 from bifurc.decisions import is_null
+from bifurc.domain import Domain
 from bifurc.errors import ProblemError
 from bifurc.limits import Deadline
 from bifurc.numerics.corrector import compiled_equations
@@ -37,21 +41,15 @@ from bifurc.surfaces.complex import (
     without_empty_polygons,
 )
 from bifurc.surfaces.crossing_sheets import has_uncovered_crossing
-from bifurc.surfaces.disk import (
-    AGREE,
-    BEND,
-    FLAT,
-    Disk,
-    TangentPlane,
-)
+from bifurc.surfaces.disk import OF_OTHERS, OF_SURFACES, Disk, TangentPlane
 from bifurc.surfaces.other_sheets import solutions_across
-from bifurc.surfaces.polygon import BORDER, FlatCharts, Polygon, octagon
-from bifurc.surfaces.sheet import follow_sheets
+from bifurc.surfaces.polygon import BORDER, FlatCharts, Polygon
+from bifurc.surfaces.sheet import SOLVED, follow_sheets
 from bifurc.surfaces.singular_places import SingularPlaces
 
 # Largest height above a disk at which a solution lies in it, over the distance in its
-# plane; rounding is allowed for.
-STEEPEST, ROUNDING = 2 * BEND, 1e-9
+# plane and the bend that disks may have; rounding is allowed for.
+STEEPEST, ROUNDING = 2.0, 1e-9
 # Distance of that solution from the centre, over the radius.
 RIM = 1.1
 # Radius over the largest one below which no chart is made next to a singular point, and
@@ -68,10 +66,20 @@ SMALLER, MENDING = 0.7, 6
 ROUNDS, UNFINISHED = 3, (Covering.CHART_LIMIT, Covering.OUT_OF_TIME)
 # Distance, over the scale, below which the end of a ray is a solution that is known.
 SAME = 1e-7
+# Work for a chart beside other sheets, to which all those about it have to be told apart,
+# over that for another one, in more than two dimensions.
+UNCLEAR = 4
 # Pairs of charts of which it is not known whether they are on one sheet, at most.
 MOST_UNDECIDED = 20
 
 Placement = _core.Placement
+COVERS: dict[int, type[_core.Cover] | type[_core.Cover3]] = {
+    2: _core.Cover,
+    3: _core.Cover3,
+    4: _core.Cover4,
+    5: _core.Cover5,
+}
+MOST_DIMENSIONS = max(COVERS)  # of a component that charts are made over
 
 
 def cover_surface(
@@ -94,20 +102,56 @@ def cover_surface(
     `ProblemError` for seeds of a wrong shape and limits that are not positive.
     """
     seeds = np.asarray(seeds, dtype=float)
-    if seeds.ndim != 2 or seeds.shape[1] != problem.n:
-        raise ProblemError("shape of the seeds", seeds.shape, f"(k, {problem.n})")
-    for name, value in (("radius", radius), ("charts", charts), ("seconds", seconds)):
-        if not value > 0:
-            raise ProblemError(name, value, "positive")
+    _check(problem, seeds, radius=radius, charts=charts, seconds=seconds)
     deadline = Deadline(seconds)
-    cover = _Cover(problem, radius * problem.domain.scale)
+    cover = _Cover(problem, radius * problem.domain.scale, 2)
     if atlas is not None:
         cover.add_all(atlas)
     unit = np.ones(problem.n) if metric is None else metric
     covering = _covering(cover, lambda: cover.finish(seeds, charts, deadline), unit)
-    if covering.is_finished and has_uncovered_crossing(problem, covering, AGREE):
+    if covering.is_finished and has_uncovered_crossing(
+        problem, covering, cover.fit.agree
+    ):
         return replace(covering, outcome=Covering.UNFIT)
     return covering
+
+
+def cover_component(
+    problem: Problem,
+    seeds: np.ndarray,
+    dimension: int,
+    *,
+    radius: float = 1.2,
+    charts: int = 2000,
+    seconds: float = np.inf,
+) -> ChartAtlas:
+    """Charts over the components of a ``dimension`` up to `MOST_DIMENSIONS` that the
+    regular solutions ``seeds`` (k, n) lie on, as `cover_surface` makes them; they are
+    not measured. ``charts`` is for those that are far from other sheets; any other one
+    counts as `UNCLEAR` of them. Raises `ProblemError` as that does, and for other dimensions.
+    """
+    seeds = np.asarray(seeds, dtype=float)
+    _check(problem, seeds, radius=radius, charts=charts, seconds=seconds)
+    if dimension not in COVERS:
+        raise ProblemError("dimension", dimension, f"2 to {MOST_DIMENSIONS}")
+    # no farther than periods tell on which side of a centre another one is
+    largest = min(radius * problem.domain.scale, problem.domain.periods.min() / 4)
+    cover = _Cover(problem, largest, dimension)
+    outcome = cover.finish(seeds, charts, Deadline(seconds))
+    covering = cover.unmeasured(outcome)
+    if covering.is_finished and has_uncovered_crossing(
+        problem, covering, cover.fit.agree
+    ):
+        return replace(covering, outcome=Covering.UNFIT)
+    return covering
+
+
+def _check(problem: Problem, seeds: np.ndarray, **limits: float) -> None:
+    if seeds.ndim != 2 or seeds.shape[1] != problem.n:
+        raise ProblemError("shape of the seeds", seeds.shape, f"(k, {problem.n})")
+    for name, value in limits.items():
+        if not value > 0:
+            raise ProblemError(name, value, "positive")
 
 
 def _covering(
@@ -199,7 +243,7 @@ class _Fit(NamedTuple):
 
 class _Candidate(NamedTuple):
     """A solution ``center`` (n,) about which a chart is wanted, of at most the radius
-    ``largest``, with its tangent plane, ``basis`` (n, 2) and ``normal`` (n,) across the
+    ``largest``, with its tangent plane, ``basis`` (n, d) and ``normal`` (n,) across the
     surface, and the disk that fits it."""
 
     placement: _core.Placement
@@ -212,8 +256,17 @@ class _Candidate(NamedTuple):
     height: float
 
 
+class _Cut(NamedTuple):
+    """The half-space ``normal`` (d,) . y <= ``offset`` of a tangent plane, and the
+    ``label`` of the edge along it."""
+
+    normal: np.ndarray
+    offset: float
+    label: int
+
+
 class _Charts(NamedTuple):
-    """The ``centers`` (c, n) of charts, the ``bases`` (c, n, 2) of their planes, their
+    """The ``centers`` (c, n) of charts, the ``bases`` (c, n, d) of their planes, their
     ``radii`` (c,), and whether other sheets ``are_clear`` of them (c,): what lies in such
     a chart is on its sheet."""
 
@@ -224,30 +277,33 @@ class _Charts(NamedTuple):
 
 
 class _Cover:
-    """The charts made so far, their polygons in the tangent planes, and the charts
-    whose polygons may be open."""
+    """The charts made so far over components of a ``dimension`` d, their polygons in
+    the tangent planes, and the charts whose polygons may be open."""
 
-    def __init__(self, problem: Problem, largest: float):
+    def __init__(self, problem: Problem, largest: float, dimension: int):
         self.problem = problem
+        self.dimension = dimension
+        self.fit = OF_SURFACES if dimension == 2 else OF_OTHERS
         self._largest = largest  # radius of a chart
         # how many pairs of charts could not be told to be on one sheet or on two
         self._undecided = 0
-        self._singular_places = SingularPlaces(problem)
+        self._singular_places = SingularPlaces(problem, dimension)
         self._forget_charts()
 
     def _forget_charts(self) -> None:
         """Begin without charts."""
         domain = self.problem.domain
-        self._front = _core.Cover(
+        self._front = COVERS[self.dimension](
             compiled_equations(self.problem),
             domain.scale,
             domain.periods,
             np.ascontiguousarray(domain.bounds),
-            agree=AGREE,
+            agree=self.fit.agree,
+            smooth=self.fit.smooth,
             largest=self._largest,
             smallest=SMALLEST * self._largest,
-            bend=BEND,
-            flat=FLAT,
+            bend=self.fit.bend,
+            flat=self.fit.flat,
             negligible=is_null.threshold,
         )
         self._unfit_seeds: list[np.ndarray] = []
@@ -257,10 +313,33 @@ class _Cover:
     def cells(self) -> tuple[FlatCharts, Cells]:
         """The charts made so far but for those of whose polygons the others leave
         nothing, and their polygons fitted together."""
+        assert isinstance(self._front, _core.Cover)
         count = len(self._front)
         polygons = [Polygon(*self._front.polygon(i)) for i in range(count)]
         charts = without_empty_polygons(FlatCharts(*self._charts(), polygons))
         return charts, fitted_cells(self.problem, charts)
+
+    def unmeasured(self, outcome: Covering) -> ChartAtlas:
+        """The charts made so far, but for those of whose cells nothing is left, as the
+        ``outcome`` of covering components of dimension 3 and more."""
+        assert not isinstance(self._front, _core.Cover)
+        facets = [self._front.facets(i) for i in range(len(self._front))]
+        has_cell = np.array([len(own) > 0 for own in facets], dtype=bool)
+        charts = self._charts()
+        unknown = np.full(np.count_nonzero(has_cell), np.nan)
+        return ChartAtlas(
+            centers=charts.centers[has_cell],
+            bases=charts.bases[has_cell],
+            radii=charts.radii[has_cell],
+            neighbours=_neighbours_by(facets, has_cell),
+            vertices=np.empty((0, self.problem.n)),
+            polygons=np.empty(0, dtype=int),
+            polygon_sizes=np.zeros(len(unknown), dtype=int),
+            areas=unknown,
+            area_errors=unknown,
+            periods=self.problem.domain.periods,
+            outcome=outcome,
+        )
 
     def shrink(self, charts: FlatCharts, too_large: np.ndarray) -> None:
         """Make the charts of these numbers (k,) smaller, and cut all polygons anew."""
@@ -301,21 +380,24 @@ class _Cover:
         self, points: np.ndarray, charts: _Charts
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Numbers (p,) of solutions (k, n), and of charts (p,) in whose disks they lie or
-        little above them, with the positions (p, 2) there."""
-        offset = self.problem.domain.difference(points[:, None], charts.centers)
-        distance = np.linalg.norm(offset, axis=2)
-        point, chart = np.nonzero(distance < RIM * charts.radii)
-        offset = offset[point, chart]
+        little above them, with the positions (p, d) there."""
+        domain = self.problem.domain
+        farthest = RIM * charts.radii.max(initial=0.0)
+        point, chart = _pairs_within(domain, points, charts.centers, farthest)
+        offset = domain.difference(points[point], charts.centers[chart])
+        is_near = np.linalg.norm(offset, axis=1) < RIM * charts.radii[chart]
+        point, chart, offset = point[is_near], chart[is_near], offset[is_near]
         y = np.einsum("ki,kij->kj", offset, charts.bases[chart])
         in_plane = np.einsum("kij,kj->ki", charts.bases[chart], y)
         height = np.linalg.norm(offset - in_plane, axis=1)
-        is_low = height < STEEPEST * np.linalg.norm(y, axis=1) + ROUNDING
+        steepest = STEEPEST * self.fit.bend
+        is_low = height < steepest * np.linalg.norm(y, axis=1) + ROUNDING
         return point[is_low], chart[is_low], y[is_low]
 
     def _are_same(
         self, ends: np.ndarray, points: np.ndarray, planes: np.ndarray
     ) -> np.ndarray:
-        """Whether the ends (k, n) of rays in ``planes`` (k, n, 2) are solutions (k, n)
+        """Whether the ends (k, n) of rays in ``planes`` (k, n, d) are solutions (k, n)
         or (n,). Off the surface redundant equations contradict one another, and their
         least squares move an end a little along it."""
         gaps = self.problem.domain.difference(points, ends)
@@ -334,6 +416,20 @@ class _Cover:
             outcome = self.spread(seeds, charts, deadline)
         while outcome is Covering.COMPLETE and self.has_charts_to_look_from:
             outcome = self.spread(self.look_across(), charts, deadline)
+        if outcome is not Covering.COMPLETE:
+            return outcome
+        outcome = self.judge()
+        return (
+            self.fill_holes(charts, deadline) if outcome is Covering.UNFIT else outcome
+        )
+
+    def fill_holes(self, charts: int, deadline: Deadline) -> Covering:
+        """Cover what is next to places to which no chart led, from there: a chart that is
+        made for itself need not agree with the one that leads to it."""
+        ends, gaps = self.problem.project(self._front.holes())
+        for end in ends[gaps < SOLVED]:
+            self._start(end)
+        outcome = self.grow(charts, deadline)
         return self.judge() if outcome is Covering.COMPLETE else outcome
 
     def spread(self, seeds: np.ndarray, charts: int, deadline: Deadline) -> Covering:
@@ -352,7 +448,7 @@ class _Cover:
         """Make the first chart of a surface about a regular solution (n,), if one fits
         and is wanted."""
         _, right = null_spaces(self.problem, seed[None])
-        plane = np.ascontiguousarray(right[0, -2:].T)
+        plane = np.ascontiguousarray(right[0, -self.dimension :].T)
         candidate = _Candidate(*self._front.candidate(seed, plane, self._largest))
         placement = self._placed(candidate)
         if placement is Placement.UNFIT:
@@ -375,9 +471,14 @@ class _Cover:
     def grow(self, charts: int, deadline: Deadline) -> Covering:
         """Add charts at open vertices until there are none, or until a limit is
         reached."""
+        most = self._most_charts(charts)
         while True:
             undecided = MOST_UNDECIDED - self._undecided
-            growth, doubt = self._front.grow(charts, undecided, deadline.left)
+            growth, doubt = self._front.grow(most, undecided, deadline.left)
+            if growth is _core.Growth.CHART_LIMIT:
+                before, most = most, self._most_charts(charts)
+                if most > before:
+                    continue
             if doubt is None:
                 return Covering[growth.name]
             candidate, chart, direction = doubt
@@ -385,6 +486,15 @@ class _Cover:
             if placement is not Placement.FITS:
                 is_unfit = placement is Placement.UNFIT
                 self._front.refuse(chart, direction, is_unfit)
+
+    def _most_charts(self, charts: int) -> int:
+        """How many there may be for now, with work for so many: of no surface, the fewer
+        the more of those made are beside other sheets."""
+        if self.dimension == 2:
+            return charts
+        are_clear = self._charts().are_clear
+        work = len(are_clear) + (UNCLEAR - 1) * np.count_nonzero(~are_clear)
+        return len(are_clear) + max(charts - int(work), 0) // UNCLEAR
 
     def judge(self) -> Covering:
         """What is known when no more charts are wanted: places at which none fits may
@@ -443,27 +553,56 @@ class _Cover:
 
     def add(self, plane: TangentPlane, disk: Disk) -> None:
         """Add a chart and cut its polygon and those of all charts that overlap it."""
-        polygon = self._cut_by_bounds(octagon(disk.radius), plane, disk.radius)
-        self._front.add(plane.center, plane.basis, *disk, *polygon)
+        cuts = self._cuts_by_bounds(plane, disk.radius)
+        normals = np.array([cut.normal for cut in cuts]).reshape(-1, self.dimension)
+        offsets = np.array([cut.offset for cut in cuts], dtype=float)
+        labels = np.array([cut.label for cut in cuts], dtype=int)
+        self._front.add(plane.center, plane.basis, *disk, normals, offsets, labels)
 
-    def _cut_by_bounds(
-        self, polygon: Polygon, plane: TangentPlane, radius: float
-    ) -> Polygon:
-        """The part of a polygon inside the bounds. What lies outside by rounding is not
-        cut off: a surface may run in a bound, or touch it."""
+    def _cuts_by_bounds(self, plane: TangentPlane, radius: float) -> list[_Cut]:
+        """What cuts the polygon of a chart to its part inside the bounds. What lies
+        outside by rounding is not cut off: a surface may run in a bound, or touch it."""
         domain, center, basis = self.problem.domain, plane.center, plane.basis
-        farthest_vertex = np.linalg.norm(polygon.vertices, axis=1).max()
+        cuts: list[_Cut] = []
+        # of a cube about a ball, and of an octagon no more
+        farthest_vertex = radius * math.sqrt(self.dimension)
         if np.all(np.abs(domain.bounds - center[:, None]) > farthest_vertex):
-            return polygon
+            return cuts
         low, high = domain.bounds.T
         for side, rooms in enumerate((center - low, high - center)):
             sign = 2.0 * side - 1.0
             for k in np.flatnonzero(np.isfinite(rooms)):
                 normal, room = sign * basis[k], max(rooms[k], 0.0)
-                farthest = (polygon.vertices @ normal).max(initial=0.0)
+                farthest = farthest_vertex * float(np.linalg.norm(normal))
                 if farthest > room + domain.slack and not turns_back(
                     self.problem, plane, radius, int(k), sign
                 ):
-                    label = BORDER - 2 * int(k) - side
-                    polygon = polygon.clip(normal, room, label)
-        return polygon
+                    cuts.append(_Cut(normal, room, BORDER - 2 * int(k) - side))
+        return cuts
+
+
+def _pairs_within(
+    domain: Domain, points: np.ndarray, centers: np.ndarray, reach: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Numbers (p,) of points (k, n), and of centers (c, n) that are within ``reach``."""
+    from scipy.spatial import cKDTree
+
+    box = torus.tree_box(domain.periods)
+    tree = cKDTree(torus.into_box(centers, domain.periods), boxsize=box)
+    in_box = torus.into_box(points, domain.periods)
+    near = tree.query_ball_point(in_box, reach, return_sorted=True)
+    point = np.repeat(np.arange(len(points)), [len(own) for own in near])
+    chart = np.concatenate([np.empty(0, dtype=int), *near]).astype(int)
+    return point, chart
+
+
+def _neighbours_by(facets: Sequence[np.ndarray], has_cell: np.ndarray) -> np.ndarray:
+    """Pairs (p, 2) of charts, those alone numbered that have a cell (c,), by the labels
+    of the ``facets`` of their cells."""
+    own = np.repeat(np.arange(len(facets)), [len(labels) for labels in facets])
+    other = np.concatenate([np.empty(0, dtype=int), *facets])
+    pairs = np.sort(np.stack([own, other], axis=1)[other >= 0], axis=1)
+    pairs = pairs[has_cell[pairs].all(axis=1)]
+    number = np.cumsum(has_cell) - 1
+    neighbours: np.ndarray = np.unique(number[pairs], axis=0)
+    return neighbours

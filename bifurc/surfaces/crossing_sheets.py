@@ -42,7 +42,7 @@ def has_uncovered_crossing(problem: Problem, charts: ChartAtlas, agree: float) -
     Charts whose tangent planes turn by a cosine below ``agree`` lie on different
     sheets.
     """
-    uncovered = []
+    uncovered, nullity = [], charts.dimension + 1
     for crossing in sign_changes(problem, charts):
         if not _is_covered(charts, crossing, agree):
             uncovered.append(crossing)
@@ -50,7 +50,7 @@ def has_uncovered_crossing(problem: Problem, charts: ChartAtlas, agree: float) -
     for k in spread[: len(uncovered)]:
         crossing = uncovered[k]
         reach = REACH * float(charts.radii[crossing.pair].max())
-        located = locate_singular_point(problem, crossing.place, 3, reach)
+        located = locate_singular_point(problem, crossing.place, nullity, reach)
         if located is not None and is_on_singular_curve(problem, located):
             return True
     return False
@@ -94,10 +94,10 @@ class SignChange(NamedTuple):
 def sign_changes(problem: Problem, charts: ChartAtlas) -> list[SignChange]:
     """All neighbours between which F' changes its orientation.
 
-    With F' = L S R^T of rank n - 2 at two charts, the determinant of F' at the second
+    With F' = L S R^T of rank n - d at two charts, the determinant of F' at the second
     one, in the bases L and R of the first, has the sign of det(L1^T L2) det(R1^T R2).
     """
-    rank = problem.n - 2
+    rank = problem.n - charts.dimension
     jacobians = problem.jacobians(charts.centers)
     left, sigma, right = factors_of(jacobians, full_matrices=False)
     if rank < 1 or sigma.shape[1] < rank:

@@ -7,18 +7,26 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc.numerics.binary_forms import unit_vectors
 
-# Largest height of the surface above a disk, over its radius.
-BEND = 0.16
-# Smallest cosine between tangent planes of a disk and above its rim, and of charts that
-# may be neighbours.
-FLAT, AGREE = 0.92, 0.8
-RIM = unit_vectors(np.pi / 4 * np.arange(8))
+class Fit(NamedTuple):
+    """How closely charts follow a component: the largest height of it above a disk,
+    over the radius, ``bend``, and the smallest cosines between tangent planes of a disk
+    and above its rim, ``flat``, of a chart and the next one on its sheet, ``smooth``, and
+    of charts that may be neighbours, ``agree``."""
+
+    bend: float
+    flat: float
+    smooth: float
+    agree: float
+
+
+# Those of surfaces are measured; of other components there are to be few.
+OF_SURFACES = Fit(bend=0.16, flat=0.92, smooth=0.85, agree=0.8)
+OF_OTHERS = Fit(bend=0.25, flat=0.85, smooth=0.75, agree=0.7)
 
 
 class TangentPlane(NamedTuple):
-    """The plane ``basis`` (n, 2) at a solution ``center`` (n,), and the unit vector
+    """The plane ``basis`` (n, d) at a solution ``center`` (n,), and the unit vector
     ``normal`` (n,) across the surface along which F' is the weakest: another sheet may
     be near there. It is zero where no equation is left. Where the null space is larger, at
     singular points, the plane is the part of it that is turned as little as possible

@@ -272,7 +272,7 @@ class _PulledPath:
         self.path = path
         self._problem = problem
         self._charts = charts
-        self._planes = charts.bases[charts.nearest_charts(path[1:-1])]  # (k - 2, n, 2)
+        self._planes = charts.bases[charts.nearest_charts(path[1:-1])]  # (k - 2, n, d)
         self._share = 1.0  # of the pull that is taken
         self._energy = _energy(path)
 
@@ -315,7 +315,7 @@ def _energy(path: np.ndarray) -> float:
 
 
 def _force(path: np.ndarray, planes: np.ndarray) -> np.ndarray:
-    """The forces (k - 2, 2) on the inner points in their ``planes`` (k - 2, n, 2)."""
+    """The forces (k - 2, d) on the inner points in their ``planes`` (k - 2, n, d)."""
     before = path[:-2]
     inner = path[1:-1]
     after = path[2:]
@@ -325,8 +325,8 @@ def _force(path: np.ndarray, planes: np.ndarray) -> np.ndarray:
 
 
 def _solve_for_pull(force: np.ndarray, planes: np.ndarray) -> np.ndarray:
-    """The steps y (k - 2, 2) in their ``planes`` that the ``force`` asks for."""
-    # With C_i = T_i^T T_(i+1), of two rows and columns:
+    """The steps y (k - 2, d) in their ``planes`` that the ``force`` asks for."""
+    # With C_i = T_i^T T_(i+1), of d rows and columns:
     #
     #     [  2 I    -C_1                 ] [ y_1 ]   [ f_1 ]
     #     [ -C_1^T   2 I   -C_2          ] [ y_2 ] = [ f_2 ]
@@ -334,16 +334,17 @@ def _solve_for_pull(force: np.ndarray, planes: np.ndarray) -> np.ndarray:
     #     [                  :     :     ] [  :  ]   [  :  ]
     from scipy.linalg import solveh_banded
 
-    count = len(planes)
+    count, d = len(planes), planes.shape[2]
     across = np.swapaxes(planes[:-1], 1, 2)
     coupling = -across @ planes[1:]
-    bands = np.zeros((4, 2 * count))  # the upper ones of the matrix, the diagonal last
-    bands[3] = 2.0
-    for a in range(2):
-        for b in range(2):
-            bands[1 + a - b, 2 + b :: 2] = coupling[:, a, b]
+    # the upper bands of the matrix, the diagonal last
+    bands = np.zeros((2 * d, d * count))
+    bands[-1] = 2.0
+    for a in range(d):
+        for b in range(d):
+            bands[d - 1 + a - b, d + b :: d] = coupling[:, a, b]
     flat_steps = solveh_banded(bands, force.ravel())
-    steps: np.ndarray = flat_steps.reshape(count, 2)
+    steps: np.ndarray = flat_steps.reshape(count, d)
     return steps
 
 
@@ -359,7 +360,7 @@ def _next_share(gain: float, slope: float, share: float) -> float:
 def _correct(
     problem: Problem, charts: ChartAtlas, points: np.ndarray, planes: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Solutions (k, n) straight above ``points`` of ``planes`` (k, n, 2), and which
+    """Solutions (k, n) straight above ``points`` of ``planes`` (k, n, d), and which
     (k,) are solutions nearby."""
     feet, gaps = correct_normal(problem, points, planes)
     height = np.linalg.norm(feet - points, axis=1)

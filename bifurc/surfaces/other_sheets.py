@@ -35,10 +35,11 @@ def solutions_across(
     problem: Problem, centers: np.ndarray, bases: np.ndarray, radii: np.ndarray
 ) -> OtherSheets:
     """Solutions straight above or below the ``centers`` (c, n) of charts with tangent
-    planes ``bases`` (c, n, 2) and ``radii`` (c,)."""
-    if problem.n < 3 or not len(centers):
+    planes ``bases`` (c, n, d) and ``radii`` (c,)."""
+    weakest = problem.n - bases.shape[-1] - 1
+    if weakest < 0 or not len(centers):
         return OtherSheets(np.empty((0, problem.n)), np.empty(0))
-    normals, distances = _places_across(problem, centers, radii)
+    normals, distances = _places_across(problem, centers, radii, weakest)
     chart, which = np.nonzero(np.abs(distances) < FARTHEST * radii[:, None])
     aside = distances[chart, which][:, None] * normals[chart]
     corrected = normal_corrections(problem, centers[chart] + aside, bases[chart])
@@ -51,12 +52,12 @@ def solutions_across(
 
 
 def _places_across(
-    problem: Problem, centers: np.ndarray, radii: np.ndarray
+    problem: Problem, centers: np.ndarray, radii: np.ndarray, weakest: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Unit vectors (c, n) across the surface along which F' is the weakest, and how far
-    along them the next two sheets may be (c, 2), infinite where there is none."""
+    """Unit vectors (c, n) across the surface along which F' is the weakest, the right
+    singular vectors of number ``weakest``, and how far along them the next two sheets
+    may be (c, 2), infinite where there is none."""
     left, sigma, right = factors_of(relative_jacobians(problem, centers))
-    weakest = problem.n - 3
     normals, weights = right[:, weakest], left[:, :, weakest]
     width = PROBE * radii
     step = width[:, None] * normals

@@ -7,9 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bifurc import _core
-
-OUTLINE = -1  # label of an edge that nothing has cut yet
 BORDER = -2  # of one along the first bound; the others follow below it
 
 
@@ -19,24 +16,6 @@ class Polygon(NamedTuple):
 
     vertices: np.ndarray
     labels: np.ndarray
-
-    @property
-    def is_empty(self) -> bool:
-        """Whether nothing is left of it."""
-        return len(self.vertices) == 0
-
-    def clip(self, normal: np.ndarray, offset: float, label: int) -> Polygon:
-        """The part where ``normal . y <= offset``; the edge along the cut gets
-        ``label``.
-
-        All of it where the line misses it, an empty one where nothing is left.
-        """
-        return Polygon(*_core.clip(*self, np.asarray(normal), offset, label))
-
-
-def octagon(radius: float) -> Polygon:
-    """The octagon around the circle of ``radius``."""
-    return Polygon(*_core.octagon(radius))
 
 
 class FlatCharts(NamedTuple):

@@ -255,7 +255,7 @@ def products_among(
     found = Products(components, of_sample)
     if problem.domain.rim is not None or problem.domain.is_large:
         return found
-    places = _beside(problem, samples, dimension)
+    places = solutions_beside(problem, samples, dimension)
     sigma, right = null_spaces(problem, places)
     is_plain = np.count_nonzero(may_be_null(sigma), axis=1) == dimension
     tangents = right[:, problem.n - dimension :]
@@ -281,7 +281,9 @@ def products_among(
     return found
 
 
-def _beside(problem: Problem, points: np.ndarray, dimension: int) -> np.ndarray:
+def solutions_beside(
+    problem: Problem, points: np.ndarray, dimension: int
+) -> np.ndarray:
     """Solutions (k, n) in no special direction from others (k, n) of components of this
     ``dimension``: where an unknown just turns back, as symmetric places have it, it seems
     to depend on nothing."""

@@ -1,4 +1,4 @@
-"""The singular points about which no chart of a surface fits: places go in, the point
+"""The singular points about which no chart of a component fits: places go in, the point
 that is the reason comes out, or none."""
 
 from __future__ import annotations
@@ -12,9 +12,6 @@ from bifurc.problem import Problem
 from bifurc.singular.locate import locate_singular_point
 from bifurc.surfaces.crossing_sheets import is_on_singular_curve
 
-# Dimension of the null space at a singular point of a surface.
-NULLITY = 3
-
 
 class SingularPlace(NamedTuple):
     """A singular point ``u`` (n,), and whether others lie beside it."""
@@ -24,10 +21,11 @@ class SingularPlace(NamedTuple):
 
 
 class SingularPlaces:
-    """The singular points of a surface that were looked for."""
+    """The singular points of a component of a ``dimension`` that were looked for."""
 
-    def __init__(self, problem: Problem):
+    def __init__(self, problem: Problem, dimension: int):
         self._problem = problem
+        self._nullity = dimension + 1
         self._known: list[SingularPlace] = []
 
     def next_to(self, place: np.ndarray, reach: float) -> SingularPlace | None:
@@ -37,9 +35,9 @@ class SingularPlaces:
             if np.linalg.norm(problem.domain.difference(known.u, place)) < reach:
                 return known
         # of a surface of lower rank they are not looked for
-        if problem.n < NULLITY or isinstance(problem, RankDeflated):
+        if problem.n < self._nullity or isinstance(problem, RankDeflated):
             return None
-        located = locate_singular_point(problem, place, NULLITY, reach)
+        located = locate_singular_point(problem, place, self._nullity, reach)
         if located is None:
             return None
         found = SingularPlace(located.u, is_on_singular_curve(problem, located))

@@ -63,7 +63,7 @@ def reached_charts(
 class _Walk:
     """Walkers on the surface, each on its way to a chart.
 
-    ``at`` (k, n) they are, in the tangent ``planes`` (k, n, 2), with the longest step
+    ``at`` (k, n) they are, in the tangent ``planes`` (k, n, d), with the longest step
     ``length`` (k,) that they try next; ``goals`` (k,) are the numbers of the charts
     they walk to, None where each walks to the nearest. ``arrival`` (k,) is the number
     of the chart in which a walker arrived, -1 before.
@@ -81,7 +81,7 @@ class _Walk:
         self.goals = goals
         _, right = null_spaces(problem, points)
         self.at = points.copy()
-        self.planes = np.swapaxes(right[:, -2:], 1, 2)
+        self.planes = np.swapaxes(right[:, -charts.dimension :], 1, 2)
         self.longest = LONGEST * charts.radii.max()
         self.shortest = SHORTEST * charts.radii.max()
         self.length = np.full(len(points), self.longest)

@@ -77,7 +77,8 @@ def _of_form(atlas: Atlas, form: Form) -> dict[str, Json]:
 
 def _of_surface(atlas: Atlas, surface: Surface) -> dict[str, Json]:
     factors = values_of(surface.factors, atlas.names)
-    return {"complete": surface.complete, "factors": factors}
+    charts = None if surface.charts is None else len(surface.charts)
+    return {"charts": charts, "complete": surface.complete, "factors": factors}
 
 
 def _of_point(atlas: Atlas, point: MeetingPoint) -> dict[str, Json]:

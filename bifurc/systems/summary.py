@@ -133,7 +133,7 @@ def _surfaces(atlas: Atlas) -> str:
         charts = surface.charts
         count, area = NONE, NONE
         if charts is not None:
-            count, area = str(len(charts)), charts.area_words
+            count, area = str(len(charts)), charts.area_words or NONE
         product = describe_product(surface.factors, atlas.names)
         remark = "; ".join(filter(None, [product, surface.note]))
         rows.append((surface.name, str(surface.dimension), count, area, remark))

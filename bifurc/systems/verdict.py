@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from bifurc.atlas import Atlas, samples_beyond_charts
+from collections.abc import Sequence
+
+from bifurc.atlas import Atlas, Surface, samples_beyond_charts
 from bifurc.completeness import Level
 from bifurc.decisions import closes_to_rounding
 from bifurc.singular.point import Kind
@@ -47,6 +49,21 @@ def verdict_of(atlas: Atlas) -> str:
     )
 
 
+def words_of_components(surfaces: Sequence[Surface]) -> str:
+    """What components, as far as all are of one kind, are: products, or of dimension 3
+    and more and covered by charts; empty where they are neither."""
+    products = words_of_products([surface.factors for surface in surfaces])
+    others = [surface.charts for surface in surfaces if not surface.factors]
+    counts = [len(charts) for charts in others if charts is not None]
+    are_covered = counts and all(
+        charts is not None and charts.is_finished and charts.dimension > 2
+        for charts in others
+    )
+    if products or not are_covered:
+        return products
+    return f"covered by {count_of(sum(counts), 'chart')}"
+
+
 def remark_on_charts(atlas: Atlas) -> str:
     """What to add where charts ran out before surfaces were covered."""
     if not any(surface.is_short_of_charts for surface in atlas.surfaces):
@@ -71,6 +88,6 @@ def _counts(atlas: Atlas) -> str:
     words = f"{forms} in {components}, {bifurcations}"
     if atlas.surfaces:
         words += f", {count_of(len(atlas.surfaces), 'surface')}"
-        products = words_of_products([surface.factors for surface in atlas.surfaces])
-        words += products and f", {products}"
+        components = words_of_components(atlas.surfaces)
+        words += components and f", {components}"
     return words

@@ -213,7 +213,7 @@ def doubts_of_findings(
     if on_rim:
         yield SearchDoubt.ON_RIM.doubt(count=on_rim)
     yield from _doubts_on_rims(problem, findings, points)
-    unfollowed = len(findings.components.notes.unfollowed)
+    unfollowed = len(findings.components.notes[2].unfollowed)
     if unfollowed:
         yield SearchDoubt.SINGULAR_CURVES.doubt(count=unfollowed)
     off_charts = findings.components.off_charts

@@ -132,6 +132,8 @@ def _surface(atlas: Atlas, index: int) -> Document:
         "min_singular_value": None,
         "component": atlas.components + index,
         "certificate": None,
+        "charts": None if surface.charts is None else len(surface.charts),
+        "complete": surface.complete,
         "note": surface.note,
         "factors": values_of(surface.factors, atlas.names),
     }

@@ -14,8 +14,11 @@ from bifurc.atlas import Atlas, NearMotion
 from bifurc.completeness import Completeness, Level
 from bifurc.decisions import closes_to_rounding
 from bifurc.singular.point import Kind
-from bifurc.surfaces.factor import words_of_products
-from bifurc.systems.verdict import has_only_open_points, remark_on_charts
+from bifurc.systems.verdict import (
+    has_only_open_points,
+    remark_on_charts,
+    words_of_components,
+)
 from bifurc.tables import count_of
 from linkages.app.exit_codes import ExitCode
 from linkages.app.reports.entry_parameters import member_text
@@ -106,17 +109,17 @@ def _mobile(atlas: Atlas) -> str:
         )
         return sentence + _within_tolerance(atlas)
     dimension = max(surface.dimension for surface in atlas.surfaces)
-    sentence = f"The linkage moves with mobility {dimension}{_products(atlas)}"
+    sentence = f"The linkage moves with mobility {dimension}{_components(atlas)}"
     if atlas.forms:
         sentence += f", and has {forms} of mobility 1"
     return f"{sentence}.{_within_tolerance(atlas)}{remark_on_charts(atlas)}"
 
 
-def _products(atlas: Atlas) -> str:
+def _components(atlas: Atlas) -> str:
     """How many components of the largest mobility there are, where all of them are known
-    to be products."""
+    to be products or covered by charts."""
     largest = [one for one in atlas.surfaces if one.dimension == atlas.mobility]
-    words = words_of_products([surface.factors for surface in largest])
+    words = words_of_components(largest)
     return words and f" in {count_of(len(largest), 'component')}, {words}"
 
 

@@ -279,7 +279,7 @@ def _surface_row(atlas: Atlas, surface: Surface) -> tuple[str, ...]:
     if charts is None:
         covering = "not needed" if product else "none: only sampled"
         return (name, dimension, "-", "-", covering, remark)
-    count, area = str(len(charts)), charts.area_words
+    count, area = str(len(charts)), charts.area_words or "-"
     return (name, dimension, count, area, charts.outcome.value, remark)
 
 

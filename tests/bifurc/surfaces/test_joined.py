@@ -52,17 +52,20 @@ def test_singular_solutions_are_in_no_part():
 
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize(("equations", "count"), [(spheres, 2), (sheets, 2)])
-def test_components_of_dimension_three_are_listed_apart(equations, count, seed):
-    atlas = bifurc.explore(problem_of(equations, 4), seed=seed)
+def test_without_charts_components_of_dimension_three_are_listed_apart(
+    equations, count, seed
+):
+    settings = SearchSettings(charts=0)
+    atlas = bifurc.explore(problem_of(equations, 4), seed=seed, settings=settings)
     assert [surface.dimension for surface in atlas.surfaces] == [3] * count
     assert {surface.note for surface in atlas.surfaces} == {APART}
 
 
-def test_a_component_whose_starts_are_all_joined_is_said_to_be_one():
+def test_without_charts_a_component_whose_starts_are_all_joined_is_one():
     def ellipsoid(u):
         return [u[0] ** 2 + u[1] ** 2 + 2 * u[2] ** 2 + 3 * u[3] ** 2 - 1]
 
-    settings = SearchSettings(starts=50)
+    settings = SearchSettings(starts=50, charts=0)
     (surface,) = bifurc.explore(problem_of(ellipsoid, 4), settings=settings).surfaces
     assert surface.note == JOINED
 

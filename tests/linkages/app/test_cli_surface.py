@@ -74,12 +74,13 @@ def test_a_surface_is_a_start_or_goal_by_its_name(folder):
 
 def test_there_is_no_route_over_what_is_only_sampled(tmp_path):
     (tmp_path / "free.toml").write_text(
-        'angles = "deg"\nlengths = [1, 1.2, 0.9, 1.3, 1.1, 0.8]\ntwists = [0, 0, 0, 0, 0, 0]\noffsets = [0, 0, 0, 0, 0, 0]'
+        'angles = "deg"\nlengths = [1, 1.2, 0.9, 1.3, 1.1, 0.8, 1, 1, 1]\n'
+        "twists = [0, 0, 0, 0, 0, 0, 0, 0, 0]\noffsets = [0, 0, 0, 0, 0, 0, 0, 0, 0]"
     )
     result = bifurc(
         "route", tmp_path / "free.toml", "surface 1", "surface 1", "--starts", 30
     )
     assert (
         result.exit_code == 4
-        and "surface 1 (dimension 3): it is only sampled" in result.stderr
+        and "surface 1 (dimension 6): it is only sampled" in result.stderr
     )

@@ -136,12 +136,10 @@ def test_of_the_ways_round_a_torus_the_shortest_is_taken(goldberg: Atlas) -> Non
         assert route.length == pytest.approx(length, rel=1e-9)
 
 
-def test_a_component_of_three_dimensions_is_only_sampled_and_no_route_goes_over_it() -> (
-    None
-):
-    problem = planar(1, 1.2, 0.9, 1.3, 1.1, 0.8)
-    atlas = explore(problem, settings=SearchSettings(starts=20))
-    sampled = r"surface 1 \(dimension 3\): it is only sampled"
+def test_without_charts_no_route_goes_over_a_component_of_four_dimensions() -> None:
+    problem = planar(1, 1.2, 0.9, 1.3, 1.1, 0.8, 0.7)
+    atlas = explore(problem, settings=SearchSettings(starts=20, charts=0))
+    sampled = r"surface 1 \(dimension 4\): it is only sampled"
     with pytest.raises(RouteError, match=sampled):
         find_route(atlas, "surface 1", "surface 1", problem=problem)
     sample = atlas.surfaces[0].samples[0]

@@ -70,7 +70,7 @@ def test_unknowns_are_the_joint_variables_and_close_the_mechanism(name):
         assert abs(rate[event.index]) < 1e-7
 
 
-# a component of three dimensions is only sampled
+# charts of a component of three dimensions run out
 @pytest.mark.parametrize("name", [n for n in SINGLE_LOOPS if "degenerate" not in n])
 def test_a_form_or_surface_passes_through_the_reference_configuration(name):
     _, atlas = mapped(name)
