@@ -389,7 +389,8 @@ def test_a_surface_is_a_form_of_dimension_2(write):
     assert result.exit_code == 0
     document = json.loads(result.stdout)
     assert [form["dimension"] for form in document["forms"]] == [2]
-    assert set(document["forms"][0]) == KEYS["forms"] | {"note", "factors"}
+    extra = {"note", "factors", "charts", "complete"}
+    assert set(document["forms"][0]) == KEYS["forms"] | extra
 
 
 DOES_NOT_MOVE = {
