@@ -65,7 +65,9 @@ class PointSearch:
         ``near`` (n,); ``nullity`` is the most likely one."""
         problem = self.problem
         is_refuted = False
-        nullities = {max(nullity, 2), 2, 3}
+        equations = len(problem.residuals(near[None])[0])
+        fewest = max(2, problem.n - equations)
+        nullities = {max(nullity, fewest), fewest, fewest + 1}
         for k in sorted(nullities, key=lambda k: abs(k - nullity)):
             if k > problem.n:
                 continue

@@ -181,3 +181,10 @@ def test_a_file_keeps_the_charts_and_a_route_leads_over_them(tmp_path) -> None:
     route = find_route(atlas, start, goal, problem=problem)
     # the chords of a great circle are a little shorter
     assert route.length == pytest.approx(np.pi / 2, rel=1e-5)
+
+
+def test_one_equation_of_four_unknowns_has_its_singular_points_looked_for():
+    """Whitney's umbrella times a line: F' has a null space of dimension 3 at least."""
+    umbrella = problem_of(lambda u: [u[0] ** 2 - u[1] ** 2 * u[2] + 0.0 * u[3]], 4, 1.0)
+    atlas = bifurc.explore(umbrella, settings=SearchSettings(starts=60))
+    assert {surface.dimension for surface in atlas.surfaces} >= {3}
