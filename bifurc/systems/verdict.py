@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from bifurc.atlas import Atlas, Surface, samples_beyond_charts
 from bifurc.completeness import Level
 from bifurc.decisions import closes_to_rounding
+from bifurc.search.answer.completeness import SearchDoubt
 from bifurc.singular.point import Kind
 from bifurc.surfaces.factor import words_of_products
 from bifurc.tables import count_of
@@ -31,16 +32,16 @@ def verdict_of(atlas: Atlas) -> str:
             "There is no curve of solutions, but the equations are nearly solved along "
             f"one: they are missed by {near.misclosure:.3g} of their magnitude at most."
         )
-    isolated = sum(point.kind is Kind.ISOLATED for point in atlas.points)
-    isolated += len(atlas.rigid)
-    if isolated:
-        count = count_of(isolated, "isolated solution")
-        return f"There is no curve of solutions, but {count}."
     if has_only_open_points(atlas):
         count = count_of(len(atlas.points), "singular point")
         return (
             f"No curve was found, but {count}; whether one leaves there is not known."
         )
+    isolated = sum(point.kind is Kind.ISOLATED for point in atlas.points)
+    isolated += len(atlas.rigid)
+    if isolated:
+        count = count_of(isolated, "isolated solution")
+        return f"There is no curve of solutions, but {count}."
     if closes_to_rounding(atlas.closure_gap):
         return "There is no solution within the bounds; starts reach some outside."
     return (
@@ -73,11 +74,20 @@ def remark_on_charts(atlas: Atlas) -> str:
 
 
 def has_only_open_points(atlas: Atlas) -> bool:
-    """Whether all that was found are singular points, none of which is isolated: what
-    leaves them is not known."""
+    """Whether all that was found are singular points, none of which is known to be
+    isolated: what leaves them is not known."""
     found = len(atlas.forms) + len(atlas.surfaces) + len(atlas.near_motions)
     found += len(atlas.rigid)
-    are_open = [point.kind is not Kind.ISOLATED for point in atlas.points]
+    corners = {
+        name
+        for doubt in atlas.completeness.doubts
+        if doubt.kind == SearchDoubt.OPEN_CORNERS.name
+        for name in doubt.data["points"]
+    }
+    are_open = [
+        point.kind is not Kind.ISOLATED or point.name in corners
+        for point in atlas.points
+    ]
     return not found and bool(are_open) and all(are_open)
 
 

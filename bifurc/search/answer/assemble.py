@@ -57,6 +57,15 @@ from bifurc.torus import wrap, wrapped_periods
 SAME_MISCLOSURE = 1e-3
 
 
+def _is_listed_else(findings: Findings, point: SingularPoint) -> bool:
+    """Whether a point is an assembly that is held, as what leads on from there leaves the
+    bounds, or one that no branch passes that of a near motion where its rank drops."""
+    if findings.assembly_at(point.u) is not None and findings.is_held(point.u):
+        return True
+    is_isolated = point.kind is Kind.ISOLATED
+    return is_isolated and findings.near_motion_through(point.u) is not None
+
+
 def assemble_atlas(
     problem: Problem,
     findings: Findings,
@@ -77,9 +86,7 @@ def assemble_atlas(
     located = [
         replace(point, u=wrap(point.u, periods))
         for point in findings.points.values()
-        # a point that no branch passes is that of a near motion where its rank drops
-        if point.kind is not Kind.ISOLATED
-        or findings.near_motion_through(point.u) is None
+        if not _is_listed_else(findings, point)
     ]
     met = meeting_points(problem, located, branches, surfaces, periods)
     points = tuple(_with_misclosure(point, traced) for point in met)
