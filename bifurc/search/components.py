@@ -32,6 +32,7 @@ from bifurc.numerics.singular_values import factors_of, singular_values
 from bifurc.problem import Problem
 from bifurc.search.own_units.unit_problem import UnitProblem
 from bifurc.search.records import Components, SingularCurve
+from bifurc.seeding import random_seeds
 from bifurc.settings import TraceSettings
 from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.locate import LocatedPoint, locate_singular_point
@@ -76,6 +77,9 @@ MOST_WIDER = 2
 # the factor from five dimensions to four, and to three. They are not measured, which takes
 # most of the time of a surface, and the more dimensions, the longer a cell takes to cut.
 OF_FIVE, FEWER = 1, 2.5
+# Random starts by which it is checked that their charts leave no gaps, and distance from
+# bounds, over the scale, within which that is not asked.
+CHECKS, BESIDE_BOUNDS = 1000, 1e-3
 # Distance from a chart's centre at which its singular point is looked for: over the
 # chart's radius, which counts as no smaller than a share of the problem's scale.
 REACH = 4.0
@@ -298,7 +302,23 @@ def _covered(
     if not len(seeds) or problem.domain.is_large:
         return None
     most = math.ceil(charts * OF_FIVE * FEWER ** (MOST_DIMENSIONS - dimension))
-    return cover_component(problem, seeds, dimension, charts=most, seconds=seconds)
+    made = cover_component(problem, seeds, dimension, charts=most, seconds=seconds)
+    has_gaps = not are_on_products.any() and _has_gaps(problem, made)
+    return replace(made, outcome=Covering.UNFIT) if has_gaps else made
+
+
+def _has_gaps(problem: Problem, covering: ChartAtlas) -> bool:
+    """Whether solutions from random starts, not just beside bounds, lie in no chart of
+    finished components: in narrow corners of the bounds charts may end too early."""
+    if not covering.is_finished:
+        return False
+    drawn = random_seeds(problem, np.random.default_rng(0), CHECKS).points
+    sigma, _ = null_spaces(problem, drawn)
+    nullity = np.count_nonzero(may_be_null(sigma), axis=1)
+    depths = -problem.domain.excess(drawn)
+    is_inner = depths > BESIDE_BOUNDS * problem.domain.scale
+    drawn = drawn[is_inner & (nullity == covering.dimension)]
+    return not covering.covers(drawn).all()
 
 
 def _join_to_charts(

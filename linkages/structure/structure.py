@@ -178,6 +178,8 @@ class Structure:
         self.is_held_flat = False
         if not self.mechanism.creases or self.mechanism.with_flat_creases:
             return
+        if self.mechanism.rounding:
+            return  # rounded coordinates do not tell what lies along a line
         variables = self.mechanism.variables
         self.stay_flat = creases_that_stay_flat(variables, copy(self)._flat_vertices())
         free = [one.label for one in variables if one.locked is None]

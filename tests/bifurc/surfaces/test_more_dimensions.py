@@ -189,3 +189,11 @@ def test_one_equation_of_four_unknowns_has_its_singular_points_looked_for():
     umbrella = problem_of(lambda u: [u[0] ** 2 - u[1] ** 2 * u[2] + 0.0 * u[3]], 4, 1.0)
     atlas = bifurc.explore(umbrella, settings=SearchSettings(starts=200, budget=1.0))
     assert atlas.points
+
+
+@pytest.mark.parametrize("half_width", [0.59, 0.6])
+def test_charts_that_end_in_narrow_corners_of_bounds_are_in_doubt(half_width):
+    """A 3-sphere in a cube is one by its necks from corner to corner."""
+    atlas = bifurc.explore(problem_of(sphere, 4, half_width))
+    assert {doubt.kind for doubt in atlas.completeness.doubts} == {"holes"}
+    assert not any(surface.charts.complete for surface in atlas.surfaces)
