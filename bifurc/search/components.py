@@ -55,9 +55,7 @@ WHOLE = (Outcome.CLOSED, Outcome.LEFT_REGION)
 
 # Share of the time that is left in which charts are made; they are measured in the rest.
 GROWING = 0.35
-GROWING_OTHERS = (
-    0.6  # the same, of components of more dimensions, which are not measured
-)
+GROWING_OTHERS = 0.6  # the same, of more dimensions, where none is measured
 RECOGNISING = 0.2  # the same, to find products
 JOINING = 0.1  # and to see which samples are joined
 RADIUS = 0.7  # of the largest charts of surfaces, over the problem's scale
@@ -303,22 +301,26 @@ def _covered(
         return None
     most = math.ceil(charts * OF_FIVE * FEWER ** (MOST_DIMENSIONS - dimension))
     made = cover_component(problem, seeds, dimension, charts=most, seconds=seconds)
-    has_gaps = not are_on_products.any() and _has_gaps(problem, made)
+    has_gaps = not are_on_products.any() and _has_gaps(problem, made, deadline)
     return replace(made, outcome=Covering.UNFIT) if has_gaps else made
 
 
-def _has_gaps(problem: Problem, covering: ChartAtlas) -> bool:
-    """Whether solutions from random starts, not just beside bounds, lie in no chart of
-    finished components: in narrow corners of the bounds charts may end too early."""
+def _has_gaps(problem: Problem, covering: ChartAtlas, deadline: Deadline) -> bool:
+    """Whether solutions from random starts before a deadline, not just beside bounds, lie
+    in no chart of finished components: in narrow corners of the bounds charts may end too
+    early."""
     if not covering.is_finished:
         return False
-    drawn = random_seeds(problem, np.random.default_rng(0), CHECKS).points
+    rng = np.random.default_rng(0)
+    drawn = random_seeds(problem, rng, CHECKS, deadline=deadline).points
+    if not len(drawn):
+        return False
     sigma, _ = null_spaces(problem, drawn)
     nullity = np.count_nonzero(may_be_null(sigma), axis=1)
     depths = -problem.domain.excess(drawn)
     is_inner = depths > BESIDE_BOUNDS * problem.domain.scale
     drawn = drawn[is_inner & (nullity == covering.dimension)]
-    return not covering.covers(drawn).all()
+    return bool(len(drawn)) and not covering.covers(drawn).all()
 
 
 def _join_to_charts(
