@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 from bifurc.atlas import Atlas
 from bifurc.checks import check_type
-from bifurc.limits import HeldInterrupt, deadline_within, until
+from bifurc.limits import HeldInterrupt, current_deadline, deadline_within, until
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from linkages.entry import Linkage
@@ -16,6 +17,7 @@ from linkages.mechanisms.mechanism import Mechanism
 from linkages.subject import as_subject
 
 DEFAULT_SEARCH = SearchSettings()
+WHOLE = 0.5  # of the time, for a whole sheet of which a simpler one is known to move
 
 
 def map_linkage(
@@ -51,8 +53,13 @@ def map_linkage(
     check_type("settings", settings, SearchSettings)
     deadline = deadline_within(settings.budget)
     subject = as_subject(linkage)
+    search = partial(explore, settings=settings, seed=seed, progress=progress)
     with HeldInterrupt() as interrupt, until(replace(deadline, interrupt=interrupt)):
-        found = explore(subject.traced, settings=settings, seed=seed, progress=progress)
-        atlas = subject.labelled(found)
+        simpler = subject.simpler()
+        with until(current_deadline().share(WHOLE if simpler else 1.0)):
+            atlas = subject.labelled(search(subject.traced))
+        is_open = not (atlas.forms or atlas.surfaces or interrupt.was_pressed)
+        if simpler and is_open:
+            atlas = simpler.labelled(search(simpler.traced))
         interrupt.settle()
     return atlas

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property, lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -93,6 +94,11 @@ class Subject(ABC):
         """An atlas of it in the joint angles of the table, which is the subject then; as
         it is, where there is none."""
         return atlas
+
+    def simpler(self) -> Subject | None:
+        """The same with creases of a sheet at rest, in which it leaves its flat state; None
+        where it is not known to be left in such a way."""
+        return None
 
     @abstractmethod
     def closure_with_errors(self, error: float, rng: np.random.Generator) -> Problem:
@@ -302,6 +308,19 @@ class MechanismSubject(Subject):
         drives = drives or [one for one in free if one.label in motors] or free[:1]
         labels = {one.label for one in [*drives, *limited]}
         return [k for k, label in enumerate(self.labels) if label in labels]
+
+    def simpler(self) -> MechanismSubject | None:
+        way = self.closure.flat_state.way
+        if way is None or not way.rest.any():
+            return None
+        unknowns = self.readout.structure.unknowns
+        at_rest = [
+            one.label for one, rests in zip(unknowns, way.rest, strict=True) if rests
+        ]
+        at_rest += self.mechanism.at_rest
+        other = _of_mechanism(replace(self.mechanism, at_rest=tuple(at_rest)))
+        # fewer creases may leave it in another way
+        return other.simpler() or other
 
     def labelled(self, atlas: Atlas) -> Atlas:
         """With labels on the forms."""

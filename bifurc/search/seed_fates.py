@@ -112,7 +112,7 @@ class SeedJudge:
         self.points = points
         self.tracer = tracer
         self.rules = (
-            _Rule(Seed.is_weak, self._isolated_point, "a known point, to rounding"),
+            _Rule(Seed.is_weak, self._known_point, "a known point, to rounding"),
             _Rule(Seed.cannot_move, self._assembly, "F' has full rank"),
             _Rule(Seed.is_any, self._near_motion, "a known near motion"),
             _Rule(Seed.may_be_shaky, self._shaky_curve, "rank n - 3 all along"),
@@ -134,11 +134,11 @@ class SeedJudge:
                 return fate
         raise AssertionError("the last rule has an answer for every seed")
 
-    def _isolated_point(self, seed: Seed) -> SeedFate | None:
-        """The known isolated singular point from which rounding does not tell it: F is
+    def _known_point(self, seed: Seed) -> SeedFate | None:
+        """The known singular point from which rounding does not tell it: F is
         rounding half-way, too."""
         known = self.findings.point_near(seed.point, is_known_assembly.threshold)
-        if known is None or known.point.kind is not Kind.ISOLATED:
+        if known is None:
             return None
         offset = self.problem.domain.difference(known.point.u, seed.point)
         half_way = seed.point + 0.5 * offset

@@ -10,7 +10,7 @@ from typing import Protocol, TypeAlias
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.completeness import Scope
+from bifurc.completeness import Claim, Scope
 from bifurc.decisions import is_start_solved
 from bifurc.equations.system import ScaledTape
 from bifurc.limits import Deadline, current_deadline, made_in_time, until
@@ -53,10 +53,10 @@ class Source(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class BesideFlatCreases:
-    """What a ``judge``, if there is one, says of forms in ``n`` unknowns, and that so many
-    ``creases`` are held flat."""
+    """What a ``judge``, if there is one, says of forms in ``n`` unknowns, and the
+    ``claims`` on creases that are held flat."""
 
-    creases: int
+    claims: tuple[Claim, ...]
     n: int
     judge: Callable[[Sequence[Branch], float], Audit] | None
 
@@ -65,9 +65,8 @@ class BesideFlatCreases:
         audit = Audit((), np.empty((0, self.n)))
         if self.judge is not None:
             audit = self.judge(branches, seconds)
-        words = count_of(self.creases, "crease")
-        claim = estimated(LinkageClaim.STAY_FLAT, creases=words)
-        return replace(audit, claims=(*audit.claims, claim), has_all_isolated=False)
+        claims = (*audit.claims, *self.claims)
+        return replace(audit, claims=claims, has_all_isolated=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,9 +147,12 @@ def mechanism_seeds(
         solutions = lattice.homes(solutions)
     is_inside = problem.domain.are_inside(solutions)
     seeds = drawn.with_constructed(solutions[is_inside])
-    if motions is None and not problem.structure.is_held_flat:
+    if motions is None and not problem.flat_state.is_isolated:
         seeds = replace(seeds, more=partial(_drawn, problem))
     seeds = _judged(problem, replace(seeds, audit=judge))
+    way = problem.flat_state.way
+    if way is not None and not way.rest.any():
+        seeds = seeds.with_constructed(way.point[None])
     return seeds.with_constructed(_assemblies(problem))
 
 
@@ -162,14 +164,25 @@ def _judged(problem: ClosureSystem, seeds: Seeds) -> Seeds:
     if lattice:
         ends = TurnedEnds(problem, lattice, seeds.audit)
         seeds = replace(seeds, home=lattice.home, audit=ends)
-    if not structure.stay_flat:
-        return seeds
-    if structure.is_held_flat:
+    creases = {*structure.stay_flat}
+    if problem.flat_state.is_isolated:
+        creases |= {one.label for one in structure.unknowns}
         seeds = replace(seeds, isolated=problem.reference[None])
         if sees_all:  # folded states, too
             return seeds
-    creases = len(structure.stay_flat)
-    return replace(seeds, audit=BesideFlatCreases(creases, problem.n, seeds.audit))
+    claims = [
+        estimated(kind, creases=count_of(len(labels), "crease"))
+        for kind, labels in (
+            (LinkageClaim.STAY_FLAT, creases),
+            (LinkageClaim.AT_REST, structure.mechanism.at_rest),
+        )
+        if labels
+    ]
+    if not claims:
+        return seeds
+    return replace(
+        seeds, audit=BesideFlatCreases(tuple(claims), problem.n, seeds.audit)
+    )
 
 
 def ring_seeds(
@@ -253,7 +266,7 @@ def _drawn(
     """What is reached from random starts before a deadline; where whole turns lead to
     the same again, half of them from a region that holds a translate of everything. None
     where a sheet is held flat."""
-    if problem.structure.is_held_flat:
+    if problem.flat_state.is_isolated:
         count = 0
     lattice = problem.lattice
     if not lattice:

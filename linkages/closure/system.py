@@ -19,6 +19,7 @@ from linkages.loop import Loop
 if TYPE_CHECKING:
     # they import networkx, which a loop does not need
     from linkages.closure.changes import Changes
+    from linkages.closure.flat_state import FlatState
     from linkages.mechanisms.mechanism import Mechanism
     from linkages.structure.structure import Structure
     from linkages.turns.turn_lattice import TurnLattice
@@ -80,6 +81,13 @@ class ClosureSystem(NumericalProblem):
         from linkages.turns.turn_lattice import turn_lattice
 
         return turn_lattice(self.structure)
+
+    @cached_property
+    def flat_state(self) -> FlatState:
+        """What leads out of the flat state of a sheet."""
+        from linkages.closure.flat_state import flat_state
+
+        return flat_state(self)
 
 
 def _parts_of(

@@ -118,7 +118,8 @@ class Mechanism:
     they may be, where that is more than they are as doubles. ``panels`` are drawn of
     bodies that are sheets, with ``creases`` that are assigned. What hangs on joints in no
     closed loop is held where it is given, but ``with_flaps``, and so are creases of a
-    flat sheet that stay flat about this state, but ``with_flat_creases``. ``driver`` is the joint
+    flat sheet that stay flat about this state, but ``with_flat_creases``, and creases
+    ``at_rest``, which may fold. ``driver`` is the joint
     variable whose dead points matter: if none is named, those that ``motors`` drive, or
     else the first one that is free.
     ``layers`` are numbers from 1 of bodies that lie one above the other in a planar
@@ -135,6 +136,7 @@ class Mechanism:
     panels: tuple[Panel, ...] = field(default=(), compare=False)
     with_flaps: bool = False
     with_flat_creases: bool = field(default=False, kw_only=True)
+    at_rest: tuple[str, ...] = field(default=(), kw_only=True)
     creases: tuple[Crease, ...] = field(default=(), compare=False)
     driver: str = field(default="", compare=False)
     motors: tuple[str, ...] = field(default=(), compare=False)

@@ -32,6 +32,8 @@ def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
     if mechanism.creases:
         values["creases"] = [one._asdict() for one in mechanism.creases]
         values["with_flat_creases"] = mechanism.with_flat_creases
+    if mechanism.at_rest:
+        values["at_rest"] = list(mechanism.at_rest)
     if mechanism.layers:
         values["layers"] = dict(mechanism.layers)
     if mechanism.motors:
@@ -136,6 +138,7 @@ def mechanism_from(given: object, name: str) -> Mechanism:
         with_flaps,
         creases,
         with_flat_creases=with_flat_creases,
+        at_rest=tuple(given.get("at_rest", ())),
         motors=tuple(given.get("motors", ())),
         layers=layers,
     )

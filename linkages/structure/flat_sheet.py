@@ -19,7 +19,7 @@ Farther away from the flat state such creases may open.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
@@ -40,6 +40,12 @@ class FlatVertex(NamedTuple):
 
     variables: tuple[int, ...]
     directions: np.ndarray
+
+    def without(self, flat: Collection[int]) -> FlatVertex:
+        """What is left of it without variables, by number, that stay 0."""
+        left = np.array([number not in flat for number in self.variables])
+        numbers = tuple(np.array(self.variables)[left].tolist())
+        return FlatVertex(numbers, self.directions[left])
 
 
 def flat_vertex(
@@ -71,18 +77,16 @@ def creases_that_stay_flat(
     flat: set[int] = set()
     waiting = list(range(len(vertices)))
     while waiting:
-        vertex = vertices[waiting.pop()]
-        left = np.array([number not in flat for number in vertex.variables])
-        numbers = np.array(vertex.variables)[left]
-        signs = np.array([_sign(variables[number]) for number in numbers])
-        can_fold = creases_that_fold(vertex.directions[left], signs)
-        shut = set(numbers[~can_fold].tolist())
+        vertex = vertices[waiting.pop()].without(flat)
+        signs = np.array([sign_of(variables[number]) for number in vertex.variables])
+        can_fold = creases_that_fold(vertex.directions, signs)
+        shut = set(np.array(vertex.variables, dtype=int)[~can_fold].tolist())
         flat |= shut
         waiting += [k for k, other in enumerate(vertices) if shut & {*other.variables}]
     return tuple(variables[number].label for number in sorted(flat))
 
 
-def _sign(variable: Variable) -> int:
+def sign_of(variable: Variable) -> int:
     """The sign of a variable that its limits keep from 0 on, `FREE` where they do not."""
     low, high = variable.limits or (-np.inf, np.inf)
     return int(is_at_limit(abs(low))) - int(is_at_limit(abs(high)))
@@ -158,7 +162,7 @@ def _of_three(directions: np.ndarray) -> np.ndarray:
     """Angles (r, d) of every three creases whose sum of u_k d_k is 0."""
     count = len(directions)
     chosen = np.array(list(combinations(range(count), 3)))
-    products = _products(directions)
+    products = products_of(directions)
     angles = np.zeros((len(chosen), count))
     for own, second, third in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         sines = products[chosen[:, second], chosen[:, third]]
@@ -168,12 +172,12 @@ def _of_three(directions: np.ndarray) -> np.ndarray:
 
 def _of_two(directions: np.ndarray) -> np.ndarray:
     """The same (r, d) of two creases or less: none, if they do not lie along a line."""
-    if len(directions) < 2 or not is_no_fold(abs(float(_products(directions)[0, 1]))):
+    if len(directions) < 2 or not is_no_fold(abs(float(products_of(directions)[0, 1]))):
         return np.empty((0, len(directions)))
     return np.array([[1.0, -directions[0] @ directions[1]]])
 
 
-def _products(directions: np.ndarray) -> np.ndarray:
+def products_of(directions: np.ndarray) -> np.ndarray:
     """The determinants (d, d) of every two unit vectors (d, 2)."""
     x, y = directions.T
     return np.asarray(x[:, None] * y - y[:, None] * x)
@@ -182,6 +186,6 @@ def _products(directions: np.ndarray) -> np.ndarray:
 def _forms(directions: np.ndarray, one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Half the mixed form (r, s) of second order at angles (r, d) and (s, d); 0 where it
     is rounding."""
-    products = np.triu(_products(directions), 1)
+    products = np.triu(products_of(directions), 1)
     forms: np.ndarray = one @ (products + products.T) @ other.T
     return np.where(is_no_fold(np.abs(forms)), 0.0, forms)

@@ -36,6 +36,7 @@ from linkages.structure.flat_sheet import (
     FlatVertex,
     creases_that_stay_flat,
     flat_vertex,
+    sign_of,
 )
 from linkages.structure.free_points import FreePoint, free_points
 from linkages.structure.groups import SPHERICAL, Groups, JointPoint, find_idle_turn
@@ -170,24 +171,38 @@ class Structure:
         """The labels of variables that are held without having been locked."""
         flaps = self.hanging.labels if self.holds_flaps else ()
         flat = () if self.is_held_flat else self.stay_flat
-        return frozenset((*flaps, *flat))
+        return frozenset((*flaps, *flat, *self.mechanism.at_rest))
 
     def _hold_flat_creases(self) -> None:
-        """Lock the creases of a flat sheet that stay flat, unless all of them do."""
+        """Lock the creases of a flat sheet that stay flat, unless all of them do, and
+        those that are `at_rest`."""
         self.stay_flat: tuple[str, ...] = ()
+        self.flat_vertices: list[FlatVertex] = []
         self.is_held_flat = False
         if not self.mechanism.creases or self.mechanism.with_flat_creases:
             return
         if self.mechanism.rounding:
             return  # rounded coordinates do not tell what lies along a line
         variables = self.mechanism.variables
-        self.stay_flat = creases_that_stay_flat(variables, copy(self)._flat_vertices())
+        if any(one.locked for one in variables):
+            return  # it is not flat
+        vertices = copy(self)._flat_vertices()
+        self.stay_flat = creases_that_stay_flat(variables, vertices)
         free = [one.label for one in variables if one.locked is None]
         self.is_held_flat = set(self.stay_flat) == set(free)
-        if self.stay_flat and not self.is_held_flat:
-            locks = dict.fromkeys(self.stay_flat, 0.0)
-            self.mechanism = self.mechanism.with_locks(locks)
+        if self.is_held_flat:
+            return
+        held = {*self.stay_flat, *self.mechanism.at_rest}
+        numbers = [k for k, one in enumerate(variables) if one.label in held]
+        self.flat_vertices = [vertex.without(numbers) for vertex in vertices]
+        if held:
+            self.mechanism = self.mechanism.with_locks(dict.fromkeys(held, 0.0))
             self.groups = Groups(self.mechanism, self.unit)
+
+    @property
+    def fold_signs(self) -> np.ndarray:
+        """The signs (v,) of variables that their limits keep from 0 on, 0 of others."""
+        return np.array([sign_of(one) for one in self.mechanism.variables])
 
     def _flat_vertices(self) -> list[FlatVertex]:
         """The inner vertices about which a sheet is flat."""
