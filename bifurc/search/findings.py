@@ -419,6 +419,22 @@ class Findings:
             return known
         return SeedFate(Fate.RIGID, self.rigid.add(RigidAssembly(place, hidden)))
 
+    def isolated_near(
+        self, u: np.ndarray, within: float
+    ) -> tuple[np.ndarray, SeedFate] | None:
+        """The first known singular point, or assembly that is held, at less than
+        ``within`` scales from ``u`` (n,), and the fate of a seed there."""
+        sighting = self.point_near(u, within)
+        if sighting is not None:
+            return sighting.point.u, sighting.fate
+        for number, known in self.rigid.items():
+            is_near = (
+                self._distance(known.place, u) < within * self.problem.domain.scale
+            )
+            if is_near and self.is_held(known.place):
+                return known.place, SeedFate(Fate.RIGID, number)
+        return None
+
     def is_held(self, u: np.ndarray) -> bool:
         """Whether a solution (n,) at which F' is singular is there for certain, and the
         problem knows that no motion passes it, or a stress or the bounds hold it."""

@@ -30,7 +30,6 @@ from bifurc.search.records import Start, half_branch_starts
 from bifurc.search.seed_book import SeedFate
 from bifurc.search.solutions import polished
 from bifurc.search.tracing import Tracer
-from bifurc.singular.point import Kind
 from bifurc.system import relative_gaps
 
 log = logging.getLogger(__name__)
@@ -135,15 +134,15 @@ class SeedJudge:
         raise AssertionError("the last rule has an answer for every seed")
 
     def _known_point(self, seed: Seed) -> SeedFate | None:
-        """The known singular point from which rounding does not tell it: F is
-        rounding half-way, too."""
-        known = self.findings.point_near(seed.point, is_known_assembly.threshold)
+        """The known singular point, or assembly that is held, from which rounding does
+        not tell it: F is rounding half-way, too."""
+        known = self.findings.isolated_near(seed.point, is_known_assembly.threshold)
         if known is None:
             return None
-        offset = self.problem.domain.difference(known.point.u, seed.point)
-        half_way = seed.point + 0.5 * offset
+        place, fate = known
+        half_way = seed.point + 0.5 * self.problem.domain.difference(place, seed.point)
         gap = float(relative_gaps(self.problem, half_way[None])[0])
-        return known.fate if closes_to_rounding(gap) else None
+        return fate if closes_to_rounding(gap) else None
 
     def _near_motion(self, seed: Seed) -> SeedFate | None:
         """The known near motion on which it lies."""

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bifurc.decisions import is_start_solved
+from bifurc.limits import one_thread
 from linkages.closure.system import ClosureSystem
 from linkages.structure.leading_folds import LeadingFolds
 
@@ -36,6 +37,12 @@ def flat_state(problem: ClosureSystem) -> FlatState:
     structure = problem.structure
     if structure.is_held_flat or not structure.flat_vertices:
         return FlatState(is_isolated=structure.is_held_flat)
+    with one_thread(problem.n):
+        return _searched(problem)
+
+
+def _searched(problem: ClosureSystem) -> FlatState:
+    structure = problem.structure
     folds = LeadingFolds(structure.flat_vertices, structure.fold_signs)
     for fold in folds.random(np.random.default_rng(0)):
         for way in _ways_along(problem, fold):

@@ -147,7 +147,7 @@ def mechanism_seeds(
         solutions = lattice.homes(solutions)
     is_inside = problem.domain.are_inside(solutions)
     seeds = drawn.with_constructed(solutions[is_inside])
-    if motions is None and not problem.flat_state.is_isolated:
+    if motions is None and not problem.structure.is_held_flat:
         seeds = replace(seeds, more=partial(_drawn, problem))
     seeds = _judged(problem, replace(seeds, audit=judge))
     way = problem.flat_state.way
@@ -266,7 +266,7 @@ def _drawn(
     """What is reached from random starts before a deadline; where whole turns lead to
     the same again, half of them from a region that holds a translate of everything. None
     where a sheet is held flat."""
-    if problem.flat_state.is_isolated:
+    if problem.structure.is_held_flat:
         count = 0
     lattice = problem.lattice
     if not lattice:

@@ -20,7 +20,7 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
     surface is regular, or else at the first assembly.
 
     The map leaves ``idle_bodies`` and ``idle_turns`` out, holds what is ``hanging``, if it
-    ``holds_flaps``, and creases that ``stay_flat``, and counts the freedoms of
+    ``holds_flaps``, and creases that ``stay_flat`` or are ``at_rest``, and counts the freedoms of
     ``loose_chains``. Points are counted from the ``origin``, in the coordinates of the
     file. ``translates`` is None where nothing is
     left out that differs by whole turns.
@@ -49,6 +49,7 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
         "hanging": [asdict(joint) for joint in readout.structure.hanging.joints],
         "holds_flaps": readout.structure.holds_flaps,
         "stay_flat": list(readout.structure.stay_flat),
+        "at_rest": list(mechanism.at_rest),
         "loose_chains": [asdict(chain) for chain in loose_chains(readout.structure)],
         "characteristic_length": readout.structure.unit,
         "origin": list(mechanism.origin),

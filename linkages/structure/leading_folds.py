@@ -57,16 +57,17 @@ class LeadingFolds:
 
     def near(self, angles: np.ndarray) -> np.ndarray | None:
         """That (v,) to which ``angles`` (v,) lead; None where they lead to none."""
-        angles, residual = self._solved(angles)
-        while SOLVED < residual < NEAR:
+        fold = None
+        angles, residual = self._solved(np.clip(angles, self.low, self.high))
+        while residual < NEAR:
+            if residual < SOLVED:
+                fold = angles.copy()
             rests = np.abs(angles) < REST * np.abs(angles).max()
             if not angles[rests].any():
-                return None
+                break
             angles[rests] = 0.0
             angles, residual = self._solved(angles)
-        if residual > SOLVED:
-            return None
-        return np.where(np.abs(angles) < REST * np.abs(angles).max(), 0.0, angles)
+        return fold
 
     def residuals(self, angles: np.ndarray) -> np.ndarray:
         """By how much angles (v,) miss the equations (3 p + 1,): of first order, of

@@ -60,7 +60,8 @@ SAME_MISCLOSURE = 1e-3
 def _is_listed_else(findings: Findings, point: SingularPoint) -> bool:
     """Whether a point is an assembly that is held, as what leads on from there leaves the
     bounds, or one that no branch passes that of a near motion where its rank drops."""
-    if findings.assembly_at(point.u) is not None and findings.is_held(point.u):
+    at = findings.assembly_at(point.u)
+    if at is not None and findings.is_held(findings.rigid[at.number].place):
         return True
     is_isolated = point.kind is Kind.ISOLATED
     return is_isolated and findings.near_motion_through(point.u) is not None

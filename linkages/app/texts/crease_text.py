@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from bifurc.tables import count_of
@@ -11,7 +12,7 @@ if TYPE_CHECKING:
     # it imports networkx, which a loop does not need
     from linkages.structure.structure import Structure
 
-NAMED = 8  # creases that stay flat beyond this number are only counted
+NAMED = 8  # creases that are held beyond this number are only counted
 
 
 def assigned_creases(mechanism: Mechanism) -> set[str]:
@@ -25,7 +26,7 @@ def assigned_creases(mechanism: Mechanism) -> set[str]:
 
 def describe_creases(structure: Structure) -> str:
     """How many valleys and mountains there are, and between which fold angles they are
-    followed; and which stay flat."""
+    followed; which stay flat, and which are at rest."""
     mechanism = structure.mechanism
     letters = [one.letter for one in mechanism.creases]
     valleys = count_of(letters.count("V"), "valley fold")
@@ -40,16 +41,27 @@ def describe_creases(structure: Structure) -> str:
 
 
 def _that_stay_flat(structure: Structure) -> list[str]:
-    """The creases that stay flat, as a line; none where all fold."""
-    labels = structure.stay_flat
-    if not labels:
-        return []
+    """The creases that stay flat, and those at rest, as a line each."""
+    lines = []
+    stay_flat, at_rest = structure.stay_flat, structure.mechanism.at_rest
     if structure.is_held_flat:
-        return ["As they are assigned none of them leaves the flat state."]
+        lines.append("As they are assigned none of them leaves the flat state.")
+    elif stay_flat:
+        verb = "stays" if len(stay_flat) == 1 else "stay"
+        lines.append(
+            f"Held: {count_of(len(stay_flat), 'crease')} {verb} flat about the flat state "
+            f"({_named(stay_flat)}); --with-flat-creases looks for where they fold "
+            "farther on."
+        )
+    if at_rest:
+        lines.append(
+            f"Held as well: {count_of(len(at_rest), 'crease')} ({_named(at_rest)}), as in "
+            "a way out of the flat state that was found; whether they can fold is not "
+            "known."
+        )
+    return lines
+
+
+def _named(labels: Sequence[str]) -> str:
     more = f" and {len(labels) - NAMED} more" if len(labels) > NAMED else ""
-    names = ", ".join(labels[:NAMED]) + more
-    verb = "stays" if len(labels) == 1 else "stay"
-    return [
-        f"Held: {count_of(len(labels), 'crease')} {verb} flat about the flat state "
-        f"({names}); --with-flat-creases looks for where they fold farther on."
-    ]
+    return ", ".join(labels[:NAMED]) + more

@@ -1,0 +1,133 @@
+"""Ways out of the flat state of a sheet, and that there are none, beside the bird's foot,
+least squares and maps."""
+
+import numpy as np
+import pytest
+from scipy.optimize import least_squares
+from scipy.spatial import Delaunay
+
+import linkages
+from linkages.closure.closure import Closure
+from linkages.readout.readout import Readout
+from linkages.structure.flat_boxes import first_fold
+from linkages.structure.flat_sheet import FlatVertex
+from linkages.structure.leading_folds import LeadingFolds
+from linkages.structure.structure import Structure
+from tests.linkages.files.test_fold import has_birds_foot
+from tests.linkages.structure.test_flat_sheet import random_vertex, sheet_of
+from tests.samples import one_in
+
+
+def random_sheet(rng, tmp_path):
+    """Triangles about 2 to 4 inner vertices, assigned so that some vertices may fold."""
+    while True:
+        turns = np.sort(rng.uniform(0.0, 2 * np.pi, size=rng.integers(5, 8)))
+        if np.diff([*turns, turns[0] + 2 * np.pi]).max() < 2.2:
+            break
+    rim = 2.0 * np.transpose([np.cos(turns), np.sin(turns)])
+    inner = rng.uniform(-0.9, 0.9, size=(rng.integers(2, 5), 2))
+    triangles = Delaunay(np.concatenate([rim, inner]))
+    hull = {tuple(sorted(edge)) for edge in triangles.convex_hull.tolist()}
+    sides = [
+        tuple(sorted((face[k], face[k - 1])))
+        for face in triangles.simplices.tolist()
+        for k in range(3)
+    ]
+    edges = list(dict.fromkeys(sides))
+    while True:
+        letters = ["B" if edge in hull else rng.choice(["M", "V"]) for edge in edges]
+        sheet = sheet_of(tmp_path, triangles.points.tolist(), edges, letters)
+        if not Structure(sheet).is_held_flat:
+            return sheet
+
+
+def folds_of(turns, signs):
+    directions = np.transpose([np.cos(turns), np.sin(turns)])
+    return LeadingFolds([FlatVertex(tuple(range(len(turns))), directions)], signs)
+
+
+def test_derivatives_are_those_of_differences():
+    rng = np.random.default_rng(0)
+    turns, signs = random_vertex(rng, has_line=False)
+    directions = np.transpose([np.cos(turns), np.sin(turns)])
+    last = len(turns) - 1
+    vertices = [
+        FlatVertex(tuple(range(last + 1)), directions),
+        FlatVertex((last, last + 1, last + 2), directions[:3]),
+    ]
+    folds = LeadingFolds(vertices, np.append(signs, [1, 1]))
+    angles = rng.uniform(-1.0, 1.0, size=last + 3)
+    steps = np.eye(last + 3)  # the equations are quadratic
+    differences = [
+        0.5 * (folds.residuals(angles + step) - folds.residuals(angles - step))
+        for step in steps
+    ]
+    assert np.allclose(folds.jacobian(angles), np.transpose(differences), atol=1e-14)
+
+
+@pytest.mark.parametrize("seed", one_in(10, range(20)))
+def test_a_vertex_has_no_fold_if_it_has_no_birds_foot(seed):
+    rng = np.random.default_rng(seed)
+    for _ in range(25):
+        turns, signs = random_vertex(rng, has_line=False)
+        folds = folds_of(turns, signs)
+        angles, is_none = first_fold(folds)
+        assert is_none != has_birds_foot(turns, signs.tolist())
+        if angles is not None:
+            assert np.abs(folds.residuals(angles)).max() < 1e-10
+            assert (angles * signs >= 0.0).all()
+
+
+@pytest.mark.parametrize("seed", one_in(20, range(60)))
+def test_a_flat_state_is_left_or_isolated(seed, tmp_path):
+    """Where it is told to be isolated no small fold within the assignment closes, from
+    random starts; where a way leads out of it, that closes."""
+    rng = np.random.default_rng(seed)
+    problem = Closure(random_sheet(rng, tmp_path))
+    way, is_isolated = problem.flat_state
+    low, high = problem.domain.bounds.T
+    if way is not None:
+        assert np.abs(problem.residuals(way.point[None])).max() < 1e-13
+        assert (way.point >= low).all() and (way.point <= high).all()
+        assert np.array_equal(way.point == 0.0, way.rest)
+        assert 0.01 < np.abs(way.point).max() < 0.6
+    elif is_isolated:
+        missed = []
+        for start in rng.uniform(low / np.pi, high / np.pi, size=(20, problem.n)):
+            end = least_squares(
+                lambda u: np.append(problem.residuals(u[None])[0], u @ u - 0.01),
+                0.1 * start / np.linalg.norm(start),
+                bounds=(low - 1e-15, high + 1e-15),
+            )
+            missed.append(np.linalg.norm(end.fun))
+        assert min(missed) > 1e-6
+
+
+def test_what_folds_in_a_way_out_is_mapped_where_nothing_else_is_found(tmp_path):
+    sheet = random_sheet(np.random.default_rng(44), tmp_path)
+    atlas = linkages.map_linkage(sheet)
+    mapped = linkages.mechanism_of(atlas)
+    assert len(atlas.forms) == 1 and mapped.at_rest
+    assert Structure(mapped).held > set(mapped.at_rest)  # and flaps
+    assert any("held flat besides" in one.text for one in atlas.completeness.claims)
+    readout = Readout(mapped)
+    points = atlas.forms[0].branch.sample(9)
+    names = readout.labels()
+    still = readout.values(points)[:, [names.index(one) for one in mapped.at_rest]]
+    assert not still.any()
+    whole = Closure(sheet)
+    columns = [names.index(one.label) for one in whole.structure.unknowns]
+    solutions = readout.values(points)[:, columns]
+    assert np.abs(whole.residuals(solutions)).max() < 1e-9
+
+
+def test_a_sheet_whose_vertices_fold_one_by_one_and_not_together_is_rigid(tmp_path):
+    sheet = random_sheet(np.random.default_rng(6), tmp_path)
+    structure = Structure(sheet)
+    assert not structure.stay_flat
+    problem = Closure(sheet)
+    assert problem.flat_state.is_isolated
+    seeds = problem.seeds(np.random.default_rng(0), 1000, None)
+    assert seeds.know_isolated(problem.reference)
+    atlas = linkages.map_linkage(sheet)
+    assert len(atlas.rigid) == 1 and not (atlas.forms or atlas.surfaces or atlas.points)
