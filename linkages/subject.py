@@ -310,12 +310,14 @@ class MechanismSubject(Subject):
         return [k for k, label in enumerate(self.labels) if label in labels]
 
     def simpler(self) -> MechanismSubject | None:
-        way = self.closure.flat_state.way
-        if way is None or not way.rest.any():
+        ways = self.closure.flat_state.ways
+        if not ways or not ways[0].rest.any():
             return None
         unknowns = self.readout.structure.unknowns
         at_rest = [
-            one.label for one, rests in zip(unknowns, way.rest, strict=True) if rests
+            one.label
+            for one, rests in zip(unknowns, ways[0].rest, strict=True)
+            if rests
         ]
         at_rest += self.mechanism.at_rest
         other = _of_mechanism(replace(self.mechanism, at_rest=tuple(at_rest)))

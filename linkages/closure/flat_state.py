@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from bifurc.decisions import is_start_solved
+from bifurc.domain import Domain
 from bifurc.limits import one_thread
-from linkages.closure.system import ClosureSystem
+from linkages.closure.within_limits import Holding
+from linkages.structure.flat_sheet import FlatVertex
 from linkages.structure.leading_folds import LeadingFolds
+from linkages.structure.structure import Structure
 
 SIZES = (0.3, 0.1, 0.03)  # rad, the largest fold angle
+UNEQUAL = 0.9  # fold angles of a way, over those of another with which it folds
 STAYS = 0.5  # of the fold angles of leading order, by how much they may change
 
 
@@ -25,50 +29,79 @@ class WayOut(NamedTuple):
 
 
 class FlatState(NamedTuple):
-    """A ``way`` out of it that was found, or whether it ``is_isolated``, as there is none;
-    neither where that is not known, and where a mechanism is no flat sheet."""
+    """The ``ways`` out of it that were found, those in which most folds first, and
+    whether it ``is_isolated``, as there is none."""
 
-    way: WayOut | None = None
+    ways: tuple[WayOut, ...] = ()
     is_isolated: bool = False
 
 
-def flat_state(problem: ClosureSystem) -> FlatState:
-    """The flat state of a sheet in which all variables are 0."""
-    structure = problem.structure
+def flat_state(structure: Structure, domain: Domain, hold: Holding) -> FlatState:
+    """The flat state of a sheet in which all variables are 0: with all ways where its
+    vertices have modes, else with one that is found."""
     if structure.is_held_flat or not structure.flat_vertices:
         return FlatState(is_isolated=structure.is_held_flat)
-    with one_thread(problem.n):
-        return _searched(problem)
+    with one_thread(len(domain.bounds)):
+        ways, is_none = _ways_and_whether_none(structure, domain, hold)
+    return FlatState(ways, is_none and structure.are_about_flat_vertices)
 
 
-def _searched(problem: ClosureSystem) -> FlatState:
-    structure = problem.structure
-    folds = LeadingFolds(structure.flat_vertices, structure.fold_signs)
-    for fold in folds.random(np.random.default_rng(0)):
-        for way in _ways_along(problem, fold):
-            return FlatState(way)
+def _ways_and_whether_none(
+    structure: Structure, domain: Domain, hold: Holding
+) -> tuple[tuple[WayOut, ...], bool]:
+    """The ways, and whether there is not even a fold to leading order."""
+    folds = structure.ways_by_modes
+    if folds is not None:
+        order = np.argsort(np.count_nonzero(folds == 0.0, axis=1), kind="stable")
+        folds = _with_those_together(folds[order], structure.flat_vertices)
+        ways = [_way_along(structure, domain, hold, fold) for fold in folds]
+        return tuple(way for way in ways if way is not None), not len(folds)
+    leading = LeadingFolds(structure.flat_vertices, structure.fold_signs)
+    for fold in leading.random(np.random.default_rng(0)):
+        way = _way_along(structure, domain, hold, fold)
+        if way is not None:
+            return (way,), False
     from linkages.structure.flat_boxes import first_fold  # few sheets need it
 
-    fold, is_none = first_fold(folds)
-    for way in _ways_along(problem, fold) if fold is not None else ():
-        return FlatState(way)
-    return FlatState(
-        is_isolated=is_none and bool(folds.about[list(structure.column_of)].all())
-    )
+    first, is_none = first_fold(leading)
+    way = None if first is None else _way_along(structure, domain, hold, first)
+    return (() if way is None else (way,)), is_none
 
 
-def _ways_along(problem: ClosureSystem, fold: np.ndarray) -> Iterator[WayOut]:
-    """The ways out near a fold (v,) of leading order, with larger angles before
-    smaller ones."""
-    directions = np.zeros(problem.n)
-    for variable, column in problem.structure.column_of.items():
+def _with_those_together(
+    folds: np.ndarray, vertices: Sequence[FlatVertex]
+) -> np.ndarray:
+    """Folds (w, v) of a freedom each, and before them, where the first of them folds
+    beside others at vertices of their own, all these together."""
+    together = np.zeros(folds.shape[1])
+    taken: set[int] = set()
+    size = 1.0
+    for fold in folds:
+        own = {k for k, one in enumerate(vertices) if fold[list(one.variables)].any()}
+        if not own & taken:
+            together += size * fold
+            size *= UNEQUAL
+            taken |= own
+    return folds if size == UNEQUAL else np.concatenate([together[None], folds])
+
+
+def _way_along(
+    structure: Structure, domain: Domain, hold: Holding, fold: np.ndarray
+) -> WayOut | None:
+    """The way out near a fold (v,) of leading order, with as large angles as close; None
+    where none does."""
+    directions = np.zeros(len(domain.bounds))
+    for variable, column in structure.column_of.items():
         directions[column] = fold[variable]
-    directions /= np.abs(directions).max()
     rest = directions == 0.0
+    if rest.all():
+        return None
     for size in SIZES:
-        start = problem.reference + size * directions
-        points, gaps = problem.compiled.project(start[None], rest)
+        moved = directions * (size / np.abs(directions).max())
+        start = structure.reference + moved
+        points, gaps = hold(start[None], rest)
         change = np.abs(points[0] - start).max()
-        is_inside = problem.domain.are_inside(points)[0]
+        is_inside = domain.are_inside(points)[0]
         if is_start_solved(gaps[0]) and is_inside and change < STAYS * size:
-            yield WayOut(points[0], rest)
+            return WayOut(np.where(rest, start, points[0]), rest)
+    return None

@@ -150,10 +150,7 @@ def mechanism_seeds(
     if motions is None and not problem.structure.is_held_flat:
         seeds = replace(seeds, more=partial(_drawn, problem))
     seeds = _judged(problem, replace(seeds, audit=judge))
-    way = problem.flat_state.way
-    if way is not None and not way.rest.any():
-        seeds = seeds.with_constructed(way.point[None])
-    return seeds.with_constructed(_assemblies(problem))
+    return seeds.with_constructed(_constructed(problem))
 
 
 def _judged(problem: ClosureSystem, seeds: Seeds) -> Seeds:
@@ -229,13 +226,18 @@ def _sources(
     return None, regular
 
 
-def _assemblies(problem: ClosureSystem) -> np.ndarray:
-    """Closed configurations (k, n) that the mechanism knows."""
+def _constructed(problem: ClosureSystem) -> np.ndarray:
+    """Closed configurations (k, n) that the mechanism knows, and those in ways out of the
+    flat state of a sheet; but where creases rest in a bound, as of these others may
+    move."""
+    folded = np.array([way.point for way in problem.flat_state.ways])
+    folded = folded.reshape(-1, problem.n)
+    folded = folded[~problem.domain.are_at_bounds(folded)]
     known = problem.structure.mechanism.assemblies()
-    if not len(known):
-        return np.empty((0, problem.n))
-    points, _ = problem.project(known[:, list(problem.structure.column_of)])
-    return points
+    if len(known):
+        known, _ = problem.project(known[:, list(problem.structure.column_of)])
+        folded = np.concatenate([folded, known])
+    return folded
 
 
 def _from_beyond_limits(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bifurc.checks import rows_of
-from bifurc.equations.system import CompiledSystem
+from bifurc.equations.system import CompiledSystem, ScaledTape
 from bifurc.errors import ProblemError
 from bifurc.function_problem import NumericalProblem
 from bifurc.system import Curvature
@@ -87,7 +87,9 @@ class ClosureSystem(NumericalProblem):
         """What leads out of the flat state of a sheet."""
         from linkages.closure.flat_state import flat_state
 
-        return flat_state(self)
+        tape = self.compiled
+        assert isinstance(tape, ScaledTape)  # that of a loop holds no unknowns
+        return flat_state(self.structure, self.domain, tape.project)
 
 
 def _parts_of(

@@ -10,7 +10,7 @@ most.
 
 from __future__ import annotations
 
-from itertools import combinations_with_replacement
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -46,8 +46,8 @@ def first_fold(folds: LeadingFolds) -> FirstFold:
             return FirstFold(None, is_none=True)
         if is_time_over():
             return unknown
-        low, high = boxes.pop()
-        solution = programs.solution(low, high)
+        box = boxes.pop()
+        solution = programs.solution(*box)
         if solution is None:
             continue
         sizes, missed = solution
@@ -55,53 +55,64 @@ def first_fold(folds: LeadingFolds) -> FirstFold:
             angles = np.zeros(folds.count)
             angles[programs.creases] = sizes * folds.signs[programs.creases]
             return FirstFold(folds.near(angles), is_none=False)
-        widest = int(np.argmax(missed))
-        side = high[widest] - low[widest]
-        ends = low[widest] + MARGIN * side, high[widest] - MARGIN * side
-        middle = float(np.clip(sizes[widest], *ends))
-        below, above = high.copy(), low.copy()
-        below[widest] = above[widest] = middle
-        boxes += [(low, below), (above, high)]
+        boxes += _halves(*box, sizes, int(np.argmax(missed)))
     return unknown
+
+
+def _halves(
+    low: np.ndarray, high: np.ndarray, sizes: np.ndarray, across: int
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """The parts of a box, divided ``across`` a side near the ``sizes`` (c,)."""
+    side = high[across] - low[across]
+    ends = low[across] + MARGIN * side, high[across] - MARGIN * side
+    below, above = high.copy(), low.copy()
+    below[across] = above[across] = np.clip(sizes[across], *ends)
+    return [(low, below), (above, high)]
 
 
 class _Programs:
     """The linear programs for boxes of the sizes (c,) of the fold angles of ``creases``
-    (c,), by number, which add up to 1."""
+    (c,), by number, which add up to 1. Besides them every product of the sizes
+    ``first`` and ``second`` (q,) is an unknown."""
 
     def __init__(self, folds: LeadingFolds):
         self.creases = np.flatnonzero(folds.about)
-        column = {int(number): k for k, number in enumerate(self.creases)}
-        pairs: dict[tuple[int, int], int] = {}
-        entries: list[tuple[int, int, float]] = []
-        row = 0
-        for numbers, directions in folds.vertices:
-            columns = [column[number] for number in numbers]
-            signed = directions * folds.signs[list(numbers), None]
-            forms = np.triu(products_of(signed), 1)
-            product = {}
-            for i, j in combinations_with_replacement(range(len(columns)), 2):
-                first, second = sorted((columns[i], columns[j]))
-                place = pairs.setdefault((first, second), len(pairs))
-                product[i, j] = product[j, i] = len(column) + place
-            for part in signed.T:
-                entries += [(row, *one) for one in zip(columns, part, strict=True)]
-                for j in range(len(columns)):
-                    entries += [
-                        (row + 1 + j, product[i, j], value)
-                        for i, value in enumerate(part)
-                    ]
-                row += 1 + len(columns)
-            places = zip(*np.nonzero(forms), strict=True)
-            entries += [(row, product[int(i), int(j)], forms[i, j]) for i, j in places]
-            row += 1
-        entries += [(row, k, 1.0) for k in range(len(column))]
-        rows, columns, values = (np.array(one) for one in zip(*entries, strict=True))
-        self.first, self.second = np.array(list(pairs)).T
-        self.size = len(column) + len(pairs)
-        shape = (row + 1, self.size)
-        self.equations = coo_array((values, (rows, columns)), shape=shape).tocsr()
-        self.right = np.append(np.zeros(row), 1.0)
+        self._column = {int(number): k for k, number in enumerate(self.creases)}
+        self._pairs: dict[tuple[int, int], int] = {}
+        equations = [
+            equation
+            for numbers, directions in folds.vertices
+            for equation in self._about(
+                [self._column[number] for number in numbers],
+                directions * folds.signs[list(numbers), None],
+            )
+        ]
+        equations.append(dict.fromkeys(range(len(self._column)), 1.0))
+        self.first, self.second = np.array(list(self._pairs)).T
+        self.size = len(self._column) + len(self._pairs)
+        self.equations = _matrix(equations, self.size)
+        self.right = np.append(np.zeros(len(equations) - 1), 1.0)
+
+    def _about(
+        self, columns: list[int], directions: np.ndarray
+    ) -> Iterator[dict[int, float]]:
+        """The equations at a vertex with the creases of these ``columns`` along (d, 2),
+        each as the coefficients of columns."""
+        for part in directions.T:
+            yield dict(zip(columns, part.tolist(), strict=True))
+            for other in columns:
+                products = [self._product(column, other) for column in columns]
+                yield dict(zip(products, part.tolist(), strict=True))
+        forms = np.triu(products_of(directions), 1)
+        yield {
+            self._product(columns[i], columns[j]): float(forms[i, j])
+            for i, j in zip(*np.nonzero(forms), strict=True)
+        }
+
+    def _product(self, one: int, other: int) -> int:
+        """The column of the product of two sizes, by their columns."""
+        pair = (min(one, other), max(one, other))
+        return len(self._column) + self._pairs.setdefault(pair, len(self._pairs))
 
     def solution(
         self, low: np.ndarray, high: np.ndarray
@@ -156,3 +167,11 @@ class _Programs:
             rows.append(coo_array((np.concatenate(values), places), shape=shape))
             limits.append(sense * a * b)
         return vstack(rows, format="csr"), np.concatenate(limits)
+
+
+def _matrix(rows: Sequence[dict[int, float]], width: int) -> csr_array:
+    """Rows that are given as the coefficients of columns."""
+    numbers = [number for number, one in enumerate(rows) for _ in one]
+    columns = [column for one in rows for column in one]
+    values = [value for one in rows for value in one.values()]
+    return coo_array((values, (numbers, columns)), shape=(len(rows), width)).tocsr()

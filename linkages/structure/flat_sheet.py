@@ -97,7 +97,7 @@ def creases_that_fold(directions: np.ndarray, signs: np.ndarray) -> np.ndarray:
     leave the flat state in some motion, each in the sense of its sign; of degenerate
     vertices more may be told so."""
     rays = _extreme_rays(directions, signs)
-    forms = _forms(directions, rays, rays)
+    forms = forms_of(directions, rays, rays)
     can_fold = np.zeros(len(signs), dtype=bool)
     if not len(rays) or (forms.min() < 0.0 < forms.max()):
         is_open = len(rays) and not _is_of_one_sense(directions, signs)
@@ -114,7 +114,7 @@ def _is_of_one_sense(directions: np.ndarray, signs: np.ndarray) -> bool:
     all angles of the signs (d,) that the first order lets be."""
     _, _, right = np.linalg.svd(directions.T)
     basis = right[2:]
-    form = _forms(directions, basis, basis)
+    form = forms_of(directions, basis, basis)
     rates = (signs * basis).T  # into the region
     products = [np.outer(one, other) for one, other in combinations(rates, 2)]
     inside = np.array([0.5 * (product + product.T) for product in products])
@@ -135,9 +135,9 @@ def _holds_others(directions: np.ndarray, signs: np.ndarray, line: np.ndarray) -
         return False
     rays = _extreme_rays(directions, np.where(is_along, FREE, signs))
     rays = rays[(rays != 0.0)[:, ~is_along].any(axis=1)]
-    with_line = _forms(directions, line[None], rays)[0]
+    with_line = forms_of(directions, line[None], rays)[0]
     beside = rays[with_line == 0.0]
-    own = _forms(directions, beside, beside)
+    own = forms_of(directions, beside, beside)
     forms = np.concatenate([with_line, own.ravel()])
     is_of_one_sense = (forms >= 0.0).all() or (forms <= 0.0).all()
     return bool(is_of_one_sense and np.diag(own).all())
@@ -183,7 +183,7 @@ def products_of(directions: np.ndarray) -> np.ndarray:
     return np.asarray(x[:, None] * y - y[:, None] * x)
 
 
-def _forms(directions: np.ndarray, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+def forms_of(directions: np.ndarray, one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Half the mixed form (r, s) of second order at angles (r, d) and (s, d); 0 where it
     is rounding."""
     products = np.triu(products_of(directions), 1)

@@ -38,6 +38,7 @@ from linkages.structure.flat_sheet import (
     flat_vertex,
     sign_of,
 )
+from linkages.structure.fold_modes import ways_by_modes
 from linkages.structure.free_points import FreePoint, free_points
 from linkages.structure.groups import SPHERICAL, Groups, JointPoint, find_idle_turn
 from linkages.structure.hanging import Hanging
@@ -203,6 +204,18 @@ class Structure:
     def fold_signs(self) -> np.ndarray:
         """The signs (v,) of variables that their limits keep from 0 on, 0 of others."""
         return np.array([sign_of(one) for one in self.mechanism.variables])
+
+    @cached_property
+    def ways_by_modes(self) -> np.ndarray | None:
+        """The fold angles (w, v) of all ways out of the flat state of a sheet, to leading
+        order; None where its vertices do not have modes."""
+        return ways_by_modes(self.flat_vertices, self.fold_signs)
+
+    @property
+    def are_about_flat_vertices(self) -> bool:
+        """Whether all variables that are left are creases about flat vertices."""
+        about = {number for one in self.flat_vertices for number in one.variables}
+        return about >= set(self.column_of)
 
     def _flat_vertices(self) -> list[FlatVertex]:
         """The inner vertices about which a sheet is flat."""
