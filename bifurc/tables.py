@@ -54,7 +54,7 @@ def count_of(number: int, noun: str) -> str:
     "3 near misses", "4 touches", "5 boxes"."""
     if number == 1:
         return f"{number} {noun}"
-    if noun.endswith("y"):
+    if noun.endswith("y") and noun[-2] not in "aeiou":
         return f"{number} {noun[:-1]}ies"
     if noun.endswith(("s", "ch", "x")):
         return f"{number} {noun}es"

@@ -12,6 +12,7 @@ from linkages.mechanisms.subject import joint_values
 from linkages.readout.facts import form_facts, loop_facts
 from linkages.readout.readout import Readout
 from linkages.structure.loose_chains import loose_chains
+from linkages.structure.structure import Structure
 from linkages.turns.translates import translates_of
 
 
@@ -20,8 +21,8 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
     surface is regular, or else at the first assembly.
 
     The map leaves ``idle_bodies`` and ``idle_turns`` out, holds what is ``hanging``, if it
-    ``holds_flaps``, and creases that ``stay_flat`` or are ``at_rest``, and counts the freedoms of
-    ``loose_chains``. Points are counted from the ``origin``, in the coordinates of the
+    ``holds_flaps``, and creases that ``stay_flat`` or are ``at_rest``, and counts the ``ways_out`` of a flat
+    sheet and the freedoms of ``loose_chains``. Points are counted from the ``origin``, in the coordinates of the
     file. ``translates`` is None where nothing is
     left out that differs by whole turns.
     """
@@ -50,12 +51,20 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
         "holds_flaps": readout.structure.holds_flaps,
         "stay_flat": list(readout.structure.stay_flat),
         "at_rest": list(mechanism.at_rest),
+        "ways_out": _ways_out(readout.structure),
         "loose_chains": [asdict(chain) for chain in loose_chains(readout.structure)],
         "characteristic_length": readout.structure.unit,
         "origin": list(mechanism.origin),
         "coordinate_rounding": mechanism.coordinate_rounding,
         "translates": _translates(atlas),
     }
+
+
+def _ways_out(structure: Structure) -> int | None:
+    """How many ways lead out of the flat state of a sheet, to leading order; None where
+    that is not known."""
+    ways = structure.ways_by_modes if structure.flat_vertices else None
+    return None if ways is None else len(ways)
 
 
 def _translates(atlas: Atlas) -> dict[str, Any] | None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from bifurc.tables import count_of
 from linkages.mechanisms.mechanism import Mechanism
 
@@ -31,13 +33,27 @@ def describe_creases(structure: Structure) -> str:
     letters = [one.letter for one in mechanism.creases]
     valleys = count_of(letters.count("V"), "valley fold")
     mountains = count_of(letters.count("M"), "mountain fold")
-    if not assigned_creases(mechanism):
-        return f"Creases fold either way: {valleys} and {mountains} are free."
-    text = (
-        f"Creases fold as assigned: {valleys} from 0 to 180 degrees, {mountains} from "
-        "-180 to 0; --free-creases lets them fold either way."
-    )
-    return "\n".join([text, *_that_stay_flat(structure)])
+    if assigned_creases(mechanism):
+        text = (
+            f"Creases fold as assigned: {valleys} from 0 to 180 degrees, {mountains} from "
+            "-180 to 0; --free-creases lets them fold either way."
+        )
+    else:
+        text = f"Creases fold either way: {valleys} and {mountains} are free."
+    return "\n".join([text, *_that_stay_flat(structure), *_ways_out(structure)])
+
+
+def _ways_out(structure: Structure) -> list[str]:
+    """How many ways lead out of the flat state, where that is known."""
+    ways = structure.ways_by_modes if structure.flat_vertices else None
+    if ways is None or not len(ways):
+        return []
+    count, verb = count_of(len(ways), "way"), "leads" if len(ways) == 1 else "lead"
+    most = int(np.count_nonzero(ways, axis=1).max())
+    return [
+        f"To leading order {count} of one freedom {verb} out of the flat state, of at "
+        f"most {count_of(most, 'crease')}."
+    ]
 
 
 def _that_stay_flat(structure: Structure) -> list[str]:

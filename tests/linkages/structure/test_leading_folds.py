@@ -11,9 +11,11 @@ from linkages.closure.closure import Closure
 from linkages.readout.readout import Readout
 from linkages.structure.flat_boxes import first_fold
 from linkages.structure.flat_sheet import FlatVertex
+from linkages.structure.fold_modes import ways_by_modes
 from linkages.structure.leading_folds import LeadingFolds
 from linkages.structure.structure import Structure
-from tests.linkages.files.test_fold import has_birds_foot
+from studies.miura import miura
+from tests.linkages.files.test_fold import has_birds_foot, read
 from tests.linkages.structure.test_flat_sheet import random_vertex, sheet_of
 from tests.samples import one_in
 
@@ -131,3 +133,31 @@ def test_a_sheet_whose_vertices_fold_one_by_one_and_not_together_is_rigid(tmp_pa
     assert seeds.know_isolated(problem.reference)
     atlas = linkages.map_linkage(sheet)
     assert len(atlas.rigid) == 1 and not (atlas.forms or atlas.surfaces or atlas.points)
+
+
+@pytest.mark.parametrize("k", [1, 2, 3, 4])
+def test_the_ways_out_of_miura_ori_are_counted(k, tmp_path):
+    """All straight lines fold with some of the zigzags, or one of them by itself."""
+    sheet = read(tmp_path, miura(k + 1, k + 1))
+    assigned = Structure(sheet)
+    free = Structure(sheet.with_free_creases())
+    assert len(free.ways_by_modes) == 2**k + k - 1
+    (way,) = assigned.ways_by_modes
+    assert np.array_equal(np.sign(way), assigned.fold_signs)
+    folds = LeadingFolds(free.flat_vertices, free.fold_signs)
+    missed = [folds.residuals(fold)[:-1] for fold in free.ways_by_modes]
+    assert np.abs(missed).max() < 1e-13
+
+
+def test_every_way_out_of_miura_ori_closes(tmp_path):
+    problem = Closure(read(tmp_path, miura(4, 4)).with_free_creases())
+    ways = problem.flat_state.ways
+    assert len(ways) == 2**3 + 3 - 1
+    points = np.array([way.point for way in ways])
+    assert np.abs(problem.residuals(points)).max() < 1e-14
+
+
+def test_vertices_of_more_creases_have_no_modes():
+    turns = np.arange(6) * np.pi / 3
+    folds = folds_of(turns, np.ones(6, dtype=int))
+    assert ways_by_modes(folds.vertices, folds.signs) is None
