@@ -14,7 +14,9 @@ points, and of no part of them (the trace test: Sommese, Verschelde and Wampler 
 for bilinear sections Leykin, Rodriguez and Sottile 2018). No point runs to infinity on
 the way from the section to the solutions, as from other ones. One or a few coordinates
 of x are enough for l, of which fewer points are to be found, if no two of the solutions
-agree in these.
+agree in these. Of solutions that are missing this is not known, and where all that are
+known of a few agree with one of those that are not, no sum tells: so few solutions go
+more closed ways, each of which leads to such a one or not.
 """
 
 from __future__ import annotations
@@ -35,6 +37,7 @@ from bifurc.paths.homogeneous import write_linear
 # closed ways in a row that bring nothing new before something else is tried: before the
 # trace test of a curve one is enough
 QUIET, QUIET_ON_CURVE = 2, 1
+FEWEST_ENDS = 12  # of all solutions on such ways together
 MOST_LOOPS = 60
 MOST_SOLUTIONS = 10_000
 PATHS_EACH = 500  # of the solutions that are looked for at most
@@ -241,7 +244,8 @@ def _enlarged(
     home, known = fibre.parameters, fibre.solutions
     quiet = 0
     for _ in range(MOST_LOOPS):
-        if quiet == ways.quiet or effort.is_spent or len(known) > ways.most:
+        is_quiet = quiet >= ways.quiet and quiet * len(known) >= FEWEST_ENDS
+        if is_quiet or effort.is_spent or len(known) > ways.most:
             break
         here = Fibre(home, known)
         for there in ways.stops(home, rng):

@@ -139,7 +139,7 @@ def draw_symbols(structure: Structure) -> list[Drawing]:
     for number, joint in enumerate(mechanism.joints):
         pairs = range(first, first + len(joint.bodies) - 1)
         first += len(pairs)
-        if structure.held.intersection(structure.stay_flat, joint.labels):
+        if structure.creases_held_flat.intersection(joint.labels):
             continue
         groups = [pairs] if joint.kind.facets.is_shared else [[pair] for pair in pairs]
         for k, group in enumerate(groups):

@@ -387,9 +387,9 @@ class Bodies(Parts):
 
     def best_view(self, point: np.ndarray) -> View:
         """The same, the body at rest that is drawn so; of a planar mechanism that from
-        straight above."""
+        straight above, but where it is a sheet that folds along parallel lines."""
         normal = normal_of_plane(self.structure.mechanism)
-        if normal is not None:
+        if normal is not None and not self.structure.mechanism.panels:
             return view_of_plane(normal, UPRIGHT)
         return best_view_of_mechanism(self.structure, point)
 

@@ -30,9 +30,12 @@ def named_as_assigned(atlas: Atlas, readout: Readout) -> Atlas:
 
 
 def _flat_state(readout: Readout) -> np.ndarray | None:
-    """The unknowns (n,) where the sheet is flat; None where no crease is assigned, or
-    where it is given folded and one that is not assigned has another fold angle."""
+    """The unknowns (n,) where the sheet is flat; None where no crease is assigned or
+    some are at rest, or where it is given folded and one that is not assigned has
+    another fold angle."""
     mechanism, structure = readout.mechanism, readout.structure
+    if mechanism.at_rest:
+        return None
     flat: np.ndarray = readout.structure.reference.copy()
     angles = {one.joint: one.angle for one in mechanism.creases}
     columns = {

@@ -171,8 +171,13 @@ class Structure:
     def held(self) -> frozenset[str]:
         """The labels of variables that are held without having been locked."""
         flaps = self.hanging.labels if self.holds_flaps else ()
+        return self.creases_held_flat.union(flaps)
+
+    @property
+    def creases_held_flat(self) -> frozenset[str]:
+        """Those of them that are creases of a sheet held in its flat state."""
         flat = () if self.is_held_flat else self.stay_flat
-        return frozenset((*flaps, *flat, *self.mechanism.at_rest))
+        return frozenset((*flat, *self.mechanism.at_rest))
 
     def _hold_flat_creases(self) -> None:
         """Lock the creases of a flat sheet that stay flat, unless all of them do, and

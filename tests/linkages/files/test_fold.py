@@ -20,6 +20,7 @@ from linkages.readout.drawn import drawn_place
 from linkages.readout.poses import Poses
 from linkages.structure.single_loop import loop_geometry
 from linkages.structure.structure import Structure
+from linkages.subject import as_subject
 from studies.miura import SECTOR, miura
 from tests.linkages.mechanisms.test_maps import counts
 from tests.maps import map_of
@@ -596,6 +597,13 @@ def test_two_creases_on_a_line_fold_while_the_others_stay_flat(tmp_path):
     (form,) = atlas.forms
     assert form.branch.length == pytest.approx(np.pi * np.sqrt(2.0))
     assert not atlas.completeness.doubts
+
+
+def test_a_sheet_that_folds_along_one_line_is_not_seen_from_its_edge(tmp_path):
+    turns = np.radians([0.0, 45.0, 90.0, 180.0, 225.0, 270.0])
+    subject = as_subject(read(tmp_path, vertex_of(turns, "MVVVVM")))
+    assert subject.parts.normal is not None
+    assert subject.parts.best_view(subject.readout.structure.reference).elevation > 30.0
 
 
 def test_a_grid_of_panels_with_an_assignment_is_answered(tmp_path):
