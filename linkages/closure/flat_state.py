@@ -51,11 +51,13 @@ def _ways_and_whether_none(
 ) -> tuple[tuple[WayOut, ...], bool]:
     """The ways, and whether there is not even a fold to leading order."""
     folds = structure.ways_by_modes
+    if folds is not None and not len(folds):
+        return (), True
     if folds is not None:
         order = np.argsort(np.count_nonzero(folds == 0.0, axis=1), kind="stable")
         folds = _with_those_together(folds[order], structure.flat_vertices)
         ways = [_way_along(structure, domain, hold, fold) for fold in folds]
-        return tuple(way for way in ways if way is not None), not len(folds)
+        return tuple(way for way in ways if way is not None), False
     leading = LeadingFolds(structure.flat_vertices, structure.fold_signs)
     for fold in leading.random(np.random.default_rng(0)):
         way = _way_along(structure, domain, hold, fold)

@@ -161,3 +161,31 @@ def test_vertices_of_more_creases_have_no_modes():
     turns = np.arange(6) * np.pi / 3
     folds = folds_of(turns, np.ones(6, dtype=int))
     assert ways_by_modes(folds.vertices, folds.signs) is None
+
+
+def square_twist(slant):
+    """A square whose sides fold alike, with two parallel creases from each of them."""
+    turns = np.arange(4) * np.pi / 2
+    corners = np.transpose([np.cos(turns), np.sin(turns)])
+    sides = np.roll(corners, -1, axis=0) - corners
+    cosine, sine = np.cos(slant), np.sin(slant)
+    outward = sides @ np.array([[cosine, -sine], [sine, cosine]])
+    starts, ends = corners + outward, np.roll(corners, -1, axis=0) + outward
+    edges = [(k, (k + 1) % 4, "M") for k in range(4)]
+    edges += [(k, 4 + k, "V") for k in range(4)]
+    edges += [((k + 1) % 4, 8 + k, "M") for k in range(4)]
+    edges += [(4 + k, 8 + k, "B") for k in range(4)]
+    edges += [(8 + k, 4 + (k + 1) % 4, "B") for k in range(4)]
+    return {
+        "vertices_coords": np.concatenate([corners, starts, ends]).tolist(),
+        "edges_vertices": [edge[:2] for edge in edges],
+        "edges_assignment": [edge[2] for edge in edges],
+    }
+
+
+def test_a_square_twist_that_turns_one_way_round_is_isolated(tmp_path):
+    """Its vertices have modes that fold as assigned, which do not agree all round."""
+    problem = Closure(read(tmp_path, square_twist(np.radians(60.0))))
+    structure = problem.structure
+    assert structure.ways_by_modes is not None and not structure.stay_flat
+    assert problem.flat_state.is_isolated
