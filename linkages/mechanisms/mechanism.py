@@ -122,7 +122,8 @@ class Mechanism:
     variable whose dead points matter: if none is named, those that ``motors`` drive, or
     else the first one that is free.
     ``layers`` are numbers from 1 of bodies that lie one above the other in a planar
-    mechanism. Bodies that do not hang together are mechanisms of their own, its `parts`.
+    mechanism. ``moved``: how far vertices of a crease pattern are from where a file has them,
+    that was a rounding of it. Bodies that do not hang together are mechanisms of their own, its `parts`.
     Raises `GeometryError` where a joint is named twice, joints are coupled in a
     circle, or something else than a body has a layer.
     """
@@ -139,6 +140,7 @@ class Mechanism:
     driver: str = field(default="", compare=False)
     motors: tuple[str, ...] = field(default=(), compare=False)
     layers: tuple[tuple[str, int], ...] = field(default=(), compare=False)
+    moved: float = field(default=0.0, compare=False)
     # what to do where a single loop is asked for, unless there is nothing to do
     way_to_loop: ClassVar[str] = ""
 

@@ -22,8 +22,8 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
     The map leaves ``idle_bodies`` and ``idle_turns`` out, holds what is ``hanging``, if it
     ``holds_flaps``, and creases that ``stay_flat``, and counts the freedoms of
     ``loose_chains``. Points are counted from the ``origin``, in the coordinates of the
-    file. ``translates`` is None where nothing is
-    left out that differs by whole turns.
+    file, of which vertices of a crease pattern are ``vertices_moved`` away at most.
+    ``translates`` is None where nothing is left out that differs by whole turns.
     """
     mechanism = readout.mechanism
     place = _regular_place(atlas)
@@ -53,6 +53,7 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
         "characteristic_length": readout.structure.unit,
         "origin": list(mechanism.origin),
         "coordinate_rounding": mechanism.coordinate_rounding,
+        "vertices_moved": mechanism.moved,
         "translates": _translates(atlas),
     }
 
