@@ -213,7 +213,8 @@ def _assigned(
             crease = crease._replace(angle=crease.sign * math.pi)
         low, high = crease.limits
         if keeps_angle(max(low, -high, 0.0)):
-            creases.append(crease)
+            is_right = crease.sign * crease.angle > 0.0
+            creases.append(crease if is_right else crease._replace(angle=0.0))
         else:
             log.warning(
                 "crease %s is %s and folded by %.4g degrees: it may fold either way",

@@ -538,7 +538,7 @@ def _checked_joints(joints: object) -> tuple[Joint, ...]:
         require(isinstance(joint, Joint), "joints", repr(joint), "a list of joints")
     for name, count in Counter(joint.name for joint in checked).items():
         require(count == 1, "name of a joint", quoted(name), "given once")
-    require(len(checked) >= 2, "number of joints", len(checked), "two or more")
+    require(len(checked) > 0, "number of joints", 0, "one or more")
     # no joint is called as a variable of another one, and no two variables alike
     owners: dict[str, Joint] = {}
     for joint in checked:
