@@ -198,4 +198,4 @@ def _breadths(points: np.ndarray) -> np.ndarray:
     """The `breadth` (...,) of points (..., n, k)."""
     centers = points.mean(axis=-2, keepdims=True)
     extents = np.linalg.svd(points - centers, compute_uv=False)
-    return np.asarray(extents[..., 1] / points.shape[-2] ** 0.5)
+    return np.asarray(extents[..., 1:2].sum(axis=-1) / points.shape[-2] ** 0.5)

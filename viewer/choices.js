@@ -5,6 +5,7 @@ import { drawing, element } from "./elements.js";
 import { isCurve } from "./tracks.js";
 
 const KEYS = 9; // forms that have a key of their own
+const MANY = 20; // forms up to which the list has no filter
 
 /** A short line as the map draws the curve of a track. */
 function swatch(track, color) {
@@ -18,7 +19,22 @@ export class FormList {
   constructor(tracks, goToTrack) {
     this.tracks = tracks;
     this.goToTrack = goToTrack;
-    this.node = element("div", { class: "bv-forms", role: "group", "aria-label": "forms" });
+    this.list = element("div", { class: "bv-forms", role: "group", "aria-label": "forms" });
+    this.node = element("div", {}, ...(tracks.length > MANY ? [this.filter()] : []), this.list);
+  }
+
+  /** A field for words that names or facts of forms have to hold to be listed. */
+  filter() {
+    const label = `filter ${this.tracks.length} forms`;
+    return element("input", { type: "search", class: "bv-filter", placeholder: label, "aria-label": label, oninput: (event) => this.narrow(event.target.value) });
+  }
+
+  narrow(text) {
+    const words = text.toLowerCase().split(/\s+/);
+    for (const button of this.buttons) {
+      const facts = button.title.toLowerCase();
+      button.hidden = !words.every((word) => facts.includes(word));
+    }
   }
 
   setColors(colorOf) {
@@ -28,7 +44,7 @@ export class FormList {
       const attributes = { title, "data-track": track.name, onclick: () => this.goToTrack(track) };
       return element("button", attributes, key, swatch(track, colorOf(track)), element("span", {}, track.name));
     });
-    this.node.replaceChildren(...this.buttons);
+    this.list.replaceChildren(...this.buttons);
     if (this.position) this.show(this.position);
   }
 
@@ -36,7 +52,7 @@ export class FormList {
     this.position = position;
     this.buttons.forEach((button, k) => {
       const isCurrent = this.tracks[k] === position.track;
-      if (isCurrent && button.getAttribute("aria-pressed") !== "true") reveal(this.node, button);
+      if (isCurrent && button.getAttribute("aria-pressed") !== "true") reveal(this.list, button);
       button.setAttribute("aria-pressed", String(isCurrent));
     });
   }

@@ -116,6 +116,8 @@ def _limits(atlas: Atlas) -> _Range:
     if not atlas.forms:
         return _Range(1e-5, 1.0)
     high = max(float(np.nanmax(form.profile.values)) for form in atlas.forms)
+    if high == 0.0:
+        return _Range(1e-5, 1.0)
     small = [event.value for event in atlas.near_misses]
     small += [float(form.profile.smallest.min()) for form in atlas.forms]
     low = max(min(small) / 10, 1e-16 * high)
@@ -180,6 +182,8 @@ def _draw_values(
 ) -> None:
     """All regular singular values along a form, the smallest strongly."""
     s, values = _regular_values(form)
+    if not values.shape[1]:
+        return  # nothing holds the only unknown
     axes.plot(s, values[:, :-1], color="0.75", linewidth=0.8, zorder=1)
     length = form.branch.length
     turns = (-length, 0.0, length) if form.branch.closed else (0.0,)

@@ -11,7 +11,7 @@ from __future__ import annotations
 import json
 import logging
 import math
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, TypeAlias
@@ -20,9 +20,11 @@ import numpy as np
 from networkx.utils import UnionFind
 
 from linkages.closure.system import ClosureSystem
+from linkages.coordinates import spread_of
 from linkages.decisions import is_parallel_axis, keeps_angle
 from linkages.files.faces import check_joined, faces_of_edges
 from linkages.files.misfits import closed_near
+from linkages.files.rounded_creases import Ray, exact_points
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Crease, Mechanism, Panel
 from linkages.mechanisms.origin import Coordinates, WrittenNumber, counted_from_near
@@ -54,6 +56,7 @@ LETTERS = (*HINGES, *RIGID, *CUTS)
 # where hinges of thick panels are, over the thickness: on the faces that come together
 SIDES = {"V": 0.5, "M": -0.5}
 STRAIGHT = 180.0  # degrees, the largest fold angle
+UNSAID = 1e-12  # over the size: as far vertices may be moved without a word
 
 
 # keys of this program, which FOLD tells by the colon
@@ -116,12 +119,15 @@ def mechanism_of_fold(content: Frame, name: str) -> Mechanism:
         check_joined(points, edges.keys(), folded, faces)
     creases = _creases(faces, edges)
     is_folded = FOLDED in frame.get("frame_classes", [])
-    if THICKNESS in frame or HEIGHTS in frame:
-        key = THICKNESS if THICKNESS in frame else HEIGHTS
-        is_flat = not is_folded and not np.ptp(points[:, 2]) > 0.0
+    is_flat = not is_folded and not np.ptp(points[:, 2]) > 0.0
+    thick = next((key for key in (THICKNESS, HEIGHTS) if key in frame), "")
+    if thick:
         allowed = "left out, or given with the flat crease pattern and its fold angles"
-        require(is_flat, key, "given with folded coordinates,", allowed)
+        require(is_flat, thick, "given with folded coordinates,", allowed)
     bodies = _bodies(len(faces), creases)
+    moved = 0.0
+    if is_flat and not thick:
+        points, moved = _exact(points, faces, bodies, creases)
     hinges = _hinges(creases, faces, points, bodies, is_folded)
     joints = [hinge.joint for hinge in hinges]
     mechanism = Mechanism(
@@ -130,6 +136,7 @@ def mechanism_of_fold(content: Frame, name: str) -> Mechanism:
         origin=near.origin or (0.0, 0.0, 0.0),
         rounding=near.rounding,
         panels=_panels(faces, bodies, points, joints),
+        moved=moved,
     )
     letters = {hinge.joint.name: hinge.letter for hinge in hinges}
     angles = {hinge.joint.name: hinge.angle for hinge in hinges}
@@ -139,10 +146,40 @@ def mechanism_of_fold(content: Frame, name: str) -> Mechanism:
             "the same for all vertices where edges_foldAngle is given; a state that is "
             f'folded has "{FOLDED}" in its frame_classes'
         )
-        is_flat = not heights > 0.0
         require(is_flat, "vertices_coords", f"heights {heights:.6g} apart", allowed)
         mechanism, angles = _folded(mechanism, angles)
     return _assigned(mechanism, letters, angles)
+
+
+def _exact(
+    points: np.ndarray,
+    faces: Sequence[list[int]],
+    bodies: Sequence[str],
+    creases: Sequence[_Crease],
+) -> tuple[np.ndarray, float]:
+    """The vertices (v, 3) of a flat pattern of which the given ones are a rounding, if
+    there are such, and how far the farthest one is moved; with a warning."""
+    is_mirrored = any(_normal(points[face])[2] < 0.0 for face in faces)
+    rays = []
+    for crease in creases:
+        ends = (crease.start, crease.end)
+        sides = (bodies[crease.left], bodies[crease.right])
+        for at, to, body in zip(ends, ends[::-1], sides, strict=True):
+            rays.append(Ray(at, to, crease.edge.letter, body))
+    around = Counter(ray.at for ray in rays)
+    around.subtract(vertex for face in faces for vertex in face)
+    inner = [vertex for vertex, count in around.items() if count == 0]
+    folding = [ray for ray in rays if ray.letter in HINGES]
+    mirror = np.array([1.0, -1.0 if is_mirrored else 1.0, 1.0])
+    exact = mirror * exact_points(mirror * points, folding, inner)
+    moved = float(np.linalg.norm(exact - points, axis=1).max())
+    if moved > UNSAID * spread_of(points):
+        log.warning(
+            "vertices_coords: moved by up to %.3g, as they are a rounding of a pattern "
+            "that folds flat",
+            moved,
+        )
+    return exact, moved
 
 
 def _folded(
@@ -176,7 +213,8 @@ def _assigned(
             crease = crease._replace(angle=crease.sign * math.pi)
         low, high = crease.limits
         if keeps_angle(max(low, -high, 0.0)):
-            creases.append(crease)
+            is_right = crease.sign * crease.angle > 0.0
+            creases.append(crease if is_right else crease._replace(angle=0.0))
         else:
             log.warning(
                 "crease %s is %s and folded by %.4g degrees: it may fold either way",

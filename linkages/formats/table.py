@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from linkages.loop import Loop
     from linkages.mechanisms.mechanism import Mechanism
 
+SRDF = ".srdf"
 MOST_BYTES = 50_000_000  # of a file of another program
 
 
@@ -97,24 +98,30 @@ def _content(path: Path) -> bytes:
 
 
 def _read_robot(path: Path) -> Mechanism:
-    """A robot in URDF, with the loops that a YAML file beside it closes: one of the same
-    name, or `BESIDE`."""
+    """A robot in URDF, with the loops that a YAML file or an SRDF closes: one of the same
+    name beside it, `BESIDE`, or an SRDF in the folder ``srdf`` beside its own."""
     from linkages.formats.urdf_reading import BESIDE
 
-    beside = (path.with_suffix(".yaml"), path.with_name(BESIDE))
+    semantic = path.with_suffix(SRDF)
+    in_folder = path.parent.parent / "srdf" / semantic.name
+    beside = (path.with_suffix(".yaml"), path.with_name(BESIDE), semantic, in_folder)
     file = next((one for one in beside if one.is_file()), None)
     return _read_closed_robot(path, file)
 
 
 def _read_closed_robot(path: Path, closures: Path | None) -> Mechanism:
-    """A robot in URDF, with the loops that a YAML file closes, if there is one."""
+    """A robot in URDF, with the loops that a YAML file or an SRDF closes, if there is one."""
     from linkages.formats.mechanism_of import mechanism_of_assembly
-    from linkages.formats.urdf_reading import read_urdf
+    from linkages.formats.urdf_reading import closures_of_srdf, read_urdf
     from linkages.formats.xml_tree import parse_xml
 
     root = parse_xml(_content(path))
     require(root.tag == "robot", f"line {root.line}", f"<{root.tag}>", "<robot>")
-    content = None if closures is None else (_read_yaml(closures) or {})
+    content: object = None
+    if closures is not None and closures.suffix.lower() == SRDF:
+        content = closures_of_srdf(parse_xml(_content(closures)))
+    elif closures is not None:
+        content = _read_yaml(closures) or {}
     return mechanism_of_assembly(read_urdf(root, path.stem, content))
 
 

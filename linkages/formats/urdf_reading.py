@@ -6,6 +6,10 @@ pairs of frames that come together, ``closed_loop``, as a whole or in a point, `
 the URDF has words for, ``joint_name`` with ``joint_type``. A frame is called after a joint,
 where it is that of the child, or after a link.
 
+An SRDF has a ``loop_constraint`` for each pair, as example-robot-data (Gepetto, LAAS-CNRS)
+writes them: ``frame1``, ``frame2``, and which of x, y, z, roll, pitch and yaw come together,
+all of them without a ``mask``.
+
 Without such a file, frames that onshape-to-robot writes close loops, as PlaCo has them:
 the origins of ``closing_NAME_1`` and ``closing_NAME_2`` come together, and their third axes
 where there are ``closing_NAME_1_z`` and ``closing_NAME_2_z``.
@@ -48,6 +52,8 @@ UNIVERSAL = {
     f"UJOINT_{'XYZ'[first]}{'XYZ'[second]}": (first, second)
     for first, second in permutations(range(3), 2)
 }
+# what a mask of an SRDF holds, along and about each axis of the frame
+ALONG, ABOUT = ("x", "y", "z"), ("roll", "pitch", "yaw")
 BESIDE = "robot.yaml"  # the file with closures, where none is called as the robot is
 CLOSING = "closing_"  # how frames are called that onshape-to-robot closes loops with
 ALONG_X = (1.0, 0.0, 0.0)  # the axis of a joint that says nothing of it
@@ -74,7 +80,8 @@ def read_urdf(root: Element, name: str, closures: object = None) -> Assembly:
     poses = _poses(robot)
     content = checked_table("closures", closures or {}, "a table")
     _change_kinds(content, robot)
-    _close(content, robot)
+    for body, link in _close(content, robot).items():
+        poses[body] = poses[link]
     if closures is None:
         _close_named(robot)
     motors = _motors(content, robot)
@@ -91,6 +98,23 @@ def read_urdf(root: Element, name: str, closures: object = None) -> Assembly:
         tuple(robot.notes),
         motors=motors,
     )
+
+
+def closures_of_srdf(root: Element) -> dict[str, Any] | None:
+    """The closures that an SRDF names, as a YAML file has them; None where there is no
+    <loop_constraint>. Raises `GeometryError`."""
+    pairs, types = [], []
+    for element in root.all("loop_constraint"):
+        ends = [element.attributes.get(key) for key in ("frame1", "frame2")]
+        allowed = "given with frame1 and frame2"
+        element.require(None not in ends, "frame", quoted(ends), allowed)
+        pairs.append(ends)
+        mask = element.attributes.get("mask", "").split()
+        allowed = f"of {', '.join((*ALONG, *ABOUT))}"
+        is_known = set(mask) <= {*ALONG, *ABOUT}
+        element.require(is_known, "mask", quoted(" ".join(mask)), allowed)
+        types.append(mask or "6d")
+    return {"closed_loop": pairs, "type": types} if pairs else None
 
 
 # --- the tree -------------------------------------------------------------------------
@@ -238,8 +262,10 @@ def _universal(joint: BodyJoint, axes: tuple[int, int]) -> BodyJoint:
     return replace(joint, kind=JointKind.UNIVERSAL, frames=(place @ first, second))
 
 
-def _close(content: Mapping[str, Any], robot: _Robot) -> None:
-    """Add a joint for every pair of frames that come together."""
+def _close(content: Mapping[str, Any], robot: _Robot) -> dict[str, str]:
+    """Add a joint for every pair of frames that come together, or a slide and a joint
+    with a body between them; such bodies, with the link whose pose they have."""
+    sliders = {}
     pairs = checked_list(
         "closed_loop", content.get("closed_loop", []), "pairs of frames"
     )
@@ -249,13 +275,58 @@ def _close(content: Mapping[str, Any], robot: _Robot) -> None:
     for number, (pair, word) in enumerate(zip(pairs, words, strict=True)):
         what = f"closed_loop[{number}]"
         checked_list(what, pair, "two frames", (2,))
-        kind = CLOSURES.get(str(word).lower())
-        if kind is None:
-            raise GeometryError(f"type[{number}]", quoted(word), "3d or 6d")
         first, second = (_link_of(what, frame, robot) for frame in pair)
-        frames = (np.eye(4), np.eye(4))
         name = "=".join(pair)
-        robot.joints.append(BodyJoint(name, kind, (first, second), frames))
+        turning, slide = _closing(f"type[{number}]", word, name)
+        if slide is not None:
+            slider = f"{name}.slider"
+            sliders[slider] = first
+            robot.joints.append(replace(slide, bodies=(first, slider)))
+            first = slider
+        robot.joints.append(replace(turning, bodies=(first, second)))
+    return sliders
+
+
+def _closing(what: str, word: object, name: str) -> tuple[BodyJoint, BodyJoint | None]:
+    """The joint that a type or a mask names, of bodies to be said, and a slide before it,
+    if there is one."""
+    if isinstance(word, list):
+        return _turning(what, word, name), _slide(what, word, name)
+    kind = CLOSURES.get(str(word).lower())
+    if kind is None:
+        raise GeometryError(what, quoted(word), "3d or 6d")
+    return _plain(name, kind), None
+
+
+def _plain(name: str, kind: JointKind) -> BodyJoint:
+    """A joint whose frames are those of its bodies, which are not said yet."""
+    return BodyJoint(name, kind, ("", ""), (np.eye(4), np.eye(4)))
+
+
+def _turning(what: str, mask: Sequence[str], name: str) -> BodyJoint:
+    """The joint, of bodies to be said, that turns about the axes that are not in a mask:
+    all, one, or none. Where bodies are held in a plane, along two axes and about the
+    third, they do not tilt out of it."""
+    free = [k for k, word in enumerate(ABOUT) if word not in mask]
+    is_in_plane = len(free) == 2 and not {ALONG[k] for k in free}.difference(mask)
+    allowed = "a mask with all, two or none of roll, pitch and yaw, or x z pitch"
+    require(len(free) != 2 or is_in_plane, what, quoted(" ".join(mask)), allowed)
+    if len(free) == 1:
+        frame = frame_along((0.0, 0.0, 0.0), np.eye(3)[free[0]])
+        return BodyJoint(name, JointKind.REVOLUTE, ("", ""), (frame, frame))
+    return _plain(name, JointKind.SPHERICAL if len(free) == 3 else JointKind.RIGID)
+
+
+def _slide(what: str, mask: Sequence[str], name: str) -> BodyJoint | None:
+    """The slide, of bodies to be said, along the axis that is not in a mask; None where
+    all are."""
+    axes = [k for k, word in enumerate(ALONG) if word not in mask]
+    allowed = "a mask with two of x, y and z at least"
+    require(len(axes) < 2, what, quoted(" ".join(mask)), allowed)
+    if not axes:
+        return None
+    frame = frame_along((0.0, 0.0, 0.0), np.eye(3)[axes[0]])
+    return replace(_plain(f"{name}.slide", JointKind.PRISMATIC), frames=(frame, frame))
 
 
 def _link_of(what: str, frame: object, robot: _Robot) -> str:

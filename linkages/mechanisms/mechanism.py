@@ -123,7 +123,8 @@ class Mechanism:
     variable whose dead points matter: if none is named, those that ``motors`` drive, or
     else the first one that is free.
     ``layers`` are numbers from 1 of bodies that lie one above the other in a planar
-    mechanism. Bodies that do not hang together are mechanisms of their own, its `parts`.
+    mechanism. ``moved``: how far vertices of a crease pattern are from where a file has them,
+    that was a rounding of it. Bodies that do not hang together are mechanisms of their own, its `parts`.
     Raises `GeometryError` where a joint is named twice, joints are coupled in a
     circle, or something else than a body has a layer.
     """
@@ -141,6 +142,7 @@ class Mechanism:
     driver: str = field(default="", compare=False)
     motors: tuple[str, ...] = field(default=(), compare=False)
     layers: tuple[tuple[str, int], ...] = field(default=(), compare=False)
+    moved: float = field(default=0.0, compare=False)
     # what to do where a single loop is asked for, unless there is nothing to do
     way_to_loop: ClassVar[str] = ""
 
@@ -538,7 +540,7 @@ def _checked_joints(joints: object) -> tuple[Joint, ...]:
         require(isinstance(joint, Joint), "joints", repr(joint), "a list of joints")
     for name, count in Counter(joint.name for joint in checked).items():
         require(count == 1, "name of a joint", quoted(name), "given once")
-    require(len(checked) >= 2, "number of joints", len(checked), "two or more")
+    require(len(checked) > 0, "number of joints", 0, "one or more")
     # no joint is called as a variable of another one, and no two variables alike
     owners: dict[str, Joint] = {}
     for joint in checked:

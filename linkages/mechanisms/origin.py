@@ -14,12 +14,11 @@ from typing import Any, NamedTuple, TypeAlias, TypeGuard
 
 import numpy as np
 
-from linkages.coordinates import are_near_origin
+from linkages.coordinates import DIGITS_OF_DOUBLES, are_near_origin
 from linkages.values import checked_list, checked_vector
 
 Place: TypeAlias = tuple[float, float, float]
 
-DIGITS_OF_DOUBLES = 15  # from so many on, a decimal is a double that was printed
 LARGEST_EXPONENT = 150  # of ten: beyond, a number is left to the checks of its reader
 
 

@@ -24,6 +24,8 @@ def mechanism_subject(mechanism: Mechanism) -> dict[str, Any]:
         values["origin"] = list(mechanism.origin)
     if mechanism.rounding:
         values["rounding"] = mechanism.rounding
+    if mechanism.moved:
+        values["moved"] = mechanism.moved
     if mechanism.panels:
         values["panels"] = [
             {"body": panel.body, "corners": [list(corner) for corner in panel.corners]}
@@ -141,6 +143,7 @@ def mechanism_from(given: object, name: str) -> Mechanism:
         at_rest=tuple(given.get("at_rest", ())),
         motors=tuple(given.get("motors", ())),
         layers=layers,
+        moved=float(given.get("moved", 0.0)),
     )
 
 

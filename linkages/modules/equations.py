@@ -208,7 +208,7 @@ class ClosureFamily(RealFamily):
     @property
     def is_single(self) -> bool:
         """Whether there is a single chain, of joints alone."""
-        if len(self.closures) > 1:
+        if len(self.closures) != 1:
             return False
         steps = self.closures[0].chain
         return all(self.structure.variables_of(step.pair) for step in steps)

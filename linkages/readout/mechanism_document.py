@@ -21,9 +21,10 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
     surface is regular, or else at the first assembly.
 
     The map leaves ``idle_bodies`` and ``idle_turns`` out, holds what is ``hanging``, if it
-    ``holds_flaps``, and creases that ``stay_flat`` or are ``at_rest``, and counts the ``ways_out`` of a flat
-    sheet and the freedoms of ``loose_chains``. Points are counted from the ``origin``, in the coordinates of the
-    file. ``translates`` is None where nothing is
+    ``holds_flaps``, and creases that ``stay_flat`` or are ``at_rest``, and counts the
+    ``ways_out`` of a flat sheet and the freedoms of ``loose_chains``. Points are counted
+    from the ``origin``, in the coordinates of the file, of which vertices of a crease
+    pattern are ``vertices_moved`` away at most. ``translates`` is None where nothing is
     left out that differs by whole turns.
     """
     mechanism = readout.mechanism
@@ -56,6 +57,7 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
         "characteristic_length": readout.structure.unit,
         "origin": list(mechanism.origin),
         "coordinate_rounding": mechanism.coordinate_rounding,
+        "vertices_moved": mechanism.moved,
         "translates": _translates(atlas),
     }
 

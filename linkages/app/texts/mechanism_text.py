@@ -79,6 +79,11 @@ def _coordinates(readout: Readout) -> str:
     if not mechanism.is_known_to_rounding:
         unit = readout.structure.unit
         text += "\n\n" + known_to(mechanism.coordinate_rounding, unit)
+    if mechanism.moved:
+        text += (
+            f"\n\nVertices are up to {mechanism.moved:.2g} from where the file has them, "
+            "as a rounding of a pattern that folds flat."
+        )
     return text
 
 

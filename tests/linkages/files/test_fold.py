@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import linkages
-from bifurc import second_order_at
+from bifurc import plot_singular_values, second_order_at
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind
 from bifurc.system import jacobian_at
@@ -21,6 +21,7 @@ from linkages.readout.poses import Poses
 from linkages.structure.single_loop import loop_geometry
 from linkages.structure.structure import Structure
 from linkages.subject import as_subject
+from linkages.viewing.start import start_of
 from studies.miura import SECTOR, miura
 from tests.linkages.mechanisms.test_maps import counts
 from tests.maps import map_of
@@ -369,6 +370,31 @@ def test_a_malformed_file_is_refused_by_name_and_value(name, tmp_path):
     content, message = MALFORMED[name]
     with pytest.raises(LinkageFileError, match=message):
         read(tmp_path, content)
+
+
+def test_a_sheet_with_one_crease_folds_in_half(tmp_path):
+    """As `examples/diagonal-cp.fold` of edemaine/fold; nothing closes a loop."""
+    content = {
+        "vertices_coords": [[0, 0], [1, 0], [1, 1], [0, 1]],
+        "edges_vertices": [[0, 1], [1, 2], [2, 3], [3, 0], [3, 1]],
+        "edges_assignment": ["B", "B", "B", "B", "V"],
+        "edges_foldAngle": [0, 0, 0, 0, 180],
+    }
+    atlas = map_of(read(tmp_path, content))
+    (form,) = atlas.forms
+    assert form.branch.length == pytest.approx(np.pi)
+    assert len(plot_singular_values(atlas).axes) == 1
+    assert 0.0 <= start_of(atlas, 0) <= form.branch.length
+
+
+def test_an_angle_that_rounding_makes_wrong_is_at_the_limit(tmp_path):
+    content = miura(2, 2)
+    letters = content["edges_assignment"]
+    signs = {"M": 1e-20, "V": -1e-20}
+    content["edges_foldAngle"] = [signs.get(letter, 0.0) for letter in letters]
+    for one in read(tmp_path, content).creases:
+        assert one.angle == 0.0
+        assert 0.0 in one.limits
 
 
 def test_a_flap_is_held_and_said_to_be_free(tmp_path):

@@ -127,10 +127,6 @@ BAD = {
         "[LINKS]\na\nb\n[JOINTS]\nspherical: a (1e308,0,0) b (0,0,0)",
         "point of joint J1: at 1e+308",
     ),
-    "no loop": (
-        "[LINKS]\na\nb\n[JOINTS]\nspherical: a (0,0,0) b (0,0,0)",
-        "number of joints: 1",
-    ),
     "an end in the middle": (
         "[LINKS]\na\nb\n[JOINTS]\nspherical: a (0,0",
         "the end of the file",

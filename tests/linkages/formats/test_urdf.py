@@ -153,6 +153,48 @@ def test_joints_get_the_kinds_that_the_file_names(tmp_path):
     np.testing.assert_allclose(cross.second_direction, [1, 0, 0], atol=1e-12)
 
 
+def semantic(tmp_path, constraint, **joints):
+    """The same robot with an SRDF beside it."""
+    (tmp_path / "robot.srdf").write_text(f"<robot name='four-bar'>{constraint}</robot>")
+    return robot(tmp_path, "", **joints)
+
+
+# example-robot-data has all three: b1_6d, b1_closed_loop, kangaroo_loop
+@pytest.mark.parametrize("mask", ["", "x y z roll pitch", "x y yaw", "x y"])
+def test_an_srdf_closes_loops_in_the_directions_of_its_mask(mask, tmp_path):
+    """A plane four-bar, whose rod and rocker come together in a point or about an axis."""
+    words = f"mask='{mask}'" if mask else ""
+    kind = "revolute" if mask in ("", "x y yaw") else "fixed"
+    a = joint("a", "rod", "end_a", "2 0.5 0", kind=kind)
+    constraint = f"<loop_constraint frame1='a' frame2='b' {words}/>"
+    mechanism = semantic(tmp_path, constraint, a=a)
+    slides = [one for one in mechanism.joints if one.kind is JointKind.PRISMATIC]
+    assert len(slides) == (mask in ("x y yaw", "x y"))
+    for slide in slides:
+        np.testing.assert_allclose(np.abs(slide.direction), [0, 0, 1], atol=1e-12)
+    atlas = map_linkage(mechanism)
+    assert len(atlas.forms) == 2
+
+
+def test_an_srdf_without_closures_leaves_the_tree(tmp_path, caplog):
+    semantic(tmp_path, "<group_state name='home' group='all'/>")
+    assert "no loop is closed" in caplog.text
+
+
+@pytest.mark.parametrize(
+    ("constraint", "message"),
+    [
+        ("<loop_constraint frame1='a'/>", "frame of <loop_constraint>"),
+        ("<loop_constraint frame1='a' frame2='b' mask='x w'/>", '"x w"'),
+        ("<loop_constraint frame1='a' frame2='b' mask='x'/>", "two of x, y and z"),
+        ("<loop_constraint frame1='a' frame2='b' mask='x y roll'/>", "or x z pitch"),
+    ],
+)
+def test_what_is_wrong_in_an_srdf_is_named(constraint, message, tmp_path):
+    with pytest.raises(LinkageFileError, match=message):
+        semantic(tmp_path, constraint)
+
+
 BAD = {
     "a frame that is not there": ("closed_loop: [[a, z]]\ntype: [6d]\n", r'"z"'),
     "a type that is not there": ("closed_loop: [[a, b]]\ntype: [5d]\n", r'"5d"'),

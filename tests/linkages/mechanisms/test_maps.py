@@ -454,3 +454,9 @@ def test_every_form_of_the_cube_of_bars_is_met(seed):
     atlas = map_of(mechanism, settings=settings, seed=seed)
     assert len(atlas.forms) == 20
     assert {surface.dimension for surface in atlas.surfaces} == {2}
+
+
+def test_a_slide_alone_moves_along_its_line():
+    slide = Joint("A", "prismatic", ("frame", "table"), (0, 0, 0), (0, 0, 1))
+    atlas = map_of(Mechanism((slide,)))
+    assert [len(atlas.forms), len(atlas.surfaces)] == [1, 0]

@@ -508,3 +508,22 @@ def test_forms_stand_in_the_order_of_their_numbers(browser, atlas_of, tmp_path):
     page.close()
     assert names == ["Bennett 4R", "Form 1", "Form 2", "Form 10"]
     assert names == [form.name for form in listed_forms(atlas)]
+
+
+def test_of_many_forms_those_are_listed_that_hold_the_words_of_the_filter(
+    browser, atlas_of, tmp_path
+):
+    document = make_view_document(atlas_of("spherical-four-bar"))
+    first = document["forms"][0]
+    document["forms"] += [{**first, "name": f"Copy {k}"} for k in range(30)]
+    page = browser.new_page()
+    page.goto(write_page(document, tmp_path / "many.html").as_uri())
+    page.wait_for_selector(".bv-forms button")
+    seen = page.locator(".bv-forms button:visible")
+    total = seen.count()
+    assert total > 30
+    page.get_by_role("searchbox").fill("copy 27")
+    assert seen.all_inner_texts() == ["Copy 27"]
+    page.get_by_role("searchbox").fill("")
+    assert seen.count() == total
+    page.close()
