@@ -11,6 +11,7 @@ cover.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
@@ -181,13 +182,16 @@ class Structure:
         if self.mechanism.rounding:
             return  # rounded coordinates do not tell what lies along a line
         variables = self.mechanism.variables
-        self.stay_flat = creases_that_stay_flat(variables, copy(self)._flat_vertices())
+        as_given = copy(self)
+        self.stay_flat = creases_that_stay_flat(variables, as_given._flat_vertices())
         free = [one.label for one in variables if one.locked is None]
         self.is_held_flat = set(self.stay_flat) == set(free)
         if self.stay_flat and not self.is_held_flat:
             locks = dict.fromkeys(self.stay_flat, 0.0)
             self.mechanism = self.mechanism.with_locks(locks)
             self.groups = Groups(self.mechanism, self.unit)
+        else:  # what is known of it as given holds
+            vars(self).update({**vars(as_given), **vars(self)})
 
     def _flat_vertices(self) -> list[FlatVertex]:
         """The inner vertices about which a sheet is flat."""
@@ -509,6 +513,14 @@ class Structure:
             if variable.locked is None and variable.leader.number == number
         ]
 
+    @cached_property
+    def _followers(self) -> dict[int, list[int]]:
+        """The variables that follow every leading one, itself among them, by number."""
+        followers: defaultdict[int, list[int]] = defaultdict(list)
+        for number, variable in enumerate(self.mechanism.variables):
+            followers[variable.leader.number].append(number)
+        return followers
+
     def share(self, variable: int) -> Share | None:
         """What an unknown makes of a variable, by number; None where it is locked."""
         column = self.column_of.get(variable)
@@ -582,9 +594,8 @@ class Structure:
         unit = self._unit_of(number)
         ratios = []
         low, high = -np.inf, np.inf
-        for follower, other in enumerate(self.mechanism.variables):
-            if other.leader.number != number:
-                continue
+        for follower in self._followers[number]:
+            other = self.mechanism.variables[follower]
             ratios.append(other.leader.ratio)
             ends = (other.leader.value_of_leader(end) for end in self._range(follower))
             start, end = sorted(ends)
