@@ -8,6 +8,7 @@ dimension is looked at all along it, and so is every equation. Others are not lo
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -52,54 +53,70 @@ def explore_one_form(
     ends."""
     state = problem.given_state
     assert state is not None
-    forms: tuple[Form, ...] = ()
-    doubts = [SearchDoubt.OTHER_FORMS.doubt()]
-    claims: list[Claim] = []
-    residual = 0.0
+    look = _Look()
     is_cut_off = False
     settings = provenance.settings.tracing
     try:
         with cut_off_after(deadline):
             with until(deadline.share(FOLLOWING)):
                 branch = trace_branch(problem, state, settings=settings)
-            forms = (_unmonitored(problem, branch),)
-            form, residual = _monitored(problem, branch)
-            forms = (form,)
+            look = _Look(_unmonitored(problem, branch))
+            look = _monitored(problem, branch)
     except CutOff:
         is_cut_off = True
     interrupted = deadline.is_interrupted
     is_late = (is_cut_off or deadline.passed) and not interrupted
     provenance = replace(provenance, interrupted=interrupted, out_of_time=is_late)
-    if interrupted:
-        claims.append(SearchClaim.INTERRUPTED.claim(Scope.SEARCH, Level.INTERRUPTED))
-    elif is_late:
-        budget = float(provenance.settings.budget)
-        late, kind = Level.OUT_OF_TIME, SearchClaim.OUT_OF_TIME
-        claims.append(kind.claim(Scope.SEARCH, late, budget=budget, left=0))
-    for form in forms:
+    return _atlas(problem, look, provenance)
+
+
+class _Look(NamedTuple):
+    """A ``form``, if there is one, and the largest ``residual`` along it."""
+
+    form: Form | None = None
+    residual: float = 0.0
+
+
+def _atlas(problem: Problem, look: _Look, provenance: Provenance) -> Atlas:
+    form = look.form
+    doubts = [SearchDoubt.OTHER_FORMS.doubt()]
+    if form is not None:
         doubts += _doubts(problem, form)
-    claims.append(
-        SearchClaim.ONE_FORM.claim(
-            Scope.STARTS,
-            Level.ESTIMATED,
-            unknowns=problem.n,
-            count=int(sum(form.profile.arclength.size for form in forms)),
-            residual=residual,
-        )
-    )
+    claims = (*_interruptions(provenance), _claim(problem, look))
     domain = problem.domain
     return Atlas(
         names=domain.names,
         units=domain.units,
         periods=domain.periods,
-        forms=forms,
+        forms=() if form is None else (form,),
         points=(),
         near_misses=(),
         dead_points=(),
         rigid=np.empty((0, problem.n)),
         surfaces=(),
-        completeness=Completeness(tuple(claims), tuple(doubts), 1.0),
+        completeness=Completeness(claims, tuple(doubts), 1.0),
         provenance=provenance,
+    )
+
+
+def _interruptions(provenance: Provenance) -> list[Claim]:
+    """What is said of a search that did not come to its end."""
+    if provenance.interrupted:
+        return [SearchClaim.INTERRUPTED.claim(Scope.SEARCH, Level.INTERRUPTED)]
+    if not provenance.out_of_time:
+        return []
+    budget = float(provenance.settings.budget)
+    kind = SearchClaim.OUT_OF_TIME
+    return [kind.claim(Scope.SEARCH, Level.OUT_OF_TIME, budget=budget, left=0)]
+
+
+def _claim(problem: Problem, look: _Look) -> Claim:
+    return SearchClaim.ONE_FORM.claim(
+        Scope.STARTS,
+        Level.ESTIMATED,
+        unknowns=problem.n,
+        count=0 if look.form is None else look.form.profile.arclength.size,
+        residual=look.residual,
     )
 
 
@@ -110,7 +127,7 @@ def _unmonitored(problem: Problem, branch: Branch) -> Form:
     return Form("Form 1", branch, profile, np.nan)
 
 
-def _monitored(problem: Problem, branch: Branch) -> tuple[Form, float]:
+def _monitored(problem: Problem, branch: Branch) -> _Look:
     """The form with the smallest regular singular value of F' along it, about, and the
     largest residual along it. What no correction removes is at most that of the worst
     equation where this is least."""
@@ -130,7 +147,8 @@ def _monitored(problem: Problem, branch: Branch) -> tuple[Form, float]:
     smallest = float(np.min(values[..., -2], initial=np.inf))
     if not places.size:
         misclosure = 0.0
-    return Form("Form 1", branch, profile, smallest, misclosure=misclosure), largest
+    form = Form("Form 1", branch, profile, smallest, misclosure=misclosure)
+    return _Look(form, largest)
 
 
 def _doubts(problem: Problem, form: Form) -> list[Doubt]:

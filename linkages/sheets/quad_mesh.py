@@ -16,13 +16,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from linkages.values import require
 
-ALONG, UP = "e", "n"  # creases that run from west to east, and from south to north
+LETTERS = {0: "B", 1: "V", -1: "M"}  # of an edge, by the sign of its fold
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,30 +70,34 @@ class QuadMesh:
     def flat(self) -> np.ndarray:
         """All vertices (c + 2, r + 2, 2) of the flat sheet, those of its rim among
         them."""
-        east, north, west, south = self._directions
-        c, r = east.shape[:2]
-        points = np.empty((c + 2, r + 2, 2))
-        points[1, 1] = 0.0
-        shifts = np.abs(self.rows)
-        lengths = shifts.mean() / shifts
-        for i in range(1, c):
-            points[i + 1, 1] = points[i, 1] + east[i - 1, 0]
-        for j in range(1, r):
-            points[1, j + 1] = points[1, j] + lengths[j - 1] * north[0, j - 1]
-        for j in range(1, r):
-            for i in range(1, c):
-                points[i + 1, j + 1] = _meeting(
-                    points[i + 1, j], north[i, j - 1], points[i, j + 1], east[i - 1, j]
-                )
+        directions = self._directions
+        points = np.empty((len(self.columns) + 2, len(self.rows) + 2, 2))
+        points[1:-1, 1:-1] = self._inner(directions)
         inner = points[1:-1, 1:-1]
+        east, north, west, south = directions
         points[0, 1:-1] = inner[0] + west[0]
         points[-1, 1:-1] = inner[-1] + east[-1]
         points[1:-1, 0] = inner[:, 0] + south[:, 0]
         points[1:-1, -1] = inner[:, -1] + north[:, -1]
-        for i, j in ((0, 0), (0, -1), (-1, 0), (-1, -1)):
-            beside_i, beside_j = (1 if i == 0 else -2), (1 if j == 0 else -2)
-            points[i, j] = (
-                points[i, beside_j] + points[beside_i, j] - points[beside_i, beside_j]
+        for i, beside_i in ((0, 1), (-1, -2)):
+            for j, beside_j in ((0, 1), (-1, -2)):
+                across = points[beside_i, beside_j]
+                points[i, j] = points[i, beside_j] + points[beside_i, j] - across
+        return points
+
+    def _inner(self, directions: tuple[np.ndarray, ...]) -> np.ndarray:
+        """The inner vertices (c, r, 2), from the lengths of the first row and column: so
+        long that no row shears the columns more than another one does."""
+        east, north, *_ = directions
+        points = np.zeros_like(east)
+        shears = np.abs(self.rows)
+        steps = (shears.mean() / shears)[:-1, None] * north[0, :-1]
+        points[1:, 0] = np.cumsum(east[:-1, 0], axis=0)
+        points[0, 1:] = np.cumsum(steps, axis=0)
+        for i, j in np.ndindex(east.shape[0] - 1, east.shape[1] - 1):
+            below, beside = points[i + 1, j], points[i, j + 1]
+            points[i + 1, j + 1] = _meeting(
+                below, north[i + 1, j], beside, east[i, j + 1]
             )
         return points
 
@@ -122,64 +126,76 @@ class QuadMesh:
     def folded(self, t: float) -> np.ndarray:
         """All vertices (c + 2, r + 2, 3) of the sheet folded to the half tangent
         ``t``."""
-        along, up = self.folds(t)
         flat = np.concatenate([self.flat, np.zeros((*self.flat.shape[:2], 1))], axis=2)
-        columns, rows = flat.shape[0] - 1, flat.shape[1] - 1
-        turns = np.empty((columns, rows, 3, 3))
-        offsets = np.empty((columns, rows, 3))
-        turns[0, 0], offsets[0, 0] = np.eye(3), 0.0
-        for i, j in np.ndindex(columns, rows):
-            if j:
-                before = i, j - 1
-                ends, angle = (flat[i, j], flat[i + 1, j]), along[i, j - 1]
-            elif i:
-                before = i - 1, 0
-                ends, angle = (flat[i, 1], flat[i, 0]), up[i - 1, 0]
-            else:
-                continue
-            turn = _turn(ends[1] - ends[0], angle)
-            turns[i, j] = turns[before] @ turn
-            offsets[i, j] = offsets[before] + turns[before] @ (ends[0] - turn @ ends[0])
-        panels = np.minimum(np.arange(columns + 1), columns - 1)
-        beside = np.minimum(np.arange(rows + 1), rows - 1)
-        of_vertex = np.ix_(panels, beside)
-        moved = turns[of_vertex] @ flat[..., None]
-        folded: np.ndarray = moved[..., 0] + offsets[of_vertex]
+        poses = self._poses(flat, t)
+        last = max(poses)
+        folded = np.empty_like(flat)
+        for i, j in np.ndindex(flat.shape[:2]):
+            # with the panel that begins there, or the last one
+            pose = poses[min(i, last[0]), min(j, last[1])]
+            folded[i, j] = pose.turn @ flat[i, j] + pose.offset
         return folded
+
+    def _poses(self, flat: np.ndarray, t: float) -> dict[tuple[int, int], _Pose]:
+        """Where the panels of the ``flat`` sheet are in space, by column and row, the
+        first one as it lies."""
+        along, up = self.folds(t)
+        columns, rows = len(self.columns), len(self.rows)
+        poses = {(0, 0): _Pose(np.eye(3), np.zeros(3))}
+        for i in range(columns):
+            start, end = flat[i + 1, 1], flat[i + 1, 0]
+            poses[i + 1, 0] = poses[i, 0].folded_over(start, end, up[i, 0])
+        for i, j in np.ndindex(columns + 1, rows):
+            start, end = flat[i, j + 1], flat[i + 1, j + 1]
+            poses[i, j + 1] = poses[i, j].folded_over(start, end, along[i, j])
+        return poses
 
     def fold_content(self, t: float, title: str) -> dict[str, Any]:
         """The content of a FOLD file of the sheet folded to the half tangent ``t``,
         positive, its creases assigned as they are folded."""
-        along, up = self.folds(t)
-        columns, rows = self.flat.shape[0] - 1, self.flat.shape[1] - 1
-        numbers = np.arange((columns + 1) * (rows + 1)).reshape(columns + 1, rows + 1)
-        number = numbers.tolist()
-        edges, letters = [], []
-
-        def add(first: tuple[int, int], second: tuple[int, int], fold: float) -> None:
-            edges.append([number[first[0]][first[1]], number[second[0]][second[1]]])
-            letters.append("B" if fold == 0.0 else "V" if fold > 0.0 else "M")
-
-        for i, j in np.ndindex(numbers.shape):
-            if i < columns:
-                is_inner = 0 < j < rows
-                add((i, j), (i + 1, j), along[i, j - 1] if is_inner else 0.0)
-            if j < rows:
-                is_inner = 0 < i < columns
-                add((i, j), (i, j + 1), up[i - 1, j] if is_inner else 0.0)
-        faces = [
-            [number[i][j], number[i + 1][j], number[i + 1][j + 1], number[i][j + 1]]
-            for i, j in np.ndindex(columns, rows)
+        numbers = np.arange(self.flat.shape[0] * self.flat.shape[1])
+        numbers = numbers.reshape(self.flat.shape[:2])
+        corners = [
+            numbers[:-1, :-1],
+            numbers[1:, :-1],
+            numbers[1:, 1:],
+            numbers[:-1, 1:],
         ]
+        edges, signs = self._edges(numbers, t)
         return {
             "file_spec": 1.1,
             "file_title": title,
             "frame_classes": ["foldedForm"],
             "vertices_coords": self.folded(t).reshape(-1, 3).tolist(),
-            "edges_vertices": edges,
-            "edges_assignment": letters,
-            "faces_vertices": faces,
+            "edges_vertices": edges.tolist(),
+            "edges_assignment": [LETTERS[sign] for sign in signs.tolist()],
+            "faces_vertices": np.stack(corners, axis=-1).reshape(-1, 4).tolist(),
         }
+
+    def _edges(self, numbers: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
+        """The ends (e, 2) of all edges by the ``numbers`` (c + 2, r + 2) of vertices, and
+        the signs (e,) of their folds, 0 on the rim."""
+        along, up = self.folds(t)
+        along, up = np.pad(along, ((0, 0), (1, 1))), np.pad(up, ((1, 1), (0, 0)))
+        across = np.stack([numbers[:-1], numbers[1:]], axis=-1).reshape(-1, 2)
+        upwards = np.stack([numbers[:, :-1], numbers[:, 1:]], axis=-1).reshape(-1, 2)
+        folds = np.concatenate([along.ravel(), up.ravel()])
+        return np.concatenate([across, upwards]), np.sign(folds).astype(int)
+
+
+class _Pose(NamedTuple):
+    """A displacement: a ``turn`` (3, 3) about the origin, and then an ``offset``
+    (3,)."""
+
+    turn: np.ndarray
+    offset: np.ndarray
+
+    def folded_over(self, start: np.ndarray, end: np.ndarray, angle: float) -> _Pose:
+        """That of a panel on the left of the crease from ``start`` (3,) to ``end`` (3,)
+        of one that is here, which is folded up by an angle."""
+        turn = _turn(end - start, angle)
+        offset = self.offset + self.turn @ (start - turn @ start)
+        return _Pose(self.turn @ turn, offset)
 
 
 def straight_mesh(rows: np.ndarray, columns: np.ndarray) -> QuadMesh:

@@ -26,6 +26,6 @@ def list_command() -> None:
     for network in NETWORKS.values():
         rows.append((network.name, str(len(network.plan.axes)), network.title))
     for sheet in SHEETS.values():
-        joints = sheet.build().joints
-        rows.append((sheet.name, str(len(joints)), sheet.title))
+        creases = len(sheet.build().joints)
+        rows.append((sheet.name, str(creases), sheet.title))
     say(table(("name", "joints", "title"), rows))
