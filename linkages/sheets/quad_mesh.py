@@ -144,10 +144,10 @@ class QuadMesh:
         poses = {(0, 0): _Pose(np.eye(3), np.zeros(3))}
         for i in range(columns):
             start, end = flat[i + 1, 1], flat[i + 1, 0]
-            poses[i + 1, 0] = poses[i, 0].folded_over(start, end, up[i, 0])
+            poses[i + 1, 0] = poses[i, 0].folded_over(start, end, float(up[i, 0]))
         for i, j in np.ndindex(columns + 1, rows):
             start, end = flat[i, j + 1], flat[i + 1, j + 1]
-            poses[i, j + 1] = poses[i, j].folded_over(start, end, along[i, j])
+            poses[i, j + 1] = poses[i, j].folded_over(start, end, float(along[i, j]))
         return poses
 
     def fold_content(self, t: float, title: str) -> dict[str, Any]:
