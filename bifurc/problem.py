@@ -16,6 +16,11 @@ class Problem(System):
     domain, `residuals` and `jacobians` alone, and a problem that knows more about itself
     answers faster."""
 
+    @property
+    def given_state(self) -> np.ndarray | None:
+        """The solution (n,) by which the equations are given, if they are."""
+        return None
+
     @abstractmethod
     def march(
         self, start: np.ndarray, tangent: np.ndarray, settings: MarchSettings

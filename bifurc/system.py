@@ -256,7 +256,8 @@ class Shortcuts(NamedTuple):
     its number of equations. ``equations`` hands F and F', over a magnitude, to the
     compiled methods that are the same for all systems. ``valley_corrector`` corrects all points at the nodes of a
     piece of the valley along which the system is nearly solved
-    (`bifurc.curves.valley_problem`).
+    (`bifurc.curves.valley_problem`). ``smallest_value`` gives the smallest singular value of F', over the
+    magnitude, across the unit ``tangent`` (n,) of the curve through a point (n,), about.
     """
 
     m: int = 0
@@ -264,6 +265,7 @@ class Shortcuts(NamedTuple):
     bordered_solver: Callable[[np.ndarray, np.ndarray], Solver | None] | None = None
     valley_corrector: NodeCorrector | None = None
     equations: Callable[[float], object] | None = None
+    smallest_value: Callable[[np.ndarray, np.ndarray], float] | None = None
 
 
 NO_SHORTCUTS = Shortcuts()

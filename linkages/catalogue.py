@@ -20,6 +20,7 @@ import linkages.families
 from bifurc.errors import UnknownNameError
 from linkages.entry import Entry
 from linkages.networks.entries import NETWORKS
+from linkages.sheets.entries import SHEETS
 
 NEAREST = 5  # names that are shown where there is none of that name
 
@@ -34,6 +35,11 @@ class UnknownLinkageError(UnknownNameError):
         if self.name in NETWORKS:
             return (
                 f"{self.name}: it is a network of several loops, and this takes a single "
+                f"loop; `bifurc show {self.name}` shows it"
+            )
+        if self.name in SHEETS:
+            return (
+                f"{self.name}: it is a sheet of many loops, and this takes a single "
                 f"loop; `bifurc show {self.name}` shows it"
             )
         hint = "no name is like it"
@@ -85,7 +91,7 @@ def entry(name: str) -> Entry:
     if name in entries:
         return entries[name]
     plain = name.strip().lower().replace("_", "-").replace(" ", "-")
-    known = [*entries, *NETWORKS]
+    known = [*entries, *NETWORKS, *SHEETS]
     nearest = difflib.get_close_matches(plain, known, n=3, cutoff=0.5)
     for other in known:
         is_part = bool(plain) and (plain in other or other in plain)

@@ -79,6 +79,7 @@ def label_atlas(
     """The atlas of a mechanism with labels on its forms, and what is its ``subject``;
     where there is no time for labels, and for what differs by whole turns, it says so."""
     from linkages.turns.translates import with_translates
+    from linkages.turns.turn_lattice import have_room_for_turns
 
     known = replace(atlas, subject=dict(subject))
 
@@ -86,6 +87,8 @@ def label_atlas(
         names = [form.name for form in atlas.forms]
         labels = [_labels(problem, form.branch).as_values() for form in atlas.forms]
         named = known.renamed(names, labels)
+        if not have_room_for_turns(problem.structure):
+            return named
         return with_translates(named, problem.structure, problem.lattice)
 
     return made_in_time(labelled) or _unnamed(known)

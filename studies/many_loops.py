@@ -1,20 +1,24 @@
-"""What a form costs with many loops: sheets of Miura-ori and lattices of Bennett linkages.
+"""What a form costs with many loops: sheets of Miura-ori, meshes of quadrilaterals and
+lattices of Bennett linkages.
 
-    python -m studies.many_loops [--out DIR] [--largest 10]
+    python -m studies.many_loops [--out DIR] [--largest 10] [--sheets 100]
 
 A sheet with k x k inner vertices has k^2 loops, of which one freedom is left. It is given
-folded, as a FOLD file. A lattice of k x k Bennett linkages is locked such that one is left,
-too, and is placed by its closed form. Times are processor times of reading or placing it,
-of writing its equations, and of the one form through its state. The error is the largest
-residual at places all along the form. Memory is the largest resident one so far, which
-ascending sizes make that of the last one. All mechanisms are measured three times,
-one after the other; the least times are taken.
+folded, as a FOLD file. So is a mesh of Lang and Howell (2018), of which all fold angles
+have a closed form: how far its form is from that is measured at places all along it. A
+lattice of k x k Bennett linkages is locked such that one is left, too, and is placed by
+its closed form. Times are processor times of reading or placing it, of writing its
+equations, and of the one form through its state. The error is the largest residual at
+places all along the form. Memory is the largest resident one so far, which ascending
+sizes make that of the last one. All mechanisms are measured three times, one after the
+other; the least times are taken. With ``--sheets`` only meshes are, once.
 """
 
 from __future__ import annotations
 
 import csv
 import json
+import math
 import resource
 import time
 from collections.abc import Callable
@@ -29,12 +33,16 @@ from matplotlib.figure import Figure
 from bifurc import trace_branch
 from linkages import Closure, Mechanism
 from linkages.files.fold import read_fold
+from linkages.sheets.entries import SHEETS
 from studies.bennett_lattice import locked_lattice
 from studies.miura import miura
 from studies.study import Study
 
 FOLD = 0.8  # rad, along the zigzags
-PLACES = 2000  # along a form, at which it is checked
+PLACES = 2000  # along a form, at which it is checked,
+NUMBERS = 2_000_000  # or as many as so many numbers hold, and no fewer than
+FEWEST_PLACES = 100
+MESH = "lang-howell-mesh"  # in the catalogue
 FEWEST = 9  # loops from which on the exponent is taken
 REPEATS = 3
 TIMES = ("read", "equations", "form")
@@ -44,7 +52,8 @@ TIMES = ("read", "equations", "form")
 class FormCost:
     """One mechanism of a ``family``: its loops and unknowns, seconds of reading it, of
     its equations and of its form, the form's pieces and length, the largest residual
-    along it, and megabytes."""
+    along it, the largest difference of an angle from the closed form (rad; nan where there
+    is none), and megabytes."""
 
     family: str
     loops: int
@@ -56,6 +65,7 @@ class FormCost:
     length: float
     error: float
     memory: float
+    off_closed_form: float = math.nan
 
 
 def folded_sheet(side: int) -> Mechanism:
@@ -68,8 +78,41 @@ def square_lattice(side: int) -> Mechanism:
     return locked_lattice(side, side)
 
 
+def mesh(side: int) -> Mechanism:
+    """The mesh of Lang and Howell with so many inner vertices a side."""
+    content = SHEETS[MESH].fold_content(rows=side, columns=side)
+    return read_fold(json.dumps(content), "mesh")
+
+
+def off_closed_form(mechanism: Mechanism, side: int, points: np.ndarray) -> float:
+    """The largest difference (rad) of fold angles at configurations (k, n) of a mesh from
+    those of its closed form, at the half tangent that the first column has."""
+    sheet = SHEETS[MESH].mesh(rows=side, columns=side)
+    angles = {crease.joint: crease.angle for crease in mechanism.creases}
+    creases = [_place_of_crease(name, side) for name in angles]
+    reference = np.array(list(angles.values()))
+    first = creases.index((1, 0, 0))
+    largest = 0.0
+    for point in points:
+        folds = point + reference
+        along, up = sheet.folds(np.tan(0.5 * folds[first]) / sheet.columns[0])
+        exact = [(along, up)[kind][i, j] for kind, i, j in creases]
+        gaps = np.remainder(folds - exact + np.pi, 2 * np.pi) - np.pi
+        largest = max(largest, float(np.abs(gaps).max()))
+    return largest
+
+
+def _place_of_crease(name: str, side: int) -> tuple[int, int, int]:
+    """Whether a crease runs up a column, and where it stands among those that do or
+    do not, by the numbers of its vertices, "3-4"."""
+    ends = [divmod(int(vertex), side + 2) for vertex in name.split("-")]
+    (i, j), (last_i, last_j) = sorted(ends)
+    return (1, i - 1, j) if i == last_i else (0, i, last_j - 1)
+
+
 FAMILIES: dict[str, Callable[[int], Mechanism]] = {
     "Miura-ori": folded_sheet,
+    "Lang-Howell mesh": mesh,
     "Bennett lattice": square_lattice,
 }
 
@@ -84,7 +127,10 @@ def cost_of_form(family: str, side: int) -> FormCost:
     written = time.process_time()
     branch = trace_branch(problem, problem.reference)
     traced = time.process_time()
-    residuals = problem.residuals(branch.sample(PLACES))
+    places = min(PLACES, max(FEWEST_PLACES, NUMBERS // problem.n))
+    points = branch.sample(places)
+    residuals = [np.linalg.norm(problem.residuals(point[None])) for point in points]
+    is_mesh = FAMILIES[family] is mesh
     return FormCost(
         family=family,
         loops=mechanism.independent_loops,
@@ -94,8 +140,11 @@ def cost_of_form(family: str, side: int) -> FormCost:
         form=traced - written,
         pieces=len(branch.pieces),
         length=branch.length,
-        error=float(np.linalg.norm(residuals, axis=1).max()),
+        error=float(max(residuals)),
         memory=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+        off_closed_form=off_closed_form(mechanism, side, points)
+        if is_mesh
+        else math.nan,
     )
 
 
@@ -138,8 +187,18 @@ def draw(costs: dict[str, list[FormCost]]) -> Figure:
 @click.command(cls=Study)
 @click.option("--out", type=Path, default=Path("out/many_loops"), show_default=True)
 @click.option("--largest", type=click.IntRange(2, 20), default=10, show_default=True)
-def main(out: Path, largest: int) -> None:
+@click.option(
+    "--sheets",
+    type=click.IntRange(0, 200),
+    default=0,
+    show_default=True,
+    help="Meshes of 10, 30 and so many vertices a side alone, once each.",
+)
+def main(out: Path, largest: int, sheets: int) -> None:
     """Measure sheets and lattices up to the largest number of loops a side."""
+    if sheets:
+        show_meshes(sorted({10, 30, sheets}))
+        return
     sides = [side for side in sorted({2, 3, 4, 5, 7, largest}) if side <= largest]
     for family in FAMILIES:
         cost_of_form(family, 3)  # imports, which are no part of it
@@ -169,11 +228,30 @@ def main(out: Path, largest: int) -> None:
         click.echo(f"  exponents against loops, from {FEWEST} on: {exponents}")
 
 
+def show_meshes(sides: list[int]) -> None:
+    """Measure meshes with so many vertices a side, and say what they cost."""
+    cost_of_form("Lang-Howell mesh", 3)  # imports, which are no part of it
+    costs = []
+    for side in sides:
+        costs.append(cost_of_form("Lang-Howell mesh", side))
+        click.echo(_line(costs[-1]))
+    totals = [sum(getattr(cost, name) for name in TIMES) for cost in costs]
+    loops = np.log([cost.loops for cost in costs])
+    slope = float(np.polyfit(loops, np.log(totals), 1)[0])
+    exponents = ", ".join(f"{name} {exponent(costs, name):.2f}" for name in TIMES)
+    click.echo(f"  exponents against loops: {exponents}, all together {slope:.2f}")
+
+
 def _line(cost: FormCost) -> str:
     return (
         f"  {cost.loops:4d} loops, {cost.unknowns:4d} unknowns: read {cost.read:.2f} s,"
         f" equations {cost.equations:.2f} s, form {cost.form:.3f} s in {cost.pieces}"
         f" pieces, within {cost.error:.1e}, {cost.memory:.0f} MB"
+        + (
+            ""
+            if math.isnan(cost.off_closed_form)
+            else f", {cost.off_closed_form:.1e} rad off the closed form"
+        )
     )
 
 

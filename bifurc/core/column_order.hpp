@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -87,12 +88,21 @@ private:
     std::vector<std::vector<Index>> rows_;
 };
 
-// The pattern of a matrix and the order of its columns.
-struct Sparsity {
-    explicit Sparsity(SparsityPattern entries) : pattern(std::move(entries)), order(pattern) {}
+// The pattern of a matrix and the order of its columns, which is made when it is first asked for: not for two
+// threads at once.
+class Sparsity {
+public:
+    explicit Sparsity(SparsityPattern entries) : pattern(std::move(entries)) {}
 
-    SparsityPattern pattern;
-    ColumnOrder order;
+    const ColumnOrder& order() const {
+        if (!order_) order_.emplace(pattern);
+        return *order_;
+    }
+
+    const SparsityPattern pattern;
+
+private:
+    mutable std::optional<ColumnOrder> order_;
 };
 
 }  // namespace bifurc

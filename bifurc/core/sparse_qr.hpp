@@ -27,7 +27,7 @@ class SparseQr {
 public:
     explicit SparseQr(const Sparsity& sparsity)
         : pattern_(sparsity.pattern),
-          order_(sparsity.order),
+          order_(sparsity.order()),
           fronts_(order_.size()),
           solution_(order_.size()) {
         for (Index place = 0; place < order_.size(); ++place) {

@@ -605,7 +605,7 @@ private:
 class ManyPoints {
 public:
     explicit ManyPoints(const Tape& tape)
-        : tape_(tape), one_(tape), many_(tape), point_(tape.unknowns()), jacobian_(tape.equations(), tape.unknowns()) {}
+        : tape_(tape), one_(tape), many_(tape), point_(tape.unknowns()), jacobian_(0, 0) {}
 
     // F (k, m) at points (k, n), and F' (k * m, n) where there is room for it.
     void fill(View<const double> points, View<double> values, View<double> jacobians) {
@@ -635,6 +635,7 @@ private:
             for (Index lane = 0; lane < count; ++lane) values(begin + lane, row) = value.at[lane];
         }
         if (!has_jacobians) return true;
+        if (jacobian_.rows() != m) jacobian_ = Matrix<Abreast>(m, n);
         many_.jacobian(jacobian_);
         for (Index row = 0; row < m; ++row) {
             for (Index lane = 0; lane < count; ++lane) {

@@ -43,6 +43,9 @@ LARGEST_FACTORED_DENSE = 40  # the same, in compiled code
 # up to which pieces of a curve are made in compiled code: the factors of a net of more
 # unknowns take longer than collocation with SuperLU
 LARGEST_SPARSE = 250
+# unknowns up to which rounding is measured at solutions near random points, which for more
+# are seldom reached, with factors that fill
+LARGEST_PROJECTED = 400
 SINGULAR = 1e-12  # a singular value of F', over the magnitude, that is left to pivoting
 SPARSE = 0.25  # share of entries of a larger Jacobian up to which it is sparse
 ROUNDING = 4e-16  # below this residual a projection has nothing left to gain
@@ -161,6 +164,7 @@ class ScaledTape:
             bordered_solver=self.bordered_solver if is_bordered else None,
             valley_corrector=self.valley_points_at_nodes if self.is_small else None,
             equations=cache(partial(_core.tape_equations, self.tape.compiled)),
+            smallest_value=self.smallest_value if is_bordered else None,
         )
 
     def sparse_jacobian(self, point: np.ndarray) -> csc_array:
@@ -214,16 +218,24 @@ class ScaledTape:
         not factored as a sparse matrix, and where it has too low a rank."""
         if not self.is_factored_sparse:
             return None
-        factored = _core.FactoredTape(
+        factored = self._factored(point, tangent)
+        if not factored.smallest_singular_value() > SINGULAR:
+            return None
+        return factored.solve
+
+    def smallest_value(self, point: np.ndarray, tangent: np.ndarray) -> float:
+        """The smallest singular value of F' at a point (n,) across the unit ``tangent``
+        (n,), over the magnitude, about."""
+        return self._factored(point, tangent).smallest_singular_value()
+
+    def _factored(self, point: np.ndarray, tangent: np.ndarray) -> _core.FactoredTape:
+        return _core.FactoredTape(
             self.tape.compiled,
             self._units,
             self._weights,
             _contiguous(point) / self._unit,
             _contiguous(tangent),
         )
-        if not factored.smallest_singular_value() > SINGULAR:
-            return None
-        return factored.solve
 
     # --- curves and solutions ---------------------------------------------------------
 
@@ -282,7 +294,7 @@ class ScaledTape:
         Rounding is measured there; where none are known, about the ``start`` (n,). At
         some solutions it happens to be nothing: a little way off it is not.
         """
-        if len(self._solutions):
+        if self.tape.n <= LARGEST_PROJECTED and len(self._solutions):
             return self._share_at_solutions
         return self._share_about(np.tile(start, (self._sample_count, 1)), BESIDE)
 

@@ -92,7 +92,7 @@ IN_DOUBLES: Mapping[Operation, np.ufunc] = {
 
 
 class TooLong(Exception):
-    """A tape has more than `LONGEST` operations."""
+    """A tape would have more operations than it may."""
 
 
 class Node(NamedTuple):
@@ -319,10 +319,12 @@ def _binary(operation: Operation, library: Any) -> Callable[[Any, Any], Any]:
 
 
 class TapeWriter:
-    """A tape while it is written. Every method returns the slot of its result."""
+    """A tape while it is written, of at most ``longest`` operations. Every method returns
+    the slot of its result."""
 
-    def __init__(self, n: int):
+    def __init__(self, n: int, longest: float = LONGEST):
         self.n = n
+        self.longest = longest
         self._nodes: list[Node] = []
         self._rules: dict[int, int] = {}
         self._slots: dict[Node, int] = {}
@@ -529,7 +531,7 @@ class TapeWriter:
         slot = self._slots.get(node)
         if slot is None:
             slot = len(self._nodes)
-            if slot >= LONGEST:
+            if slot >= self.longest:
                 raise TooLong
             self._slots[node] = slot
             self._nodes.append(node)

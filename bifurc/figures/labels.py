@@ -33,6 +33,7 @@ BACKGROUND = {
     "linewidth": 0,
 }
 SAME_MARK = 0.005  # of the frame: marks that are closer share a name
+MOST_PLACED = 150  # names; more of them have no room anyway
 ROOM = 1.0  # around a name, in points
 SAME_SPOT = 0.01  # of the frame: points that are closer share a name
 
@@ -204,6 +205,8 @@ class _Placement(Artist):
 
     def draw(self, renderer: RendererBase) -> None:
         """Place the names; nothing is drawn."""
+        if len(self._texts) > MOST_PLACED:
+            return
         axes = self._axes
         figure = figure_of(axes)
         scale = 72.0 / figure.dpi

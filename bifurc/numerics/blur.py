@@ -13,7 +13,7 @@ import numpy as np
 
 from bifurc.branch import Branch
 from bifurc.decisions import is_without_equation, may_be_scaled_down
-from bifurc.numerics.null_spaces import decompose
+from bifurc.numerics.null_spaces import decompose, null_vector
 from bifurc.numerics.singular_values import factors_of, singular_values
 from bifurc.system import System, hessian_at, relative_jacobians, relative_residuals
 
@@ -21,6 +21,7 @@ ROUNDING = 1e-15  # of F, over the magnitude, where F is evaluated with care
 # Step, over the scale, after which F differs by its slope and rounding, and how far from
 # a point that is seen.
 PROBE, BESIDE = 1e-12, 1e-4
+MANY = 300  # unknowns beyond which singular values take minutes
 PROBES = 8  # such steps: rounding is the largest difference
 SAFETY = 2.0  # times that
 # Times the blur: two points of one curve are no farther apart.
@@ -47,6 +48,8 @@ def known_to(
     distances = np.zeros(len(points))
     if problem.n < 2 or not len(points):
         return distances
+    if values is None and problem.n > MANY and problem.shortcuts.smallest_value:
+        return ROUNDING / _weakest_of_many(problem, points)
     if values is None:
         values = singular_values(problem, points)
     sigma = values[:, problem.n - 2]
@@ -59,6 +62,15 @@ def known_to(
         rounding = _rounding_of_weakest(problem, points[weak])
         distances[weak] = SAFETY * rounding / sigma[weak]
     return distances
+
+
+def _weakest_of_many(problem: System, points: np.ndarray) -> np.ndarray:
+    """The smallest regular singular value (k,) at points (k, n) of curves of many
+    unknowns, about, by sparse factors."""
+    smallest_value = problem.shortcuts.smallest_value
+    assert smallest_value is not None
+    values = [smallest_value(point, null_vector(problem, point)) for point in points]
+    return np.maximum(values, TINY)
 
 
 def _rounding_of_weakest(problem: System, points: np.ndarray) -> np.ndarray:

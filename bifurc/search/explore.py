@@ -39,6 +39,7 @@ from bifurc.search.answer.settled_in_boxes import settled_in_boxes
 from bifurc.search.factor_by_factor import explored_by_factors
 from bifurc.search.isolated_boxes import IsolatedInBoxes, isolated_in_boxes
 from bifurc.search.many_unknowns import explore_many_unknowns, has_many_unknowns
+from bifurc.search.one_form import explore_one_form, has_one_form
 from bifurc.search.own_units.restated import restated
 from bifurc.search.own_units.unit_problem import (
     UnitProblem,
@@ -204,6 +205,8 @@ def _explored_along(
 def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
     """The atlas, factor by factor or in units of the search's own where the problem lets
     it."""
+    if request.seeds is None and has_one_form(problem):
+        return _explored_from_state(problem, request)
     if not is_of_equations(problem) or not has_no_own_answers(problem):
         return _explored_in_own_units(problem, request)
     if request.seeds is not None:
@@ -213,6 +216,16 @@ def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
         lambda part: _explored_in_own_units(part, request),
         lambda: _explored_in_boxes(problem, request),
     )
+
+
+def _explored_from_state(problem: Problem, request: _Request) -> Atlas:
+    """The atlas of a problem that is given by a state, and has many unknowns and one
+    freedom there."""
+    deadline = current_deadline()
+    provenance = _provenance(problem, request, False, deadline)
+    atlas = explore_one_form(problem, provenance, deadline)
+    seconds = time.perf_counter() - deadline.began
+    return replace(atlas, provenance=replace(atlas.provenance, seconds=seconds))
 
 
 def _explored_in_boxes(problem: FunctionProblem, request: _Request) -> Atlas:

@@ -23,6 +23,11 @@ class Closure(ClosureSystem):
 
     as_drawn: Callable[[np.ndarray], bool] | None = None
 
+    @property
+    def given_state(self) -> np.ndarray | None:
+        """The reference configuration of a mechanism; a loop is given by its table."""
+        return None if isinstance(self.subject, Loop) else self.reference
+
     def is_given_at(self, point: np.ndarray) -> bool:
         """Whether what is singular at a configuration (n,) is as it is drawn."""
         return self.as_drawn is not None and self.as_drawn(point)

@@ -48,6 +48,7 @@ from linkages.structure.structure import Closure, ClosureKind, Structure
 # unknowns up to which compiled methods with dense matrices take no longer than those in
 # Python: for sections with spheres, and for curves of equations that are not sparse
 LARGEST_COMPILED = 250
+MANY = 300  # unknowns beyond which no dense matrix is to be made
 STRIDE_OF = 12  # joints, the most of a loop: up to there a stride is the scale
 
 
@@ -76,9 +77,12 @@ def parts_of_structure(
         data_rounding=structure.mechanism.coordinate_rounding / structure.unit,
         hessian_error=EXACT_HESSIAN,
     )
+    is_many = tape.n > MANY
+    # a closure of each counts as it does alone
+    magnitude = domain.stride if is_many else Problem.magnitude
     compiled = ScaledTape(
         tape,
-        Problem.magnitude,
+        magnitude,
         domain,
         largest_dense=LARGEST_COMPILED,
         largest_sparse=math.inf,
@@ -92,6 +96,7 @@ def parts_of_structure(
         bounds=partial(bounds_of_structure, structure),
         structure=structure,
         rows=tuple(slice(first, last) for first, last in pairwise(ends)),
+        magnitude=magnitude,
     )
 
 
@@ -106,6 +111,7 @@ def domain_of(structure: Structure) -> Domain:
         periods=np.array([unknown.period for unknown in unknowns]),
         bounds=np.array([[one.low, one.high] for one in unknowns]),
         stride=stride,
+        has_crossings=len(unknowns) <= MANY,  # bridges take dense matrices
     )
 
 
@@ -121,7 +127,7 @@ def write_equations(
     """The equations of all closures, then those of the embedded spherical joints, with
     what ``changes``; on a tape of ``writer``, if it is given, whose first unknowns are
     those of the structure."""
-    writer = writer or Recorder(len(structure.unknowns))
+    writer = writer or Recorder(len(structure.unknowns), math.inf)
     values = _values(structure, writer, changes)
     outputs: list[int] = []
     counts = []

@@ -25,7 +25,8 @@ class Motor(NamedTuple):
     dual: Quaternion
 
 
-IDENTITY = Motor((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0))
+NOTHING = (0.0, 0.0, 0.0, 0.0)
+IDENTITY = Motor((1.0, 0.0, 0.0, 0.0), NOTHING)
 
 
 def turn(
@@ -39,6 +40,8 @@ def turn(
     whose half has this ``cosine`` and ``sine``, with an ``advance`` along it."""
     half = 0.5 * advance
     real = (cosine, *(sine * float(d) for d in direction))
+    if is_zero(half) and not np.any(moment):
+        return Motor(real, NOTHING)
     dual = [-half * sine]
     for d, m in zip(direction, moment, strict=True):
         dual.append(sine * float(m) + half * cosine * float(d))
@@ -53,10 +56,13 @@ def slide(direction: np.ndarray, distance: Number) -> Motor:
 
 def product(first: Motor, second: Motor) -> Motor:
     """The displacement that does the ``second`` one first, in fixed axes."""
+    real = _quaternion_product(first.real, second.real)
+    if all(map(is_zero, (*first.dual, *second.dual))):
+        return Motor(real, NOTHING)
     one = _quaternion_product(first.real, second.dual)
     other = _quaternion_product(first.dual, second.real)
     dual = tuple(a + b for a, b in zip(one, other, strict=True))
-    return Motor(_quaternion_product(first.real, second.real), dual)
+    return Motor(real, dual)
 
 
 def translation(motor: Motor) -> Point:

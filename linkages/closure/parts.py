@@ -20,7 +20,8 @@ class ClosureParts(NamedTuple):
     """What is chosen once for a subject: the equations as compiled code, the
     ``bounds`` on F'' from the geometry, worked out when they are asked for. A mechanism
     has a ``structure``, and the ``rows`` of the equations that belong to each of its
-    closures."""
+    closures. The ``magnitude`` of many equations is larger, as their roundings are
+    together."""
 
     domain: Domain
     accuracy: Accuracy
@@ -28,3 +29,4 @@ class ClosureParts(NamedTuple):
     bounds: Callable[[], Curvature]
     structure: Structure | None = None
     rows: tuple[slice, ...] = ()
+    magnitude: float = 1.0

@@ -47,6 +47,7 @@ class ClosureSystem(NumericalProblem):
         self.parts = parts = _parts_of(subject, changes, structure)
         self.domain, self.accuracy = parts.domain, parts.accuracy
         self.compiled = parts.compiled
+        self.magnitude = parts.magnitude
 
     def residuals(self, points: np.ndarray) -> np.ndarray:
         """F (k, m) at points (k, n)."""

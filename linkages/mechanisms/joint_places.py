@@ -65,8 +65,7 @@ def _neighbours(mechanism: Mechanism) -> list[list[Joint]]:
     """The two joints of every body that has but two, if they lead on from there to two
     other bodies."""
     pairs = []
-    for body in mechanism.bodies:
-        joints = [joint for joint in mechanism.joints if body in joint.bodies]
+    for joints in mechanism.joints_of.values():
         is_binary = len(joints) == 2 and all(len(one.bodies) == 2 for one in joints)
         if is_binary and set(joints[0].bodies) != set(joints[1].bodies):
             pairs.append(joints)

@@ -187,11 +187,23 @@ class Mechanism:
 
     def joint(self, name: str) -> Joint:
         """The joint of this name; raises `GeometryError`."""
-        for joint in self.joints:
-            if joint.name == name:
-                return joint
-        names = ", ".join(joint.name for joint in self.joints)
+        if name in self._named:
+            return self._named[name]
+        names = ", ".join(self._named)
         raise GeometryError("joint", quoted(name), f"one of {names}")
+
+    @cached_property
+    def _named(self) -> dict[str, Joint]:
+        return {joint.name: joint for joint in self.joints}
+
+    @cached_property
+    def joints_of(self) -> dict[str, list[Joint]]:
+        """The joints of every body, in their order."""
+        joints: dict[str, list[Joint]] = {body: [] for body in self.bodies}
+        for joint in self.joints:
+            for body in joint.bodies:
+                joints[body].append(joint)
+        return joints
 
     @cached_property
     def variables(self) -> tuple[Variable, ...]:
@@ -392,6 +404,8 @@ class Mechanism:
         """The mechanism with variables, by label, locked at ``values`` (rad and unit of
         length), or those that they follow at what that takes; raises `GeometryError`
         for a label that it does not have, and for two locks of coupled variables."""
+        if not values:
+            return self
         labels = [variable.label for variable in self.variables]
         for label in values:
             allowed = f"one of {', '.join(labels)}"

@@ -12,6 +12,8 @@ from linkages.mechanisms.joint_places import joint_places
 from linkages.mechanisms.mechanism import Mechanism
 
 ROUNDING = 1e-12  # of the spread of the points: a distance that is none
+MANY = 300  # unknowns from which on least squares are solved by a sparse matrix
+SETTLED = 1e-14  # what conjugate gradients leave of them
 
 
 class _Span(NamedTuple):
@@ -20,6 +22,14 @@ class _Span(NamedTuple):
     body: str
     first: int
     second: int
+
+
+class _Block(NamedTuple):
+    """Entries (3, k) of a matrix from a ``row`` and a ``column`` on."""
+
+    row: int
+    column: int
+    entries: np.ndarray
 
 
 class Size:
@@ -53,16 +63,13 @@ class Size:
         """A point (k, 3) for each of the k places of joints."""
         bases = [place.free for place in self.places]
         starts = np.cumsum([0, *(len(basis) for basis in bases)])
-        rows, columns = 3 * len(self._spans), int(starts[-1])
-        matrix = np.zeros((rows, columns))
-        gaps = np.zeros(rows)
+        gaps = np.zeros(3 * len(self._spans))
+        blocks = []
         for k, span in enumerate(self._spans):
-            row = slice(3 * k, 3 * k + 3)
             for joint, sign in ((span.first, 1.0), (span.second, -1.0)):
-                free = slice(starts[joint], starts[joint + 1])
-                matrix[row, free] += sign * bases[joint].T
-            gaps[row] = self._given[span.second] - self._given[span.first]
-        shifts = np.linalg.lstsq(matrix, gaps, rcond=None)[0]
+                blocks.append(_Block(3 * k, int(starts[joint]), sign * bases[joint].T))
+            gaps[3 * k : 3 * k + 3] = self._given[span.second] - self._given[span.first]
+        shifts = _least_squares(blocks, gaps, int(starts[-1]))
         points = self._given.copy()
         for joint, basis in enumerate(bases):
             points[joint] += shifts[starts[joint] : starts[joint + 1]] @ basis
@@ -88,10 +95,13 @@ class Size:
 
     @cached_property
     def _spans(self) -> list[_Span]:
+        here: dict[str, list[int]] = {body: [] for body in self.mechanism.bodies}
+        for k, place in enumerate(self.places):
+            for body in place.bodies:
+                here[body].append(k)
         spans = []
-        for body in self.mechanism.bodies:
-            here = [k for k, place in enumerate(self.places) if body in place.bodies]
-            spans += [_Span(body, *two) for two in combinations(here, 2)]
+        for body, numbers in here.items():
+            spans += [_Span(body, *two) for two in combinations(numbers, 2)]
         return spans
 
     def _distances(self, points: np.ndarray) -> np.ndarray:
@@ -102,3 +112,29 @@ class Size:
         distances = np.linalg.norm(first - second, axis=1)
         apart: np.ndarray = distances[distances > ROUNDING * spread]
         return apart
+
+
+def _least_squares(blocks: list[_Block], right: np.ndarray, columns: int) -> np.ndarray:
+    """The shortest least-squares solution (columns,) of a matrix of ``blocks``, which add
+    up, for a ``right``-hand side."""
+    if columns <= MANY:
+        matrix = np.zeros((len(right), columns))
+        for row, column, entries in blocks:
+            matrix[row : row + 3, column : column + entries.shape[1]] += entries
+        return np.asarray(np.linalg.lstsq(matrix, right, rcond=None)[0])
+    from scipy.sparse import coo_array
+    from scipy.sparse.linalg import lsmr
+
+    rows, numbers, values = [], [], []
+    for row, column, entries in blocks:
+        places = np.indices(entries.shape)
+        rows.append((row + places[0]).ravel())
+        numbers.append((column + places[1]).ravel())
+        values.append(entries.ravel())
+    where = (np.concatenate(rows), np.concatenate(numbers))
+    sparse = coo_array((np.concatenate(values), where), shape=(len(right), columns))
+    steps = 10 * columns
+    solution = lsmr(
+        sparse.tocsr(), right, atol=SETTLED, btol=SETTLED, conlim=0.0, maxiter=steps
+    )
+    return np.asarray(solution[0])

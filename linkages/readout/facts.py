@@ -3,6 +3,7 @@ still, bodies that move as one, ranges of the joint variables."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,12 +11,15 @@ import numpy as np
 from bifurc.atlas import Atlas
 from bifurc.decisions import unit_over_rounding
 from bifurc.numerics.blur import blur_along, change_by_blur
+from bifurc.numerics.bordered import as_dense
+from bifurc.system import jacobian_at
 from linkages.decisions import is_dependent_constraint, keeps_angle
 from linkages.readout.ranges import VariableRange, variable_ranges
 from linkages.readout.readout import Readout
 from linkages.structure.structure import CONSTRAINTS, Closure, Structure
 
 SAMPLES = 400  # of a form
+ALIKE = 1e-5  # of the largest one: numbers of bodies that may move as one differ less
 IN_PLANE = 3  # constraints of a cycle in a plane
 
 
@@ -43,19 +47,24 @@ def loop_facts(readout: Readout, point: np.ndarray) -> list[LoopFacts]:
     """What is redundant in every loop at a configuration (n,) of the atlas, but for those
     of creases that are held flat."""
     problem = readout.closure
-    jacobian = problem.jacobians(point[None])[0]
+    jacobian = jacobian_at(problem, point)
+    if not isinstance(jacobian, np.ndarray):
+        jacobian = jacobian.tocsr()
     facts = []
     for closure, rows in zip(
         problem.structure.closures, problem.parts.rows, strict=True
     ):
         if _is_held(problem.structure, closure):
             continue
-        block = jacobian[rows]
+        block = as_dense(jacobian[rows])
+        present = np.flatnonzero(block.any(axis=0))
+        block = block[:, present]
         rank = _rank(block)
         dependent = []
         for joint in dict.fromkeys(closure.joints):
             columns = _columns_of_joint(problem.structure, joint)
-            if columns and _rank(np.delete(block, columns, axis=1)) == rank:
+            others = block[:, ~np.isin(present, columns)]
+            if columns and _rank(others) == rank:
                 dependent.append(joint)
         constraints = CONSTRAINTS[closure.kind]
         if readout.mechanism.is_planar:
@@ -137,6 +146,33 @@ def _groups(
     hanging = {joint.bodies[0] for joint in joints}
     left = [number for number, body in enumerate(bodies) if body not in hanging]
     groups = []
+    for alike in _moved_alike(poses, left):
+        groups += _rigid_groups(poses, alike, length, unit)
+    groups.sort()
+    return tuple(tuple(bodies[number] for number in group) for group in groups)
+
+
+def _moved_alike(poses: np.ndarray, numbers: Sequence[int]) -> list[list[int]]:
+    """The bodies of these ``numbers`` in sets outside of which none moves with them, by
+    their ``poses`` (k, b, 4, 4): those that move as one have the same displacement from
+    the first sample on, and so the same number made of it."""
+    moved = poses @ np.linalg.inv(poses[0])
+    weights = np.random.default_rng(0).normal(size=(len(poses), 4, 4))
+    marks = np.einsum("kbij,kij->b", moved, weights)[list(numbers)]
+    size = float(np.abs(marks).max(initial=1.0))
+    order = np.argsort(marks)
+    cuts = np.flatnonzero(np.diff(marks[order]) > ALIKE * size) + 1
+    return [
+        sorted(numbers[k] for k in part) for part in np.split(order, cuts) if len(part)
+    ]
+
+
+def _rigid_groups(
+    poses: np.ndarray, numbers: Sequence[int], length: float, unit: float
+) -> list[list[int]]:
+    """Those of the bodies of these ``numbers`` that move as one, two and more."""
+    left = list(numbers)
+    groups = []
     while left:
         first = left.pop(0)
         inverse = np.linalg.inv(poses[:, first])
@@ -149,8 +185,8 @@ def _groups(
                 group.append(other)
                 left.remove(other)
         if len(group) > 1:
-            groups.append(tuple(bodies[number] for number in group))
-    return tuple(groups)
+            groups.append(group)
+    return groups
 
 
 def _still(readout: Readout, groups: tuple[tuple[str, ...], ...]) -> tuple[str, ...]:

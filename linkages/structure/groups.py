@@ -77,7 +77,8 @@ class Groups:
 
     def _group(self, inside: set[int]) -> Group:
         """The group of these bodies."""
-        touching = {k: set(one[:2]) & inside for k, one in self.plain.items()}
+        here = sorted({k for body in inside for k in self._plain_of.get(body, ())})
+        touching = {k: set(self.plain[k][:2]) & inside for k in here}
         points = enumerate(self.points)
         return Group(
             bodies=tuple(sorted(inside)),
@@ -90,6 +91,15 @@ class Groups:
     def of_body(self) -> dict[int, Group]:
         """The group of every body, by number."""
         return {body: group for group in self.all for body in group.bodies}
+
+    @cached_property
+    def _plain_of(self) -> dict[int, list[int]]:
+        """The pairs of every body that are not spherical, by number."""
+        pairs: defaultdict[int, list[int]] = defaultdict(list)
+        for number, (base, moved, _) in self.plain.items():
+            pairs[base].append(number)
+            pairs[moved].append(number)
+        return pairs
 
     @cached_property
     def plain(self) -> dict[int, Ends]:

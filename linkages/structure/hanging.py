@@ -115,6 +115,8 @@ class Hanging:
     def held(self) -> Mechanism:
         """The mechanism with all that hangs held in the reference configuration, or as
         near to it as limits allow."""
+        if not self.pairs:
+            return self.mechanism
         values = {}
         for variable in self._free:
             low, high = variable.limits or (0.0, 0.0)

@@ -11,6 +11,7 @@ cover.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
@@ -192,18 +193,21 @@ class Structure:
         variables = self.mechanism.variables
         if any(one.locked for one in variables):
             return  # it is not flat
-        vertices = copy(self)._flat_vertices()
+        as_given = copy(self)
+        vertices = as_given._flat_vertices()
         self.stay_flat = creases_that_stay_flat(variables, vertices)
         free = [one.label for one in variables if one.locked is None]
         self.is_held_flat = set(self.stay_flat) == set(free)
-        if self.is_held_flat:
-            return
-        held = {*self.stay_flat, *self.mechanism.at_rest}
-        numbers = [k for k, one in enumerate(variables) if one.label in held]
-        self.flat_vertices = [vertex.without(numbers) for vertex in vertices]
+        held: set[str] = set()
+        if not self.is_held_flat:
+            held = {*self.stay_flat, *self.mechanism.at_rest}
+            numbers = [k for k, one in enumerate(variables) if one.label in held]
+            self.flat_vertices = [vertex.without(numbers) for vertex in vertices]
         if held:
             self.mechanism = self.mechanism.with_locks(dict.fromkeys(held, 0.0))
             self.groups = Groups(self.mechanism, self.unit)
+        else:  # what is known of it as given holds
+            vars(self).update({**vars(as_given), **vars(self)})
 
     @property
     def fold_signs(self) -> np.ndarray:
@@ -542,6 +546,14 @@ class Structure:
             if variable.locked is None and variable.leader.number == number
         ]
 
+    @cached_property
+    def _followers(self) -> dict[int, list[int]]:
+        """The variables that follow every leading one, itself among them, by number."""
+        followers: defaultdict[int, list[int]] = defaultdict(list)
+        for number, variable in enumerate(self.mechanism.variables):
+            followers[variable.leader.number].append(number)
+        return followers
+
     def share(self, variable: int) -> Share | None:
         """What an unknown makes of a variable, by number; None where it is locked."""
         column = self.column_of.get(variable)
@@ -615,9 +627,8 @@ class Structure:
         unit = self._unit_of(number)
         ratios = []
         low, high = -np.inf, np.inf
-        for follower, other in enumerate(self.mechanism.variables):
-            if other.leader.number != number:
-                continue
+        for follower in self._followers[number]:
+            other = self.mechanism.variables[follower]
             ratios.append(other.leader.ratio)
             ends = (other.leader.value_of_leader(end) for end in self._range(follower))
             start, end = sorted(ends)

@@ -311,18 +311,32 @@ def _nearest_first(distances: list[np.ndarray], places: np.ndarray) -> np.ndarra
     return np.lexsort([np.round(key / ALIKE) for key in digits])
 
 
+def have_room_for_turns(structure: Structure) -> bool:
+    """Whether the limits of some unknown leave room for a whole turn of it."""
+    for column, period in _own_periods(structure).items():
+        unknown = structure.unknowns[column]
+        if unknown.high - unknown.low >= period:
+            return True
+    return False
+
+
+def _own_periods(structure: Structure) -> dict[int, float]:
+    """The periods of unknowns, by column, without what is periodic by itself; infinite
+    for what is not back after any turns, 0 for slides."""
+    return {
+        column: common_period(rates) if rates else 0.0
+        for column, rates in sorted(turning_rates(structure).items())
+        if not np.isfinite(structure.unknowns[column].period)
+    }
+
+
 @lru_cache(maxsize=16)
 def turn_lattice(structure: Structure) -> TurnLattice:
     """The lattice of a mechanism; of no rows where no turn has limits, or whatever
     advances does not cancel."""
     n = len(structure.unknowns)
     limits = np.array([[one.low, one.high] for one in structure.unknowns])
-    # what is periodic by itself is left out, and what is not back after any turns
-    own_periods = {
-        column: common_period(rates) if rates else 0.0
-        for column, rates in sorted(turning_rates(structure).items())
-        if not np.isfinite(structure.unknowns[column].period)
-    }
+    own_periods = _own_periods(structure)
     sliding = [column for column, period in own_periods.items() if period == 0.0]
     turning = [
         column for column, period in own_periods.items() if 0.0 < period < np.inf

@@ -10,6 +10,7 @@ from linkages.app.texts.numbers import known_to
 from linkages.entry import Entry, Parameter, ParameterKind
 from linkages.geometry_table import geometry_rows, geometry_text
 from linkages.loop import Loop
+from linkages.sheets.entries import SheetEntry
 
 
 def describe_entry(entry: Entry) -> str:
@@ -52,3 +53,19 @@ def list_below(title: str, lines: Sequence[str]) -> str:
     if not lines:
         return ""
     return "\n".join([title, *(f"  {line}" for line in lines)])
+
+
+def describe_sheet(entry: SheetEntry) -> str:
+    """Everything that is kept of a sheet."""
+    mechanism = entry.build()
+    facts = [
+        f"at the defaults: {len(mechanism.bodies)} panels, {len(mechanism.joints)} "
+        f"creases, {mechanism.independent_loops} loops",
+        "mobility: 1",
+    ]
+    parts = [
+        f"{entry.name}\n{entry.title}\nSource: {entry.source}",
+        parameter_table(entry.parameters),
+        list_below("Facts", facts),
+    ]
+    return "\n\n".join(parts)
