@@ -16,6 +16,7 @@ from linkages.structure.leading_folds import LeadingFolds
 from linkages.structure.structure import Structure
 
 SIZES = (0.3, 0.1, 0.03)  # rad, the largest fold angle
+MOST_UNKNOWNS = 500  # of sheets without modes, whose matrices are dense
 UNEQUAL = 0.9  # fold angles of a way, over those of another with which it folds
 STAYS = 0.5  # of the fold angles of leading order, by how much they may change
 
@@ -58,6 +59,8 @@ def _ways_and_whether_none(
         folds = _with_those_together(folds[order], structure.flat_vertices)
         ways = [_way_along(structure, domain, hold, fold) for fold in folds]
         return tuple(way for way in ways if way is not None), False
+    if len(domain.bounds) > MOST_UNKNOWNS:
+        return (), False
     leading = LeadingFolds(structure.flat_vertices, structure.fold_signs)
     for fold in leading.random(np.random.default_rng(0)):
         way = _way_along(structure, domain, hold, fold)

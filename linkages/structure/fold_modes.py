@@ -18,7 +18,7 @@ from linkages.decisions import is_no_fold
 from linkages.structure.flat_sheet import FlatVertex, forms_of
 
 MOST_WAYS = 1000
-MOST_STEPS = 100_000
+MOST_ANGLES = 20_000_000  # that are written down on the way to them
 
 
 class _State(NamedTuple):
@@ -41,15 +41,15 @@ def ways_by_modes(
         return None
     choice = _Choice(vertices, [lines for lines in modes if lines is not None], signs)
     ways: list[np.ndarray] = []
-    steps = 0
+    written = 0
     for first in range(len(vertices)):
         # the vertices before it rest
         states = [_State({}, frozenset(range(first)), (first,))]
         while states:
-            steps += 1
-            if len(ways) > MOST_WAYS or steps > MOST_STEPS:
-                return None
             state = states.pop()
+            written += 1 + len(state.angles)
+            if len(ways) > MOST_WAYS or written > MOST_ANGLES:
+                return None
             if state.waiting:
                 states += choice.continued(state)
             else:
