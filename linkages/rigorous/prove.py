@@ -1,0 +1,179 @@
+"""From an atlas of a loop to a certificate: centres, boxes and radii for which what
+`linkages.rigorous.check` checks does hold.
+
+Nothing is proved here. Every box and every sphere is tried with the functions of the
+check, made smaller where it does not hold, and left open where none does.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+from pathlib import Path
+from typing import Any
+
+import mpmath
+from flint import arb, ctx
+
+from bifurc.atlas import Atlas
+from bifurc.singular.point import Kind
+from linkages.loop import Loop
+from linkages.rigorous import check
+from linkages.rigorous.check import DoesNotHold
+from linkages.rigorous.courses import Course, Pass, course_of
+from linkages.rigorous.spheres import counted_half_branches, enclosed_point
+from linkages.rigorous.tubes import Cover, cover
+
+PRECISION = 128  # bits
+ORDER = 16  # of the series in which F is bounded along a box
+DIGITS = 42  # of the numbers of a table
+GEOMETRY = "1e-38"  # how far off they may be
+WITHIN_SPHERE = 0.7  # of its radius: there tubes begin and end
+OPEN_GAP = 1e-2  # arclength: so near a singular point that is not proved they end
+
+
+def exact_text(value: Any) -> str:
+    """A number of a table as the ball that holds it: whole numbers and doubles are
+    exact, those in mpmath are known to more than `DIGITS` digits."""
+    if value == int(value):
+        return str(int(value))
+    if isinstance(value, mpmath.mpf):
+        return f"[{mpmath.nstr(value, DIGITS)} +/- {GEOMETRY}]"
+    return float(value).hex()
+
+
+def make_certificate(loop: Loop, atlas: Atlas) -> check.Json:
+    """The certificate of the map of a loop, in which "open" says what is not proved.
+
+    ``loop`` is the table in numbers of any kind, of which ``atlas`` is the map. What is
+    left when the time is over counts as open.
+    """
+    ctx.prec = PRECISION
+    columns = ("lengths", "twists", "offsets")
+    geometry: check.Json = {
+        key: [exact_text(one) for one in getattr(loop, key)] for key in columns
+    }
+    geometry["scale"] = float(loop.characteristic_length).hex()
+    prover = _Prover(check.Loop(geometry), atlas)
+    prover.run()
+    return {
+        "format": check.FORMAT,
+        "name": loop.name,
+        "precision": PRECISION,
+        "order": ORDER,
+        "geometry": geometry,
+        "curves": [course.values for course in prover.courses],
+        "tubes": prover.tubes,
+        "points": prover.points,
+        "open": prover.open,
+    }
+
+
+def write_certificate(content: check.Json, path: Path) -> None:
+    """Write a certificate to a file, compressed where it ends with .gz."""
+    data = json.dumps(content, separators=(",", ":")).encode("utf-8")
+    if path.suffix == ".gz":
+        data = gzip.compress(data, mtime=0)
+    path.write_bytes(data)
+
+
+class _Prover:
+    """Fills ``tubes``, ``points`` and what is ``open`` of a certificate."""
+
+    def __init__(self, loop: check.Loop, atlas: Atlas):
+        self.loop = loop
+        self.courses = [course_of(atlas, number) for number in range(len(atlas.forms))]
+        self.tubes: list[check.Json] = []
+        self.boxes: list[list[check.Box]] = []
+        self.points: list[check.Json] = []
+        self.open: list[str] = []
+        self.atlas = atlas
+        self.places: dict[int, int] = {}  # of points of the atlas among the ``points``
+
+    def run(self) -> None:
+        """Enclose the singular points, cover the forms from one to the next, and join
+        both."""
+        for number in range(len(self.atlas.points)):
+            self._prove_point(number)
+        for number in range(len(self.courses)):
+            self._cover_course(number)
+        for point in self.points:
+            self._attach(point)
+        if self.atlas.surfaces:
+            self.open.append("components of more than one dimension")
+
+    def _prove_point(self, number: int) -> None:
+        """Put a singular point of the atlas into the certificate, with its sphere, if both
+        hold."""
+        meeting = self.atlas.points[number]
+        passes = [
+            (index, course, one)
+            for index, course in enumerate(self.courses)
+            for one in course.passes
+            if one.point == number
+        ]
+        if meeting.kind not in (Kind.BIFURCATION, Kind.RANK_DROP):
+            self.open.append(f"{meeting.name}, {meeting.kind.value}")
+            return
+        try:
+            values = enclosed_point(self.loop, meeting)
+            values |= counted_half_branches(self.loop, values, passes)
+        except DoesNotHold as reason:
+            self.open.append(f"{meeting.name}: {reason}")
+            return
+        self.places[number] = len(self.points)
+        self.points.append(values)
+
+    def _cover_course(self, number: int) -> None:
+        """The tubes of a form, one for each of its arcs."""
+        course = self.courses[number]
+        if not course.passes:
+            made = cover(self.loop, course, 0.0, course.branch.length, ORDER)
+            whole = {"winding": course.branch.winding.tolist()}
+            self._add(number, made, course.branch.length, whole)
+            return
+        for begin, end in zip(course.passes, course.passes[1:], strict=False):
+            first = begin.s + self._gap(begin)
+            last = end.s - self._gap(end)
+            made = cover(self.loop, course, first, last, ORDER)
+            ends = {"ends": [self._end(begin), self._end(end)]}
+            self._add(number, made, last, ends)
+
+    def _gap(self, one: Pass) -> float:
+        """How far from a pass tubes end, in arclength."""
+        if one.point not in self.places:
+            return OPEN_GAP
+        sphere = self.points[self.places[one.point]]["sphere"]
+        return WITHIN_SPHERE * float.fromhex(sphere)
+
+    def _end(self, one: Pass) -> check.Json:
+        """Inside which sphere a tube ends; None where there is none."""
+        if one.point not in self.places:
+            return None
+        return {"point": self.places[one.point], "turns": one.turns.tolist()}
+
+    def _add(self, number: int, made: Cover, end: float, joints: check.Json) -> None:
+        """Add a tube of a form, and what is open of it."""
+        course = self.courses[number]
+        if made.reached < end:
+            self.open.append(
+                f"{course.name} from s = {made.reached:.6g} to {end:.6g}: {made.reason}"
+            )
+            begin = joints["ends"][0] if "ends" in joints else None
+            joints = {"ends": [begin, None]}
+        if made.boxes:
+            self.tubes.append({"curve": number, "boxes": made.values, **joints})
+            self.boxes.append(made.boxes)
+
+    def _attach(self, point: check.Json) -> None:
+        """Say of every half-branch in which box of which tube it is."""
+        for half_branch in point["half_branches"]:
+            number = half_branch.pop("curve")
+            piece = half_branch.pop("piece")
+            u = self.courses[number].point(piece, float.fromhex(half_branch["x"]))
+            for tube, boxes in zip(self.tubes, self.boxes, strict=True):
+                if tube["curve"] != number:
+                    continue
+                for k, box in enumerate(boxes):
+                    if tube["boxes"][k][0] == piece and box.holds_inside(u):
+                        half_branch |= {"tube": self.tubes.index(tube), "box": k}
