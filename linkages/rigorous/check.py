@@ -29,6 +29,7 @@ from flint import arb, arb_mat, arb_poly, arb_series, ctx
 
 FORMAT = "bifurc certificate 1"
 EQUATIONS = 6
+UNPROVED = "that these are all motions"
 DEEPEST = 14  # bisections of a direction, after which it counts as not excluded
 Vector: TypeAlias = list[Any]  # of balls
 Json: TypeAlias = Any
@@ -76,13 +77,16 @@ def column(values: Vector) -> arb_mat:
 
 
 def norm(matrix: arb_mat) -> arb:
-    """An upper bound of the norm, the largest sum of a row."""
+    """An upper bound of the norm, the largest sum of a row; raises `DoesNotHold` where
+    an entry is not bounded."""
     sums = [sum((x.abs_upper() for x in row), arb(0)) for row in matrix.tolist()]
-    return largest(total.abs_upper() for total in sums)
+    return largest([total.abs_upper() for total in sums])
 
 
-def largest(values: Iterator[arb] | Sequence[arb]) -> arb:
-    """The largest of exact numbers."""
+def largest(values: Sequence[arb]) -> arb:
+    """The largest of exact numbers; raises `DoesNotHold` where one is not finite, with
+    which no comparison would be true."""
+    require(all(value.is_finite() for value in values), "a ball is not bounded")
     return max(values, default=arb(0))
 
 
@@ -259,6 +263,39 @@ class Derivatives:
 # --- statements 1 and 2: tubes about a curve ------------------------------------------
 
 
+class Frame:
+    """A norm |S^-1 u| of vectors u (n,): that of the largest entry, but for the direction
+    in which an ``inverse`` is largest, which counts less.
+
+    A matrix that couples this direction with the others is smaller in it. S = I + (s - 1)
+    v v^T about; any regular S would do.
+    """
+
+    def __init__(self, inverse: arb_mat):
+        weak = max(inverse.transpose().tolist(), key=lambda v: _length(v).mid())
+        unit = [(x / _length(weak)).mid() for x in weak]
+        stretch = (norm(inverse).sqrt() - 1).mid()
+        outer = column(unit) * arb_mat([unit])
+        self.matrix = (identity(len(unit)) + outer * stretch).mid()
+        self.inverse = self.matrix.inv()
+
+    def norm(self, matrix: arb_mat) -> arb:
+        """An upper bound of the norm of a matrix (n, n)."""
+        return norm(self.inverse * matrix * self.matrix)
+
+    def size(self, u: Vector) -> arb:
+        """An upper bound of the norm of a vector."""
+        return norm(self.inverse * column(u))
+
+    def largest_entry(self, radius: arb) -> arb:
+        """An upper bound of the entries of all vectors up to a norm."""
+        return (norm(self.matrix) * radius).abs_upper()
+
+    def balls(self, radius: arb) -> Vector:
+        """What holds all vectors up to a norm."""
+        return (self.matrix * column([ball(radius)] * self.matrix.nrows())).entries()
+
+
 @dataclass
 class Box:
     """A part of a curve with all that is within ``reach`` of it across.
@@ -275,9 +312,10 @@ class Box:
     reach: arb
     normal: Vector
     velocity: Vector
-    contraction: arb
-    radius: arb
-    misses: arb
+    frame: Frame = field(init=False)
+    contraction: arb = field(default_factory=arb)
+    radius: arb = field(default_factory=arb)
+    misses: arb = field(default_factory=arb)
 
     def point(self, x: arb) -> Vector:
         """c(x)."""
@@ -298,6 +336,10 @@ class Box:
         shift = self.along(step) / speed  # from x to the section that u lies on
         across = [d - v * shift for d, v in zip(step, self.velocity, strict=True)]
         return norm(column(across)) < self.reach
+
+    def end(self, side: int) -> Vector:
+        """What holds all closed configurations on the first (-1) or last (1) section."""
+        return _plus(self.point(side * self.half), self.frame.balls(self.radius))
 
     def _section_of(self, u: Vector) -> arb:
         """Some x of the box, at about the section of u."""
@@ -326,16 +368,18 @@ def thickened(u: Vector, radius: arb) -> Vector:
 @dataclass(frozen=True)
 class Piece:
     """Where a box is: on a polynomial of a curve, from ``low`` to ``high``, with its
-    ``reach``, and the n - 1 ``rows`` of F that are solved."""
+    ``reach``, the n - 1 ``rows`` of F that are solved, and the ``order`` of the series by
+    which F is bounded on the curve."""
 
     polynomial: list[arb_poly]
     low: arb
     high: arb
     reach: arb
     rows: Sequence[int]
+    order: int
 
 
-def make_box(loop: Loop, piece: Piece, order: int) -> Box:
+def make_box(loop: Loop, piece: Piece) -> Box:
     """The box of a piece, of which theorems 1 and 2 are proved; raises `DoesNotHold`."""
     middle = ((piece.low + piece.high) / 2).mid()
     half = largest([(piece.high - middle).abs_upper(), (middle - piece.low).abs_upper()])
@@ -343,33 +387,38 @@ def make_box(loop: Loop, piece: Piece, order: int) -> Box:
     curve = [angle(arb_poly([middle, 1])) for angle in piece.polynomial]
     velocity = [angle.derivative()(span) for angle in curve]
     normal = _normal(curve)
-    zero = arb(0)
-    box = Box(curve, middle, half, piece.reach, normal, velocity, zero, zero, zero)
+    box = Box(curve, middle, half, piece.reach, normal, velocity)
     require(box.along(velocity) > 0, "the curve turns back on its sections")
 
     # theorem 1: u - v = (I - Y A)(u - v) - Y (F(v); 0) with A from the mean value theorem
-    everywhere = thickened(box.point(span), piece.reach)
-    over = loop.at(everywhere)
     centre = loop.at(box.point(arb(0))).jacobian
     matrix = stacked(rows_of(centre, piece.rows), normal)
     inverse = approximate_inverse(matrix)
-    along = rows_of(over.second(velocity), piece.rows) * span
-    across = rows_of(over.second([ball(piece.reach)] * loop.n), piece.rows)
+    box.frame = Frame(inverse)
+    across = [ball(piece.reach)] * loop.n
+    over = loop.at(_plus(box.point(span), across))
     of_rows = arb_mat([row[:-1] for row in inverse.tolist()])
-    defect = identity(loop.n) - inverse * matrix - of_rows * (along + across)
-    box.contraction = norm(defect)
+    defects = (
+        identity(loop.n) - inverse * matrix,
+        of_rows * rows_of(over.second(velocity), piece.rows) * half,
+        of_rows * rows_of(over.second(across), piece.rows),
+    )
+    sizes = [box.frame.norm(defect) for defect in defects]
+    box.contraction = sum(sizes, arb(0)).abs_upper()
     require(box.contraction < 1, "the left inverse does not contract")
-    values = _values_along(loop, curve, span, order)
-    misfit = norm(of_rows * rows_of(values, piece.rows))
-    box.radius = (misfit / (1 - box.contraction)).abs_upper()
-    require(box.radius < piece.reach, "the tube is narrower than the curve is exact")
+    values = _values_along(loop, curve, span, piece.order)
+    misfit = (of_rows * rows_of(values, piece.rows)).entries()
+    box.radius = (box.frame.size(misfit) / (1 - box.contraction)).abs_upper()
+    is_inside = box.frame.largest_entry(box.radius) < piece.reach
+    require(is_inside, "the tube is narrower than the curve is exact")
 
     # theorem 2: what is solved closes the loop, but for the other rows
     require(over.is_no_half_turn, "the loop may be off by half a turn")
     others = [row for row in range(EQUATIONS) if row not in piece.rows]
     if others:
         slopes = rows_of(over.jacobian, others)
-        box.misses = (norm(rows_of(values, others)) + norm(slopes) * box.radius).abs_upper()
+        moved = slopes * column(box.frame.balls(box.radius))
+        box.misses = (norm(rows_of(values, others)) + norm(moved)).abs_upper()
     return box
 
 
@@ -402,9 +451,7 @@ class Tube:
     @property
     def ends(self) -> tuple[Vector, Vector]:
         """What holds all closed configurations on the first and on the last section."""
-        first, last = self.boxes[0], self.boxes[-1]
-        begin = thickened(first.point(-first.half), first.radius)
-        return begin, thickened(last.point(last.half), last.radius)
+        return self.boxes[0].end(-1), self.boxes[-1].end(1)
 
 
 def make_tube(boxes: list[Box], winding: Sequence[int] | None) -> Tube:
@@ -427,9 +474,8 @@ def whole_turns(turns: Sequence[int]) -> Vector:
 def do_overlap(box: Box, following: Box, shift: Vector) -> bool:
     """Whether the end of a box is inside the following one, and the begin of that inside
     this one; the former lies ``shift`` farther on."""
-    end = _minus(thickened(box.point(box.half), box.radius), shift)
-    start = following.point(-following.half)
-    begin = _plus(thickened(start, following.radius), shift)
+    end = _minus(box.end(1), shift)
+    begin = _plus(following.end(-1), shift)
     return following.holds_inside(end) and box.holds_inside(begin)
 
 
@@ -536,7 +582,7 @@ def augmented(loop: Loop, point: Point, radius: arb) -> Augmented:
             matrix.append([arb(0)] * n + [*before, *line, *after])
     regular = selection * jacobian * arb_mat(point.range).transpose()
     defect = identity(n - k) - approximate_inverse(regular) * regular
-    largest_miss = largest(norm(x) for x in misses)
+    largest_miss = largest([norm(x) for x in misses])
     return Augmented(column(values), arb_mat(matrix), norm(defect), largest_miss)
 
 
@@ -654,8 +700,9 @@ class Sphere:
         z = [*sector.x, *self.y]
         middle = self.derivative([x.mid() for x in z], sector.rows)
         inverse = approximate_inverse(middle)
+        frame = Frame(inverse)
         defect = identity(self.loop.n) - inverse * self.derivative(z, sector.rows)
-        contraction = norm(defect)
+        contraction = frame.norm(defect)
         require(contraction < 1, "a sector may hold two half-branches")
         step = _minus(sector.place, self.point.centre)
         place = self.coordinates_of(sector.place)
@@ -663,8 +710,9 @@ class Sphere:
         require(is_inside, "an arc is not in its sector")
         values = rows_of(self.loop.at(sector.place).value, sector.rows).entries()
         values.append((_dot(step, step) - self.radius**2) / (2 * self.radius))
-        distance = norm(inverse * column(values)) / (1 - contraction)
-        return thickened(sector.place, norm(self.basis) * distance)
+        misfit = (inverse * column(values)).entries()
+        distance = frame.balls(frame.size(misfit) / (1 - contraction))
+        return _plus(sector.place, (self.basis * column(distance)).entries())
 
     def coordinates_of(self, u: Vector) -> Vector:
         """z = (x, y) of a point u."""
@@ -750,27 +798,23 @@ class Check:
         ctx.prec = int(certificate["precision"])
         self.certificate = certificate
         self.loop = Loop(certificate["geometry"])
-        self.order = int(certificate["order"])
         self.tubes: list[Tube | None] = []
 
     def statements(self) -> Iterator[Statement]:
         """What holds, as soon as it is known; the tubes first, on which the others rest."""
-        began = time.process_time()
-        no_jump = Statement("no jump")
-        self._check_tubes(no_jump)
-        no_jump.seconds = time.process_time() - began
+        no_jump = self._no_jump()
         yield no_jump
         yield self._motion(no_jump)
-        if self.certificate["points"]:
-            for name, check in (
-                ("singular points", self._check_point),
-                ("half-branches", self._check_sphere),
-            ):
-                yield self._of_points(name, check)
-        yield self._joined()
+        points = self._of_points("singular points", self._check_point)
+        yield points
+        spheres = self._of_points("half-branches", self._check_sphere)
+        yield spheres
+        yield self._joined([no_jump, spheres])
 
-    def _check_tubes(self, statement: Statement) -> None:
+    def _no_jump(self) -> Statement:
         """Theorem 1, with lemma 2."""
+        statement = Statement("no jump")
+        began = time.process_time()
         polynomials = [
             [[arb_poly(numbers(angle)) for angle in piece] for piece in curve["pieces"]]
             for curve in self.certificate["curves"]
@@ -784,7 +828,7 @@ class Check:
                 statement.failures.append(f"{self._tube_name(number)}: {reason}")
                 self.tubes.append(None)
         boxes = self._boxes
-        radius = float(largest([box.radius for box in boxes]))
+        radius = float(largest([box.frame.largest_entry(box.radius) for box in boxes]))
         contraction = float(largest([box.contraction for box in boxes]))
         reach = min((float(box.reach) for box in boxes), default=0.0)
         statement.numbers = (
@@ -792,15 +836,17 @@ class Check:
             f"configuration within {reach:.1e} across lies within {radius:.1e}, "
             f"contraction {contraction:.2f} at most"
         )
+        statement.seconds = time.process_time() - began
+        return statement
 
     def _box(
         self, curve: list[list[arb_poly]], piece: int, *values: Any
     ) -> Box:
-        low, high, reach, rows = values
+        low, high, reach, rows, order = values
         is_selection = len(set(rows)) == self.loop.n - 1 and set(rows) <= set(range(EQUATIONS))
         require(is_selection, f"the rows {rows} are not {self.loop.n - 1} equations")
-        place = Piece(curve[piece], number(low), number(high), number(reach), rows)
-        return make_box(self.loop, place, self.order)
+        sizes = numbers([low, high, reach])
+        return make_box(self.loop, Piece(curve[piece], *sizes, rows, order))
 
     @property
     def _boxes(self) -> list[Box]:
@@ -830,7 +876,7 @@ class Check:
                 words.append(f"{point['name']} {check(point)}")
             except DoesNotHold as reason:
                 statement.failures.append(f"{point['name']}: {reason}")
-        statement.numbers = ", ".join(words)
+        statement.numbers = ", ".join(words) or "there are none"
         statement.seconds = time.process_time() - began
         return statement
 
@@ -849,9 +895,7 @@ class Check:
         sphere = Sphere(self.loop, point_of(values), number(values["sphere"]))
         sectors = []
         for half_branch in values["half_branches"]:
-            tube = self.tubes[half_branch["tube"]]
-            require(tube is not None, "a half-branch is in a tube that does not hold")
-            box = tube.boxes[half_branch["box"]]
+            box = self._box_of(half_branch)
             place = box.point(number(half_branch["x"]) - box.middle)
             turns = whole_turns(half_branch["turns"])
             x = [number(one) for one in half_branch["sector"]]
@@ -866,23 +910,44 @@ class Check:
         sphere.require_no_other(sectors)
         return f"{len(sectors)} on the sphere of {float(sphere.radius):.1e}"
 
-    def _joined(self) -> Statement:
-        """Theorem 5: every tube that does not close ends inside spheres."""
-        statement = Statement("joined")
-        for number_of_tube, values in enumerate(self.certificate["tubes"]):
-            tube = self.tubes[number_of_tube]
-            if tube is None:
-                statement.failures.append(f"{self._tube_name(number_of_tube)} is open")
+    def _box_of(self, half_branch: Json) -> Box:
+        """The box in which a half-branch goes on."""
+        require("tube" in half_branch, "a half-branch goes on in no tube")
+        tube = self.tubes[half_branch["tube"]]
+        require(tube is not None, "a half-branch goes on in a tube that does not hold")
+        return tube.boxes[half_branch["box"]]
+
+    def _joined(self, others: Sequence[Statement]) -> Statement:
+        """Theorem 5: besides, every tube that does not close ends inside spheres."""
+        statement = Statement("joined", "a motion that is on the map never leaves it")
+        if not all(other.holds for other in others):
+            statement.failures.append("it rests on the others")
+        for number, values in enumerate(self.certificate["tubes"]):
+            tube = self.tubes[number]
             if tube is None or "winding" in values:
                 continue
             for end, place in zip(tube.ends, values["ends"], strict=True):
-                point = self.certificate["points"][place["point"]]
-                centre, radius = numbers(point["centre"]), number(point["sphere"])
-                inner = _minus(end, whole_turns(place["turns"]))
-                if not _length(_minus(inner, centre)) < radius:
-                    name = self._tube_name(number_of_tube)
-                    statement.failures.append(f"{name} ends outside of {point['name']}")
+                if place is not None and not self._is_inside(end, place):
+                    name = f"{self._tube_name(number)} ends outside of its sphere"
+                    statement.failures.append(name)
         return statement
+
+    def _is_inside(self, end: Vector, place: Json) -> bool:
+        """Whether all of an end lies inside the sphere of a point."""
+        point = self.certificate["points"][place["point"]]
+        inner = _minus(end, whole_turns(place["turns"]))
+        distance = _length(_minus(inner, numbers(point["centre"])))
+        return distance < number(point["sphere"])
+
+    @property
+    def unclaimed(self) -> list[str]:
+        """What the certificate says nothing of: what its maker left open, and what no
+        certificate of this format holds."""
+        ends = [end for tube in self.certificate["tubes"] for end in tube.get("ends", [])]
+        words = list(self.certificate["open"])
+        if None in ends:
+            words.append(f"where motions go beyond {ends.count(None)} ends of tubes")
+        return [*words, UNPROVED]
 
 
 def _kind(half_branches: int) -> str:
@@ -907,17 +972,14 @@ def read_certificate(path: str) -> Json:
         return json.load(file)
 
 
-UNPROVED = "that these are all motions is not part of this certificate"
-
-
 def main(path: str) -> int:
     """Print whether each statement of a certificate holds; 0 if all do, else 6."""
-    certificate = read_certificate(path)
+    check = Check(read_certificate(path))
     holds = True
-    for statement in Check(certificate).statements():
+    for statement in check.statements():
         print(statement)  # noqa: T201
         holds = holds and statement.holds
-    for words in [*certificate["open"], UNPROVED]:
+    for words in check.unclaimed:
         print(f"not claimed: {words}")  # noqa: T201
     return 0 if holds else 6
 

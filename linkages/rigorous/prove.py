@@ -25,9 +25,8 @@ from linkages.rigorous.spheres import counted_half_branches, enclosed_point
 from linkages.rigorous.tubes import Cover, cover
 
 PRECISION = 128  # bits
-ORDER = 16  # of the series in which F is bounded along a box
 DIGITS = 42  # of the numbers of a table
-GEOMETRY = "1e-38"  # how far off they may be
+GEOMETRY = 1e-38  # how far off they may be, relative
 WITHIN_SPHERE = 0.7  # of its radius: there tubes begin and end
 OPEN_GAP = 1e-2  # arclength: so near a singular point that is not proved they end
 
@@ -38,7 +37,8 @@ def exact_text(value: Any) -> str:
     if value == int(value):
         return str(int(value))
     if isinstance(value, mpmath.mpf):
-        return f"[{mpmath.nstr(value, DIGITS)} +/- {GEOMETRY}]"
+        error = GEOMETRY * abs(float(value))
+        return f"[{mpmath.nstr(value, DIGITS)} +/- {error:.1e}]"
     return float(value).hex()
 
 
@@ -60,7 +60,6 @@ def make_certificate(loop: Loop, atlas: Atlas) -> check.Json:
         "format": check.FORMAT,
         "name": loop.name,
         "precision": PRECISION,
-        "order": ORDER,
         "geometry": geometry,
         "curves": [course.values for course in prover.courses],
         "tubes": prover.tubes,
@@ -128,14 +127,14 @@ class _Prover:
         """The tubes of a form, one for each of its arcs."""
         course = self.courses[number]
         if not course.passes:
-            made = cover(self.loop, course, 0.0, course.branch.length, ORDER)
+            made = cover(self.loop, course, 0.0, course.branch.length)
             whole = {"winding": course.branch.winding.tolist()}
             self._add(number, made, course.branch.length, whole)
             return
         for begin, end in zip(course.passes, course.passes[1:], strict=False):
             first = begin.s + self._gap(begin)
             last = end.s - self._gap(end)
-            made = cover(self.loop, course, first, last, ORDER)
+            made = cover(self.loop, course, first, last)
             ends = {"ends": [self._end(begin), self._end(end)]}
             self._add(number, made, last, ends)
 

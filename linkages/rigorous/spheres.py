@@ -18,8 +18,8 @@ from linkages.rigorous.selection import best_rows, floats_of
 
 DIGITS = 36  # of the centre
 ALONE = 2.0 ** -np.arange(3, 30)  # about a point, the largest first
-RADII = 2.0 ** -np.arange(3, 17)  # of spheres, the largest first
-OPENINGS = 2.0 ** -np.arange(0, 8)  # of sectors, in radii of their sphere
+RADII = 2.0 ** -np.arange(3, 26)  # of spheres, the largest first
+OPENINGS = 2.0 ** -np.arange(0, 20)  # of sectors, in radii of their sphere
 NEWTON_STEPS = 6
 TRIES = 30  # combinations of equations, of which the most regular is taken
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from flint import arb
@@ -13,11 +14,14 @@ from linkages.rigorous.check import DoesNotHold
 from linkages.rigorous.courses import Course
 from linkages.rigorous.selection import best_rows, floats_of
 
-REACH = 1 / 16  # of a box across, in its length
+ALONG, ACROSS = 0.7, 0.1  # of a contraction of 1 that a box takes along and across
 OVERLAP = 1 / 32  # of neighbouring boxes, in their length
-LONGEST, SHORTEST = 0.5, 1e-7  # boxes, in arclength
+LONGEST = 0.5  # box, in arclength
+SHORTEST = 2.0**-12  # box, in the length that it may have to first order
+LONGER = 1.2  # boxes after one that holds
 MOST = 0.9  # contraction of a box: closer to 1 the enclosure is wide
-EASY = 0.5  # contraction below which the next box may be longer
+DIGITS = 14  # that the remainder of a series on a box is to leave out
+LOWEST, HIGHEST = 4, 16  # orders of such a series
 SETTLED = 1.5  # so much larger an inverse may be for the same equations to be solved
 
 
@@ -33,12 +37,12 @@ class Cover:
 
 
 def cover(
-    loop: check.Loop, course: Course, begin: float, end: float, order: int
+    loop: check.Loop, course: Course, begin: float, end: float
 ) -> Cover:
     """Boxes from one arclength of a curve to another, as far as they hold."""
     made = Cover(reached=begin)
-    length = LONGEST
     rows: list[int] = []
+    shorter = 1.0  # than they may be to first order
     while made.reached < end:
         if is_time_over():
             made.reason = "the time was over"
@@ -46,24 +50,25 @@ def cover(
         piece, _ = course.piece_at(made.reached)
         goal = min(end, float(course.branch.breaks[piece + 1]))
         rest = goal - made.reached
+        sizes = _sizes(loop, course, made.reached, rows)
+        length = shorter * min(sizes.length, LONGEST)
         step = rest if rest <= length else min(length, rest / 2)
         try:
-            values, box = _make(loop, course, piece, made.reached, step, rows, order)
+            values, box = _make(loop, course, made.reached, step, sizes)
             check.require(box.contraction < MOST, "the left inverse hardly contracts")
             _require_joint(made, box)
         except DoesNotHold as reason:
-            length = step / 2
             made.reason = str(reason)
-            if length < SHORTEST:
+            shorter = shorter * step / length / 2
+            if shorter < SHORTEST:
                 break
             continue
         made.reason = ""
         made.values.append(values)
         made.boxes.append(box)
         made.reached = goal if step == rest else made.reached + step
-        rows = values[4]
-        if box.contraction < EASY:
-            length = min(LONGEST, max(length, 1.5 * step))
+        rows = sizes.rows
+        shorter = min(1.0, LONGER * shorter)
     return made
 
 
@@ -74,24 +79,48 @@ def _require_joint(made: Cover, box: check.Box) -> None:
         check.require(overlap, "boxes do not overlap")
 
 
+@dataclass(frozen=True)
+class _Sizes:
+    """How large a box at a place may be, to first order: the equations that are solved,
+    its length and its reach."""
+
+    rows: list[int]
+    length: float
+    reach: float
+
+
+def _sizes(
+    loop: check.Loop, course: Course, s: float, rows: Sequence[int]
+) -> _Sizes:
+    """Sizes at an arclength, where the equations in ``rows`` were solved before it."""
+    at_place = loop.at(check.arb_vector(course.branch(s)))
+    slope = course.branch(s, 1)
+    jacobian = at_place.jacobian
+    chosen = best_rows(floats_of(jacobian), slope[None], rows, SETTLED)
+    normal = check.arb_vector(slope)
+    matrix = check.stacked(check.rows_of(jacobian, chosen), normal)
+    inverse = check.approximate_inverse(matrix)
+    frame = check.Frame(inverse)
+    rates = []
+    for direction in (normal, [check.ball(arb(1))] * loop.n):
+        bend = check.rows_of(at_place.second(direction), chosen)
+        change = inverse * check.stacked(bend, [arb(0)] * loop.n)
+        rates.append(max(float(frame.norm(change)), 1e-300))
+    return _Sizes(chosen, 2 * ALONG / rates[0], ACROSS / rates[1])
+
+
 def _make(
-    loop: check.Loop,
-    course: Course,
-    piece: int,
-    begin: float,
-    step: float,
-    rows: list[int],
-    order: int,
+    loop: check.Loop, course: Course, begin: float, step: float, sizes: _Sizes
 ) -> tuple[check.Json, check.Box]:
     """A box, as it stands in the certificate and as it is checked."""
+    piece, _ = course.piece_at(begin)
     low = course.coordinate(piece, begin - OVERLAP * step)
     high = course.coordinate(piece, begin + (1 + OVERLAP) * step)
-    reach = REACH * step
-    middle = course.branch(begin + step / 2)
-    slope = course.branch(begin + step / 2, 1)
-    jacobian = floats_of(loop.at([arb(x) for x in middle]).jacobian)
-    rows = best_rows(jacobian, slope[None], rows, SETTLED)
+    reach = min(sizes.reach, step / 8)
+    half = min((high - low) / 2, 0.5)
+    order = min(max(math.ceil(-DIGITS / math.log10(half)), LOWEST), HIGHEST)
     polynomial = course.polynomials[piece]
-    place = check.Piece(polynomial, arb(low), arb(high), arb(reach), rows)
-    box = check.make_box(loop, place, order)
-    return [piece, low.hex(), high.hex(), reach.hex(), rows], box
+    rows = sizes.rows
+    place = check.Piece(polynomial, arb(low), arb(high), arb(reach), rows, order)
+    box = check.make_box(loop, place)
+    return [piece, low.hex(), high.hex(), reach.hex(), rows, order], box
