@@ -22,13 +22,15 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import product
+from itertools import pairwise, product
 from typing import Any, TypeAlias
 
 from flint import arb, arb_mat, arb_poly, arb_series, ctx
 
 FORMAT = "bifurc certificate 1"
 EQUATIONS = 6
+HIGHEST = 64  # order of a series
+MALFORMED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 UNPROVED = "that these are all motions"
 DEEPEST = 14  # bisections of a direction, after which it counts as not excluded
 Vector: TypeAlias = list[Any]  # of balls
@@ -180,7 +182,9 @@ class Loop:
                 rows[i] = [_combination(turned, table, j) for j in range(4)]
         ctx.cap = cap
         length = order + 1
-        matrix = {(i, j): _padded(rows[i][j], length) for i in range(3) for j in range(4)}
+        matrix = {
+            (i, j): _padded(rows[i][j], length) for i in range(3) for j in range(4)
+        }
         by_power = [
             self.equations({at: value[k] for at, value in matrix.items()})
             for k in range(length)
@@ -296,6 +300,16 @@ class Frame:
         return (self.matrix * column([ball(radius)] * self.matrix.nrows())).entries()
 
 
+def best_frame(inverse: arb_mat, defects: Sequence[arb_mat]) -> tuple[Frame, arb]:
+    """The norm, this one or the plain one, in which some matrices together are smaller,
+    and an upper bound of the sum of their norms."""
+    choices = []
+    for frame in (Frame(identity(inverse.nrows())), Frame(inverse)):
+        total = sum((frame.norm(defect) for defect in defects), arb(0))
+        choices.append((frame, total.abs_upper()))
+    return min(choices, key=lambda choice: choice[1])
+
+
 @dataclass
 class Box:
     """A part of a curve with all that is within ``reach`` of it across.
@@ -382,7 +396,9 @@ class Piece:
 def make_box(loop: Loop, piece: Piece) -> Box:
     """The box of a piece, of which theorems 1 and 2 are proved; raises `DoesNotHold`."""
     middle = ((piece.low + piece.high) / 2).mid()
-    half = largest([(piece.high - middle).abs_upper(), (middle - piece.low).abs_upper()])
+    half = largest(
+        [(piece.high - middle).abs_upper(), (middle - piece.low).abs_upper()]
+    )
     span = ball(half)
     curve = [angle(arb_poly([middle, 1])) for angle in piece.polynomial]
     velocity = [angle.derivative()(span) for angle in curve]
@@ -394,7 +410,6 @@ def make_box(loop: Loop, piece: Piece) -> Box:
     centre = loop.at(box.point(arb(0))).jacobian
     matrix = stacked(rows_of(centre, piece.rows), normal)
     inverse = approximate_inverse(matrix)
-    box.frame = Frame(inverse)
     across = [ball(piece.reach)] * loop.n
     over = loop.at(_plus(box.point(span), across))
     of_rows = arb_mat([row[:-1] for row in inverse.tolist()])
@@ -403,8 +418,7 @@ def make_box(loop: Loop, piece: Piece) -> Box:
         of_rows * rows_of(over.second(velocity), piece.rows) * half,
         of_rows * rows_of(over.second(across), piece.rows),
     )
-    sizes = [box.frame.norm(defect) for defect in defects]
-    box.contraction = sum(sizes, arb(0)).abs_upper()
+    box.frame, box.contraction = best_frame(inverse, defects)
     require(box.contraction < 1, "the left inverse does not contract")
     values = _values_along(loop, curve, span, piece.order)
     misfit = (of_rows * rows_of(values, piece.rows)).entries()
@@ -457,7 +471,7 @@ class Tube:
 def make_tube(boxes: list[Box], winding: Sequence[int] | None) -> Tube:
     """The tube of boxes that overlap (lemma 2), closed after so many turns of each joint
     where a ``winding`` is given; raises `DoesNotHold`."""
-    for number, (box, following) in enumerate(zip(boxes, boxes[1:], strict=False)):
+    for number, (box, following) in enumerate(pairwise(boxes)):
         overlap = do_overlap(box, following, [arb(0)] * len(box.normal))
         require(overlap, f"boxes {number} and {number + 1} do not overlap")
     if winding is not None:
@@ -677,12 +691,16 @@ class Sphere:
         size = self._sizes(direction)
         z = [*(size * x for x in direction), *self.y]
         k = self.point.nullity
-        rows = zip(self.reduced_value, self.reduced_slope, self.reduced_bends, strict=True)
+        rows = zip(
+            self.reduced_value, self.reduced_slope, self.reduced_bends, strict=True
+        )
         for value, slope, bends in rows:
             quadratic = [_dot(bend[:k], direction) for bend in bends[:k]]
             total = size * size * _dot(quadratic, direction) / 2
             mixed = [_dot(bend[k:], self.y) for bend in bends]
-            total = total + _dot(mixed[:k], direction) * size + _dot(mixed[k:], self.y) / 2
+            total = (
+                total + _dot(mixed[:k], direction) * size + _dot(mixed[k:], self.y) / 2
+            )
             total = total + value + _dot(slope, z)
             if not total.contains(0):
                 return True
@@ -700,9 +718,8 @@ class Sphere:
         z = [*sector.x, *self.y]
         middle = self.derivative([x.mid() for x in z], sector.rows)
         inverse = approximate_inverse(middle)
-        frame = Frame(inverse)
         defect = identity(self.loop.n) - inverse * self.derivative(z, sector.rows)
-        contraction = frame.norm(defect)
+        frame, contraction = best_frame(inverse, [defect])
         require(contraction < 1, "a sector may hold two half-branches")
         step = _minus(sector.place, self.point.centre)
         place = self.coordinates_of(sector.place)
@@ -750,7 +767,9 @@ class Sphere:
                     continue
                 require(depth < DEEPEST, "a half-branch may be missing")
                 for signs in product((-1, 1), repeat=k - 1):
-                    steps = [x + s * half / 2 for x, s in zip(middle, signs, strict=True)]
+                    steps = [
+                        x + s * half / 2 for x, s in zip(middle, signs, strict=True)
+                    ]
                     open_cells.append((steps, half / 2, depth + 1))
         return count
 
@@ -798,31 +817,34 @@ class Check:
         ctx.prec = int(certificate["precision"])
         self.certificate = certificate
         self.loop = Loop(certificate["geometry"])
+        self.curves = [
+            [[arb_poly(numbers(angle)) for angle in piece] for piece in curve["pieces"]]
+            for curve in certificate["curves"]
+        ]
         self.tubes: list[Tube | None] = []
+        self.exits: list[tuple[Json, Vector]] = []  # half-branches, and where they are
 
     def statements(self) -> Iterator[Statement]:
-        """What holds, as soon as it is known; the tubes first, on which the others rest."""
-        no_jump = self._no_jump()
-        yield no_jump
-        yield self._motion(no_jump)
-        points = self._of_points("singular points", self._check_point)
-        yield points
-        spheres = self._of_points("half-branches", self._check_sphere)
-        yield spheres
-        yield self._joined([no_jump, spheres])
+        """What holds, as soon as it is known; the last one rests on the others."""
+        statements = []
+        for statement in (
+            self._no_jump,
+            self._motion,
+            lambda: self._of_points("singular points", self._check_point),
+            lambda: self._of_points("half-branches", self._check_sphere),
+        ):
+            statements.append(statement())
+            yield statements[-1]
+        if not self._open_ends:
+            yield self._joined(statements)
 
     def _no_jump(self) -> Statement:
         """Theorem 1, with lemma 2."""
         statement = Statement("no jump")
         began = time.process_time()
-        polynomials = [
-            [[arb_poly(numbers(angle)) for angle in piece] for piece in curve["pieces"]]
-            for curve in self.certificate["curves"]
-        ]
         for number, tube in enumerate(self.certificate["tubes"]):
-            curve = polynomials[tube["curve"]]
             try:
-                boxes = [self._box(curve, *values) for values in tube["boxes"]]
+                boxes = [self._box(tube["curve"], *values) for values in tube["boxes"]]
                 self.tubes.append(make_tube(boxes, tube.get("winding")))
             except DoesNotHold as reason:
                 statement.failures.append(f"{self._tube_name(number)}: {reason}")
@@ -832,21 +854,24 @@ class Check:
         contraction = float(largest([box.contraction for box in boxes]))
         reach = min((float(box.reach) for box in boxes), default=0.0)
         statement.numbers = (
-            f"{len(boxes)} boxes about {len(polynomials)} curves, every closed "
-            f"configuration within {reach:.1e} across lies within {radius:.1e}, "
+            f"{len(boxes)} boxes in {len(self.tubes)} tubes; every closed configuration "
+            f"within {reach:.1e} across lies within {radius:.1e} of the curve; "
             f"contraction {contraction:.2f} at most"
         )
         statement.seconds = time.process_time() - began
         return statement
 
-    def _box(
-        self, curve: list[list[arb_poly]], piece: int, *values: Any
-    ) -> Box:
+    def _box(self, curve: int, piece: int, *values: Any) -> Box:
         low, high, reach, rows, order = values
-        is_selection = len(set(rows)) == self.loop.n - 1 and set(rows) <= set(range(EQUATIONS))
+        require(0 < order <= HIGHEST, f"the order {order} is not from 1 to {HIGHEST}")
+        is_selection = len(set(rows)) == self.loop.n - 1 and set(rows) <= set(
+            range(EQUATIONS)
+        )
         require(is_selection, f"the rows {rows} are not {self.loop.n - 1} equations")
         sizes = numbers([low, high, reach])
-        return make_box(self.loop, Piece(curve[piece], *sizes, rows, order))
+        return make_box(
+            self.loop, Piece(self.curves[curve][piece], *sizes, rows, order)
+        )
 
     @property
     def _boxes(self) -> list[Box]:
@@ -856,15 +881,20 @@ class Check:
         curve = self.certificate["curves"][self.certificate["tubes"][number]["curve"]]
         return f"tube {number} of {curve['name']}"
 
-    def _motion(self, no_jump: Statement) -> Statement:
+    def _motion(self) -> Statement:
         """Theorem 2, which the same boxes prove."""
-        solved = sorted({len(tube["boxes"][0][4]) for tube in self.certificate["tubes"]})
         misses = float(largest([box.misses for box in self._boxes]))
-        count = " or ".join(map(str, solved))
-        words = f"on every section {count} of the 6 equations are solved exactly"
+        words = (
+            f"on every section {self.loop.n - 1} of the 6 equations are solved exactly"
+        )
         words += f", the others miss by {misses:.1e} at most" if misses else ""
         words += ": the loop closes" if not misses else ""
-        return Statement("motion", words, list(no_jump.failures))
+        failures = [
+            f"{self._tube_name(number)} does not hold"
+            for number, tube in enumerate(self.tubes)
+            if tube is None
+        ]
+        return Statement("motion", words, failures)
 
     def _of_points(self, name: str, check: Callable[[Json], str]) -> Statement:
         """What is checked of every singular point."""
@@ -891,18 +921,17 @@ class Check:
         )
 
     def _check_sphere(self, values: Json) -> str:
-        """Theorem 4, and that every half-branch goes on in a tube (theorem 5)."""
+        """Theorem 4."""
         sphere = Sphere(self.loop, point_of(values), number(values["sphere"]))
         sectors = []
         for half_branch in values["half_branches"]:
-            box = self._box_of(half_branch)
-            place = box.point(number(half_branch["x"]) - box.middle)
+            polynomial = self.curves[half_branch["curve"]][half_branch["piece"]]
+            x = number(half_branch["x"])
             turns = whole_turns(half_branch["turns"])
-            x = [number(one) for one in half_branch["sector"]]
-            sector = Sector(x, half_branch["rows"], _minus(place, turns))
+            place = _minus([angle(x) for angle in polynomial], turns)
+            sector = Sector(numbers(half_branch["sector"]), half_branch["rows"], place)
             solution = sphere.solution_in(sector)
-            is_inside = box.holds_inside(_plus(solution, turns))
-            require(is_inside, "a half-branch is not in its tube")
+            self.exits.append((half_branch, _plus(solution, turns)))
             sectors.append(sector)
         require(are_disjoint(sectors), "two sectors overlap")
         is_named = values["kind"] == _kind(len(sectors))
@@ -910,26 +939,41 @@ class Check:
         sphere.require_no_other(sectors)
         return f"{len(sectors)} on the sphere of {float(sphere.radius):.1e}"
 
-    def _box_of(self, half_branch: Json) -> Box:
-        """The box in which a half-branch goes on."""
-        require("tube" in half_branch, "a half-branch goes on in no tube")
-        tube = self.tubes[half_branch["tube"]]
-        require(tube is not None, "a half-branch goes on in a tube that does not hold")
-        return tube.boxes[half_branch["box"]]
+    @property
+    def _open_ends(self) -> list[str]:
+        """Where motions may leave what the certificate covers."""
+        covered = {tube["curve"] for tube in self.certificate["tubes"]}
+        names = [curve["name"] for curve in self.certificate["curves"]]
+        open_ends = [name for k, name in enumerate(names) if k not in covered]
+        for number, tube in enumerate(self.certificate["tubes"]):
+            if None in tube.get("ends", []):
+                open_ends.append(f"an end of {self._tube_name(number)}")
+        for point in self.certificate["points"]:
+            if any("tube" not in one for one in point["half_branches"]):
+                open_ends.append(f"a half-branch of {point['name']}")
+        return open_ends
 
     def _joined(self, others: Sequence[Statement]) -> Statement:
-        """Theorem 5: besides, every tube that does not close ends inside spheres."""
+        """Theorem 5: besides, every tube that does not close ends inside spheres, and
+        every half-branch is inside a tube."""
         statement = Statement("joined", "a motion that is on the map never leaves it")
         if not all(other.holds for other in others):
             statement.failures.append("it rests on the others")
+            return statement
         for number, values in enumerate(self.certificate["tubes"]):
-            tube = self.tubes[number]
-            if tube is None or "winding" in values:
-                continue
-            for end, place in zip(tube.ends, values["ends"], strict=True):
-                if place is not None and not self._is_inside(end, place):
-                    name = f"{self._tube_name(number)} ends outside of its sphere"
-                    statement.failures.append(name)
+            if "winding" not in values:
+                for end, place in zip(
+                    self.tubes[number].ends, values["ends"], strict=True
+                ):
+                    if not self._is_inside(end, place):
+                        failure = (
+                            f"{self._tube_name(number)} ends outside of its sphere"
+                        )
+                        statement.failures.append(failure)
+        for half_branch, u in self.exits:
+            box = self.tubes[half_branch["tube"]].boxes[half_branch["box"]]
+            if not box.holds_inside(u):
+                statement.failures.append("a half-branch is not in its tube")
         return statement
 
     def _is_inside(self, end: Vector, place: Json) -> bool:
@@ -941,13 +985,10 @@ class Check:
 
     @property
     def unclaimed(self) -> list[str]:
-        """What the certificate says nothing of: what its maker left open, and what no
-        certificate of this format holds."""
-        ends = [end for tube in self.certificate["tubes"] for end in tube.get("ends", [])]
-        words = list(self.certificate["open"])
-        if None in ends:
-            words.append(f"where motions go beyond {ends.count(None)} ends of tubes")
-        return [*words, UNPROVED]
+        """What the certificate says nothing of: what its maker left open, where motions
+        may leave what it covers, and what no certificate of this format holds."""
+        beyond = [f"where motions go beyond {place}" for place in self._open_ends]
+        return [*self.certificate["open"], *beyond, UNPROVED]
 
 
 def _kind(half_branches: int) -> str:
@@ -972,17 +1013,24 @@ def read_certificate(path: str) -> Json:
         return json.load(file)
 
 
-def main(path: str) -> int:
-    """Print whether each statement of a certificate holds; 0 if all do, else 6."""
-    check = Check(read_certificate(path))
+def check_certificate(certificate: Json, say: Callable[[str], object]) -> bool:
+    """Whether all statements of a certificate hold; each is said in a line."""
     holds = True
-    for statement in check.statements():
-        print(statement)  # noqa: T201
-        holds = holds and statement.holds
-    for words in check.unclaimed:
-        print(f"not claimed: {words}")  # noqa: T201
-    return 0 if holds else 6
+    try:
+        check = Check(certificate)
+        for statement in check.statements():
+            say(str(statement))
+            holds = holds and statement.holds
+        for words in check.unclaimed:
+            say(f"not claimed: {words}")
+    except DoesNotHold as reason:
+        say(f"does not hold: {reason}")
+        return False
+    except MALFORMED as error:
+        say(f"does not hold: it is no whole certificate ({error!r})")
+        return False
+    return holds
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+    sys.exit(0 if check_certificate(read_certificate(sys.argv[1]), print) else 6)

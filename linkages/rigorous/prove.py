@@ -7,20 +7,18 @@ check, made smaller where it does not hold, and left open where none does.
 
 from __future__ import annotations
 
-import gzip
 import json
-from pathlib import Path
 from typing import Any
 
 import mpmath
-from flint import arb, ctx
+from flint import ctx
 
 from bifurc.atlas import Atlas
 from bifurc.singular.point import Kind
 from linkages.loop import Loop
 from linkages.rigorous import check
 from linkages.rigorous.check import DoesNotHold
-from linkages.rigorous.courses import Course, Pass, course_of
+from linkages.rigorous.courses import Pass, course_of
 from linkages.rigorous.spheres import counted_half_branches, enclosed_point
 from linkages.rigorous.tubes import Cover, cover
 
@@ -68,12 +66,9 @@ def make_certificate(loop: Loop, atlas: Atlas) -> check.Json:
     }
 
 
-def write_certificate(content: check.Json, path: Path) -> None:
-    """Write a certificate to a file, compressed where it ends with .gz."""
-    data = json.dumps(content, separators=(",", ":")).encode("utf-8")
-    if path.suffix == ".gz":
-        data = gzip.compress(data, mtime=0)
-    path.write_bytes(data)
+def certificate_bytes(content: check.Json) -> bytes:
+    """What stands in the file of a certificate, before it is compressed."""
+    return json.dumps(content, separators=(",", ":")).encode("utf-8")
 
 
 class _Prover:
@@ -167,12 +162,11 @@ class _Prover:
     def _attach(self, point: check.Json) -> None:
         """Say of every half-branch in which box of which tube it is."""
         for half_branch in point["half_branches"]:
-            number = half_branch.pop("curve")
-            piece = half_branch.pop("piece")
+            number, piece = half_branch["curve"], half_branch["piece"]
             u = self.courses[number].point(piece, float.fromhex(half_branch["x"]))
-            for tube, boxes in zip(self.tubes, self.boxes, strict=True):
-                if tube["curve"] != number:
+            for k, boxes in enumerate(self.boxes):
+                if self.tubes[k]["curve"] != number:
                     continue
-                for k, box in enumerate(boxes):
-                    if tube["boxes"][k][0] == piece and box.holds_inside(u):
-                        half_branch |= {"tube": self.tubes.index(tube), "box": k}
+                for j, box in enumerate(boxes):
+                    if self.tubes[k]["boxes"][j][0] == piece and box.holds_inside(u):
+                        half_branch |= {"tube": k, "box": j}

@@ -15,7 +15,10 @@ def floats_of(matrix: arb_mat) -> np.ndarray:
 
 
 def best_rows(
-    jacobian: np.ndarray, others: np.ndarray, present: Sequence[int] = (), gain: float = 1.0
+    jacobian: np.ndarray,
+    others: np.ndarray,
+    present: Sequence[int] = (),
+    gain: float = 1.0,
 ) -> list[int]:
     """Rows (r,) of a matrix (6, n) that make with ``others`` (n - r, n) the square matrix
     with the smallest inverse; those ``present`` unless another choice is better by the

@@ -147,9 +147,7 @@ def _half_branches(
     return half_branches
 
 
-def _crossing(
-    sphere: check.Sphere, course: Course, one: Pass, side: int
-) -> check.Json:
+def _crossing(sphere: check.Sphere, course: Course, one: Pass, side: int) -> check.Json:
     """A half-branch: where a curve crosses the sphere, and its sector."""
     radius = float(sphere.radius)
     centre = np.array([float(x) for x in sphere.point.centre])

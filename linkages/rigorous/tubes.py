@@ -36,9 +36,7 @@ class Cover:
     reason: str = ""
 
 
-def cover(
-    loop: check.Loop, course: Course, begin: float, end: float
-) -> Cover:
+def cover(loop: check.Loop, course: Course, begin: float, end: float) -> Cover:
     """Boxes from one arclength of a curve to another, as far as they hold."""
     made = Cover(reached=begin)
     rows: list[int] = []
@@ -89,9 +87,7 @@ class _Sizes:
     reach: float
 
 
-def _sizes(
-    loop: check.Loop, course: Course, s: float, rows: Sequence[int]
-) -> _Sizes:
+def _sizes(loop: check.Loop, course: Course, s: float, rows: Sequence[int]) -> _Sizes:
     """Sizes at an arclength, where the equations in ``rows`` were solved before it."""
     at_place = loop.at(check.arb_vector(course.branch(s)))
     slope = course.branch(s, 1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -40,6 +40,20 @@ if TYPE_CHECKING:
         "Find every singular point again in arithmetic of so many digits, "
         "and show how many of the map's agree."
     ),
+)
+@click.option(
+    "--rigorous",
+    is_flag=True,
+    help=(
+        "Prove in ball arithmetic that no form jumps, that it is there, and what leaves "
+        "its singular points (docs/proof.md)."
+    ),
+)
+@click.option(
+    "--certificate",
+    type=options.FILE,
+    metavar="FILE.json.gz",
+    help="Prove it, and write what `bifurc check` needs to prove it again.",
 )
 @click.option(
     "--axes",
@@ -82,6 +96,8 @@ def map_command(
     no_certify: bool,
     nearest: bool,
     digits: int | None,
+    rigorous: bool,
+    certificate: Path | None,
     axes: tuple[str, ...] | None,
     against: tuple[str, ...] | None,
     window: tuple[float, float] | None,
@@ -106,15 +122,18 @@ def map_command(
       bifurc map slider_crank.toml --out out --axes J1,J4
       bifurc map four-bennett-network --lock 2=40 --lock 6=-75
       bifurc map special-double-subtractive-goldberg --digits 50
+      bifurc map special-double-subtractive-goldberg --certificate map.json.gz
     """
     from linkages.app.atlas_source import explore_parts
     from linkages.app.files import figure_axes
     from linkages.app.output import require_folder, require_out
 
     require_out(out)
-    if digits:
-        allow_digits(as_json, nearest, choice.hold)
+    proof = ProofOptions(rigorous, certificate)
+    for option in (*["--digits"] * bool(digits), *proof.names):
+        require_exact(option, as_json, nearest, choice.hold)
     mechanism, exact = choose_mapped(linkage, choice, nearest)
+    proof.require(linkage, mechanism)
     parts = mechanism.parts
     folders = folders_of(out, len(parts))
     over = [figure_axes(part, axes, against, window, overlay, trace) for part in parts]
@@ -132,12 +151,50 @@ def map_command(
             ]
     if digits:
         confirm(atlases, linkage, choice.parameters, digits)
+    is_open = proof.names and not proof.make(atlases[0], linkage, choice)
     write_all_pictures(atlases, folders, paths, over, figures)
     has_steps = not as_json and len(atlases) == 1
     steps: list[str] = []
     if has_steps:
         steps = steps_after(atlases[0], linkage, choice, nearest, out)
-    end(atlases, as_json, steps)
+    end(atlases, as_json, steps, ExitCode.DOES_NOT_HOLD if is_open else ExitCode.DONE)
+
+
+@dataclass(frozen=True)
+class ProofOptions:
+    """Whether a map is proved, and the file of its certificate, if any."""
+
+    rigorous: bool
+    certificate: Path | None
+
+    @property
+    def names(self) -> list[str]:
+        """The options that are given."""
+        given = {
+            "--rigorous": self.rigorous,
+            "--certificate": self.certificate is not None,
+        }
+        return [name for name, is_given in given.items() if is_given]
+
+    def require(self, name: str, mechanism: Linkage | Mechanism) -> None:
+        """Raise `CommandError` where a proof is asked for that there is not."""
+        if not self.names:
+            return
+        from linkages.app.output import require_ending, require_writable
+        from linkages.app.reports.proof import require_provable
+        from linkages.subject import as_subject
+
+        require_provable(name, as_subject(mechanism))
+        if self.certificate is not None:
+            require_ending("--certificate", self.certificate, ".json", ".json.gz")
+            require_writable(self.certificate, "--certificate")
+
+    def make(self, atlas: Atlas, linkage: str, choice: options.AtlasOptions) -> bool:
+        """Whether all of a map is proved, in what is left of the budget."""
+        from linkages.app.reports.proof import prove_map
+
+        seconds = choice.search.budget - atlas.provenance.seconds
+        return prove_map(atlas, linkage, choice.parameters, self.certificate, seconds)
 
 
 def write_all_pictures(
@@ -180,18 +237,21 @@ def folders_of(out: Path | None, count: int) -> list[Path | None]:
     return [out / f"part-{number}" for number in range(1, count + 1)]
 
 
-def allow_digits(as_json: bool, nearest: bool, hold: options.HoldOptions) -> None:
-    """Raise `CommandError` for what does not go with more digits."""
+def require_exact(
+    option: str, as_json: bool, nearest: bool, hold: options.HoldOptions
+) -> None:
+    """Raise `CommandError` for what does not go with an option that takes the numbers of
+    a linkage in many digits."""
     if as_json:
         raise CommandError(
-            "--digits: it has no place in the JSON document; leave out --json"
+            f"{option}: it has no place in the JSON document; leave out --json"
         )
     if hold.is_without_centre:
-        raise CommandError("--digits: it does not go with --without-centre")
+        raise CommandError(f"{option}: it does not go with --without-centre")
     if hold.is_modified:
-        raise CommandError("--digits: it does not go with --modified-dh")
+        raise CommandError(f"{option}: it does not go with --modified-dh")
     if nearest:
-        raise CommandError("--digits: it does not go with --nearest")
+        raise CommandError(f"{option}: it does not go with --nearest")
 
 
 def choose_mapped(
@@ -227,9 +287,12 @@ def steps_after(
     return next_steps(atlas, linkage, choice, out is not None)
 
 
-def end(atlases: Sequence[Atlas], as_json: bool, steps: Sequence[str]) -> None:
-    """End the command with the largest exit code of all verdicts, after what can be done
-    next, ``steps``, or the verdicts where a document does not say them."""
+def end(
+    atlases: Sequence[Atlas], as_json: bool, steps: Sequence[str], least: ExitCode
+) -> None:
+    """End the command with the largest exit code of all verdicts, and the ``least`` one,
+    after what can be done next, ``steps``, or the verdicts where a document does not say
+    them."""
     from linkages.app.answer.verdict import judge
     from linkages.app.output import say_next
 
@@ -238,7 +301,9 @@ def end(atlases: Sequence[Atlas], as_json: bool, steps: Sequence[str]) -> None:
     for verdict in verdicts:
         if as_json and verdict.code is not ExitCode.DONE:
             click.echo(verdict.sentence, err=True)
-    click.get_current_context().exit(max(verdict.code for verdict in verdicts))
+    click.get_current_context().exit(
+        max(least, *(verdict.code for verdict in verdicts))
+    )
 
 
 def report(atlases: Sequence[Atlas], as_json: bool, is_whole: bool) -> None:
