@@ -20,7 +20,7 @@ import gzip
 import json
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise, product
 from typing import Any, TypeAlias
@@ -58,7 +58,7 @@ def number(text: str) -> arb:
     return value
 
 
-def arb_vector(values: Sequence[float]) -> Vector:
+def arb_vector(values: Iterable[float]) -> Vector:
     """A vector of exact floats."""
     return [arb(float(value)) for value in values]
 
@@ -152,11 +152,12 @@ class Loop:
 
     def _joint(self, i: int, angle: arb) -> arb_mat:
         s, c = angle.sin_cos()
-        turn = [[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+        turn: list[Vector] = [[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
         return arb_mat(turn) * self.links[i]
 
-    def equations(self, m: arb_mat) -> Vector:
-        """The six linear functions of a matrix (4, 4) that F and its derivatives are."""
+    def equations(self, m: Any) -> Vector:
+        """The six linear functions of a matrix m[i, j], (4, 4), that F and its
+        derivatives are."""
         return [
             (m[2, 1] - m[1, 2]) / 2,
             (m[0, 2] - m[2, 0]) / 2,
@@ -291,10 +292,6 @@ class Frame:
         """An upper bound of the norm of a vector."""
         return norm(self.inverse * column(u))
 
-    def largest_entry(self, radius: arb) -> arb:
-        """An upper bound of the entries of all vectors up to a norm."""
-        return (norm(self.matrix) * radius).abs_upper()
-
     def balls(self, radius: arb) -> Vector:
         """What holds all vectors up to a norm."""
         return (self.matrix * column([ball(radius)] * self.matrix.nrows())).entries()
@@ -350,6 +347,11 @@ class Box:
         shift = self.along(step) / speed  # from x to the section that u lies on
         across = [d - v * shift for d, v in zip(step, self.velocity, strict=True)]
         return norm(column(across)) < self.reach
+
+    @property
+    def distance(self) -> arb:
+        """An upper bound of how far, in any joint, these are from the curve."""
+        return (norm(self.frame.matrix) * self.radius).abs_upper()
 
     def end(self, side: int) -> Vector:
         """What holds all closed configurations on the first (-1) or last (1) section."""
@@ -423,8 +425,7 @@ def make_box(loop: Loop, piece: Piece) -> Box:
     values = _values_along(loop, curve, span, piece.order)
     misfit = (of_rows * rows_of(values, piece.rows)).entries()
     box.radius = (box.frame.size(misfit) / (1 - box.contraction)).abs_upper()
-    is_inside = box.frame.largest_entry(box.radius) < piece.reach
-    require(is_inside, "the tube is narrower than the curve is exact")
+    require(box.distance < piece.reach, "the tube is narrower than the curve is exact")
 
     # theorem 2: what is solved closes the loop, but for the other rows
     require(over.is_no_half_turn, "the loop may be off by half a turn")
@@ -524,9 +525,13 @@ class Point:
 
 def point_of(values: Json) -> Point:
     """The singular point that is written in a certificate."""
-    vectors = [[numbers(vector) for vector in values[key]] for key in ("null", "range")]
-    centre, extra = numbers(values["centre"]), numbers(values["extra"])
-    return Point(centre, *vectors, values["rows"], extra)
+    return Point(
+        numbers(values["centre"]),
+        [numbers(vector) for vector in values["null"]],
+        [numbers(vector) for vector in values["range"]],
+        values["rows"],
+        numbers(values["extra"]),
+    )
 
 
 @dataclass(frozen=True)
@@ -850,12 +855,13 @@ class Check:
                 statement.failures.append(f"{self._tube_name(number)}: {reason}")
                 self.tubes.append(None)
         boxes = self._boxes
-        radius = float(largest([box.frame.largest_entry(box.radius) for box in boxes]))
+        radius = largest([box.distance for box in boxes])
+        self._compare(statement, radius, "radius")
         contraction = float(largest([box.contraction for box in boxes]))
         reach = min((float(box.reach) for box in boxes), default=0.0)
         statement.numbers = (
             f"{len(boxes)} boxes in {len(self.tubes)} tubes; every closed configuration "
-            f"within {reach:.1e} across lies within {radius:.1e} of the curve; "
+            f"within {reach:.1e} across lies within {float(radius):.1e} of the curve; "
             f"contraction {contraction:.2f} at most"
         )
         statement.seconds = time.process_time() - began
@@ -868,10 +874,11 @@ class Check:
             range(EQUATIONS)
         )
         require(is_selection, f"the rows {rows} are not {self.loop.n - 1} equations")
-        sizes = numbers([low, high, reach])
-        return make_box(
-            self.loop, Piece(self.curves[curve][piece], *sizes, rows, order)
+        sizes = [number(text) for text in (low, high, reach)]
+        place = Piece(
+            self.curves[curve][piece], sizes[0], sizes[1], sizes[2], rows, order
         )
+        return make_box(self.loop, place)
 
     @property
     def _boxes(self) -> list[Box]:
@@ -883,18 +890,25 @@ class Check:
 
     def _motion(self) -> Statement:
         """Theorem 2, which the same boxes prove."""
-        misses = float(largest([box.misses for box in self._boxes]))
+        statement = Statement("motion")
+        misses = largest([box.misses for box in self._boxes])
+        self._compare(statement, misses, "misses")
         words = (
             f"on every section {self.loop.n - 1} of the 6 equations are solved exactly"
         )
-        words += f", the others miss by {misses:.1e} at most" if misses else ""
-        words += ": the loop closes" if not misses else ""
-        failures = [
-            f"{self._tube_name(number)} does not hold"
-            for number, tube in enumerate(self.tubes)
-            if tube is None
-        ]
-        return Statement("motion", words, failures)
+        is_whole = misses == 0
+        others = f", the others miss by {float(misses):.1e} at most"
+        statement.numbers = words + (": the loop closes" if is_whole else others)
+        for number, tube in enumerate(self.tubes):
+            if tube is None:
+                statement.failures.append(f"{self._tube_name(number)} does not hold")
+        return statement
+
+    def _compare(self, statement: Statement, value: arb, claim: str) -> None:
+        """Let a statement fail unless a value is as small as the certificate claims."""
+        if not value <= number(self.certificate["claims"][claim]):
+            failure = f"the {claim} {float(value):.1e} exceeds what is claimed"
+            statement.failures.append(failure)
 
     def _of_points(self, name: str, check: Callable[[Json], str]) -> Statement:
         """What is checked of every singular point."""
@@ -914,6 +928,8 @@ class Check:
         """Theorem 3."""
         point = point_of(values)
         enclosure = enclose(self.loop, point, number(values["alone"]))
+        is_as_claimed = enclosure.radius <= number(values["within"])
+        require(is_as_claimed, "the enclosure is wider than is claimed")
         rank = self.loop.n - point.nullity
         return (
             f"rank {rank} within {float(enclosure.radius):.1e}, alone within "
@@ -961,20 +977,23 @@ class Check:
             statement.failures.append("it rests on the others")
             return statement
         for number, values in enumerate(self.certificate["tubes"]):
-            if "winding" not in values:
-                for end, place in zip(
-                    self.tubes[number].ends, values["ends"], strict=True
-                ):
-                    if not self._is_inside(end, place):
-                        failure = (
-                            f"{self._tube_name(number)} ends outside of its sphere"
-                        )
-                        statement.failures.append(failure)
+            if "winding" in values:
+                continue
+            pairs = zip(self._tube(number).ends, values["ends"], strict=True)
+            if not all(self._is_inside(end, place) for end, place in pairs):
+                failure = f"{self._tube_name(number)} ends outside of its sphere"
+                statement.failures.append(failure)
         for half_branch, u in self.exits:
-            box = self.tubes[half_branch["tube"]].boxes[half_branch["box"]]
+            box = self._tube(half_branch["tube"]).boxes[half_branch["box"]]
             if not box.holds_inside(u):
                 statement.failures.append("a half-branch is not in its tube")
         return statement
+
+    def _tube(self, number: int) -> Tube:
+        tube = self.tubes[number]
+        if tube is None:
+            raise DoesNotHold(f"{self._tube_name(number)} does not hold")
+        return tube
 
     def _is_inside(self, end: Vector, place: Json) -> bool:
         """Whether all of an end lies inside the sphere of a point."""

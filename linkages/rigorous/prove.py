@@ -19,7 +19,7 @@ from linkages.loop import Loop
 from linkages.rigorous import check
 from linkages.rigorous.check import DoesNotHold
 from linkages.rigorous.courses import Pass, course_of
-from linkages.rigorous.spheres import counted_half_branches, enclosed_point
+from linkages.rigorous.spheres import claim, counted_half_branches, enclosed_point
 from linkages.rigorous.tubes import Cover, cover
 
 PRECISION = 128  # bits
@@ -59,6 +59,7 @@ def make_certificate(loop: Loop, atlas: Atlas) -> check.Json:
         "name": loop.name,
         "precision": PRECISION,
         "geometry": geometry,
+        "claims": prover.claims,
         "curves": [course.values for course in prover.courses],
         "tubes": prover.tubes,
         "points": prover.points,
@@ -95,6 +96,15 @@ class _Prover:
             self._attach(point)
         if self.atlas.surfaces:
             self.open.append("components of more than one dimension")
+
+    @property
+    def claims(self) -> check.Json:
+        """How far closed configurations are from the curves, and by how much equations
+        that are not solved miss, at most."""
+        boxes = [box for boxes in self.boxes for box in boxes]
+        radius = check.largest([box.distance for box in boxes])
+        misses = check.largest([box.misses for box in boxes])
+        return {"radius": claim(radius), "misses": claim(misses)}
 
     def _prove_point(self, number: int) -> None:
         """Put a singular point of the atlas into the certificate, with its sphere, if both

@@ -20,6 +20,7 @@ DIGITS = 36  # of the centre
 ALONE = 2.0 ** -np.arange(3, 30)  # about a point, the largest first
 RADII = 2.0 ** -np.arange(3, 26)  # of spheres, the largest first
 OPENINGS = 2.0 ** -np.arange(0, 20)  # of sectors, in radii of their sphere
+SLACK = 1.01
 NEWTON_STEPS = 6
 TRIES = 30  # combinations of equations, of which the most regular is taken
 
@@ -40,8 +41,15 @@ def enclosed_point(loop: check.Loop, meeting: MeetingPoint) -> check.Json:
         "rows": list(point.rows),
         "extra": _texts(point.extra),
     }
-    values["alone"] = _alone(loop, check.point_of(values)).hex()
+    enclosure = _alone(loop, check.point_of(values))
+    values["alone"] = float(enclosure.alone).hex()
+    values["within"] = claim(enclosure.radius)
     return values
+
+
+def claim(bound: arb) -> str:
+    """A bound as it is claimed, a little larger: a check rounds as it likes."""
+    return (float(bound) * SLACK).hex()
 
 
 def _texts(vector: check.Vector) -> list[str]:
@@ -93,17 +101,15 @@ def _moved(u: check.Vector, step: check.Vector) -> check.Vector:
     return [(x - dx).mid() for x, dx in zip(u, step, strict=True)]
 
 
-def _alone(loop: check.Loop, point: check.Point) -> float:
-    """About the largest radius within which the point is the only one of its kind; raises
-    `DoesNotHold`."""
+def _alone(loop: check.Loop, point: check.Point) -> check.Enclosure:
+    """A point enclosed, with about the largest radius within which it is the only one of
+    its kind; raises `DoesNotHold`."""
     last = DoesNotHold("")
     for radius in ALONE.tolist():
         try:
-            check.enclose(loop, point, arb(radius))
+            return check.enclose(loop, point, arb(radius))
         except DoesNotHold as reason:
             last = reason
-        else:
-            return float(radius)
     raise last
 
 

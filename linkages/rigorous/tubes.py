@@ -15,10 +15,11 @@ from linkages.rigorous.courses import Course
 from linkages.rigorous.selection import best_rows, floats_of
 
 ALONG, ACROSS = 0.7, 0.1  # of a contraction of 1 that a box takes along and across
-OVERLAP = 1 / 32  # of neighbouring boxes, in their length
+OVERLAP = 2.0**-10  # of neighbouring boxes, in their length
 LONGEST = 0.5  # box, in arclength
 SHORTEST = 2.0**-12  # box, in the length that it may have to first order
-LONGER = 1.2  # boxes after one that holds
+LONGER = 1.2  # by so much in first order after one that holds
+MOST_LONGER = 16.0  # than the box before: they have to overlap
 MOST = 0.9  # contraction of a box: closer to 1 the enclosure is wide
 DIGITS = 14  # that the remainder of a series on a box is to leave out
 LOWEST, HIGHEST = 4, 16  # orders of such a series
@@ -40,6 +41,7 @@ def cover(loop: check.Loop, course: Course, begin: float, end: float) -> Cover:
     """Boxes from one arclength of a curve to another, as far as they hold."""
     made = Cover(reached=begin)
     rows: list[int] = []
+    last = LONGEST
     shorter = 1.0  # than they may be to first order
     while made.reached < end:
         if is_time_over():
@@ -49,7 +51,7 @@ def cover(loop: check.Loop, course: Course, begin: float, end: float) -> Cover:
         goal = min(end, float(course.branch.breaks[piece + 1]))
         rest = goal - made.reached
         sizes = _sizes(loop, course, made.reached, rows)
-        length = shorter * min(sizes.length, LONGEST)
+        length = min(shorter * sizes.length, LONGEST, MOST_LONGER * last)
         step = rest if rest <= length else min(length, rest / 2)
         try:
             values, box = _make(loop, course, made.reached, step, sizes)
@@ -65,7 +67,7 @@ def cover(loop: check.Loop, course: Course, begin: float, end: float) -> Cover:
         made.values.append(values)
         made.boxes.append(box)
         made.reached = goal if step == rest else made.reached + step
-        rows = sizes.rows
+        rows, last = sizes.rows, step
         shorter = min(1.0, LONGER * shorter)
     return made
 
