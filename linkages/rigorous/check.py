@@ -398,43 +398,52 @@ class Piece:
 def make_box(loop: Loop, piece: Piece) -> Box:
     """The box of a piece, of which theorems 1 and 2 are proved; raises `DoesNotHold`."""
     middle = ((piece.low + piece.high) / 2).mid()
-    half = largest(
-        [(piece.high - middle).abs_upper(), (middle - piece.low).abs_upper()]
-    )
-    span = ball(half)
+    ends = [(piece.high - middle).abs_upper(), (middle - piece.low).abs_upper()]
+    half = largest(ends)
     curve = [angle(arb_poly([middle, 1])) for angle in piece.polynomial]
-    velocity = [angle.derivative()(span) for angle in curve]
-    normal = _normal(curve)
-    box = Box(curve, middle, half, piece.reach, normal, velocity)
+    velocity = [angle.derivative()(ball(half)) for angle in curve]
+    box = Box(curve, middle, half, piece.reach, _normal(curve), velocity)
     require(box.along(velocity) > 0, "the curve turns back on its sections")
+    everywhere = [x + ball(piece.reach) for x in box.point(ball(half))]
+    over = loop.at(everywhere)
+    values = _values_along(loop, curve, ball(half), piece.order)
+    _prove_unique(box, loop, piece.rows, over, values)
+    _bound_misses(box, piece.rows, over, values)
+    return box
 
-    # theorem 1: u - v = (I - Y A)(u - v) - Y (F(v); 0) with A from the mean value theorem
+
+def _prove_unique(
+    box: Box, loop: Loop, rows: Sequence[int], over: Derivatives, values: arb_mat
+) -> None:
+    """Theorem 1: u - v = (I - Y A)(u - v) - Y (F(v); 0) with A = G'(c(m)) + x F'' c' + F''
+    w, |x| <= half, |w| <= reach."""
     centre = loop.at(box.point(arb(0))).jacobian
-    matrix = stacked(rows_of(centre, piece.rows), normal)
+    matrix = stacked(rows_of(centre, rows), box.normal)
     inverse = approximate_inverse(matrix)
-    across = [ball(piece.reach)] * loop.n
-    over = loop.at(_plus(box.point(span), across))
     of_rows = arb_mat([row[:-1] for row in inverse.tolist()])
+    across = [ball(box.reach)] * loop.n
     defects = (
         identity(loop.n) - inverse * matrix,
-        of_rows * rows_of(over.second(velocity), piece.rows) * half,
-        of_rows * rows_of(over.second(across), piece.rows),
+        of_rows * rows_of(over.second(box.velocity), rows) * box.half,
+        of_rows * rows_of(over.second(across), rows),
     )
     box.frame, box.contraction = best_frame(inverse, defects)
     require(box.contraction < 1, "the left inverse does not contract")
-    values = _values_along(loop, curve, span, piece.order)
-    misfit = (of_rows * rows_of(values, piece.rows)).entries()
+    misfit = (of_rows * rows_of(values, rows)).entries()
     box.radius = (box.frame.size(misfit) / (1 - box.contraction)).abs_upper()
-    require(box.distance < piece.reach, "the tube is narrower than the curve is exact")
+    require(box.distance < box.reach, "the tube is narrower than the curve is exact")
 
-    # theorem 2: what is solved closes the loop, but for the other rows
+
+def _bound_misses(
+    box: Box, rows: Sequence[int], over: Derivatives, values: arb_mat
+) -> None:
+    """Theorem 2: what is solved closes the loop, but for the other rows."""
     require(over.is_no_half_turn, "the loop may be off by half a turn")
-    others = [row for row in range(EQUATIONS) if row not in piece.rows]
+    others = [row for row in range(EQUATIONS) if row not in rows]
     if others:
         slopes = rows_of(over.jacobian, others)
         moved = slopes * column(box.frame.balls(box.radius))
         box.misses = (norm(rows_of(values, others)) + norm(moved)).abs_upper()
-    return box
 
 
 def _normal(curve: Sequence[arb_poly]) -> Vector:
@@ -576,33 +585,39 @@ class Augmented:
 
 
 def augmented(loop: Loop, point: Point, radius: arb) -> Augmented:
-    n, k = loop.n, point.nullity
+    """The augmented equations over all that is within a radius of a point."""
     rows = list(point.rows)
     over = loop.at(thickened(point.centre, radius))
-    jacobian = over.jacobian
     selection = arb_mat([[int(i == row) for i in range(EQUATIONS)] for row in rows])
     with_extra = stacked(selection, point.extra)
-    null = arb_mat(point.null)
+    slope = (with_extra * over.jacobian).tolist()
+    no_vectors = [arb(0)] * (loop.n * point.nullity)
     values = rows_of(over.value, rows).entries()
-    matrix = [row + [arb(0)] * (n * k) for row in (selection * jacobian).tolist()]
-    misses = [over.value]
+    matrix = [line + no_vectors for line in slope[:-1]]
+    misses = [norm(over.value)]
     for j, plain in enumerate(point.null):
         vector = thickened(plain, radius)
-        image = jacobian * column(vector)
-        misses.append(image)
+        image = over.jacobian * column(vector)
         values += (with_extra * image).entries()
-        values += (null * column(_minus(vector, plain))).entries()
-        before, after = [arb(0)] * (n * j), [arb(0)] * (n * (k - 1 - j))
-        bend = (with_extra * over.second(vector)).tolist()
-        slope = (with_extra * jacobian).tolist()
-        for by_u, by_v in zip(bend, slope, strict=True):
-            matrix.append([*by_u, *before, *by_v, *after])
+        values += (arb_mat(point.null) * column(_minus(vector, plain))).entries()
+        misses.append(norm(image))
+        place = slice(loop.n * j, loop.n * (j + 1))
+        for by_u, by_v in zip(
+            (with_extra * over.second(vector)).tolist(), slope, strict=True
+        ):
+            matrix.append(by_u + _placed(by_v, place, no_vectors))
         for line in point.null:
-            matrix.append([arb(0)] * n + [*before, *line, *after])
-    regular = selection * jacobian * arb_mat(point.range).transpose()
-    defect = identity(n - k) - approximate_inverse(regular) * regular
-    largest_miss = largest([norm(x) for x in misses])
-    return Augmented(column(values), arb_mat(matrix), norm(defect), largest_miss)
+            matrix.append([arb(0)] * loop.n + _placed(line, place, no_vectors))
+    regular = selection * over.jacobian * arb_mat(point.range).transpose()
+    defect = identity(len(rows)) - approximate_inverse(regular) * regular
+    return Augmented(column(values), arb_mat(matrix), norm(defect), largest(misses))
+
+
+def _placed(part: Vector, place: slice, zeros: Vector) -> Vector:
+    """Zeros with a part in its place."""
+    row = list(zeros)
+    row[place] = part
+    return row
 
 
 @dataclass(frozen=True)

@@ -64,14 +64,7 @@ def _start(loop: check.Loop, meeting: MeetingPoint) -> check.Point:
     at_point = loop.at(arb_vector(meeting.point.u))
     jacobian = floats_of(at_point.jacobian)
     rows = best_rows(jacobian @ complement.T, np.empty((0, n - k)))
-    left = np.linalg.svd(jacobian)[0][:, n - k :]  # (6, 6 - n + k)
-    bends = [floats_of(at_point.second(arb_vector(v))) @ null for v in null.T]
-    forms = np.einsum("jmi,ml->lij", np.array(bends), left)
-    draws = np.random.default_rng(0).standard_normal((TRIES, left.shape[1]))
-    draws /= np.linalg.norm(draws, axis=1)[:, None]
-    mixed = np.einsum("tl,lij->tij", draws, forms)
-    regular = np.linalg.svd(mixed, compute_uv=False)[:, -1]
-    extra = left @ draws[np.argmax(regular)]
+    extra = _regular_combination(at_point, jacobian, null)
     return check.Point(
         arb_vector(meeting.point.u),
         [arb_vector(vector) for vector in null.T],
@@ -79,6 +72,23 @@ def _start(loop: check.Loop, meeting: MeetingPoint) -> check.Point:
         rows,
         arb_vector(extra),
     )
+
+
+def _regular_combination(
+    at_point: check.Derivatives, jacobian: np.ndarray, null: np.ndarray
+) -> np.ndarray:
+    """The combination (6,) of equations, among some whose derivative vanishes at a
+    singular point, that bends most evenly over the null space (n, k)."""
+    n, k = null.shape
+    left = np.linalg.svd(jacobian)[0][:, n - k :]  # (6, 6 - n + k)
+    bends = [floats_of(at_point.second(arb_vector(v))) @ null for v in null.T]
+    forms = np.einsum("jmi,ml->lij", np.array(bends), left)
+    draws = np.random.default_rng(0).standard_normal((TRIES, left.shape[1]))
+    draws /= np.linalg.norm(draws, axis=1)[:, None]
+    mixed = np.einsum("tl,lij->tij", draws, forms)
+    regular = np.linalg.svd(mixed, compute_uv=False)[:, -1]
+    combination: np.ndarray = left @ draws[np.argmax(regular)]
+    return combination
 
 
 def _refined(loop: check.Loop, point: check.Point) -> check.Point:

@@ -15,7 +15,7 @@ from linkages.rigorous.courses import Course
 from linkages.rigorous.selection import best_rows, floats_of
 
 ALONG, ACROSS = 0.7, 0.1  # of a contraction of 1 that a box takes along and across
-OVERLAP = 2.0**-10  # of neighbouring boxes, in their length
+BEFORE, BEHIND = 2.0**-5, 2.0**-10  # how far boxes overlap, in lengths
 LONGEST = 0.5  # box, in arclength
 SHORTEST = 2.0**-12  # box, in the length that it may have to first order
 LONGER = 1.2  # by so much in first order after one that holds
@@ -36,6 +36,13 @@ class Cover:
     reached: float = 0.0
     reason: str = ""
 
+    def add(self, values: check.Json, box: check.Box, reached: float) -> None:
+        """Add a box that holds, up to an arclength."""
+        self.values.append(values)
+        self.boxes.append(box)
+        self.reached = reached
+        self.reason = ""
+
 
 def cover(loop: check.Loop, course: Course, begin: float, end: float) -> Cover:
     """Boxes from one arclength of a curve to another, as far as they hold."""
@@ -54,7 +61,7 @@ def cover(loop: check.Loop, course: Course, begin: float, end: float) -> Cover:
         length = min(shorter * sizes.length, LONGEST, MOST_LONGER * last)
         step = rest if rest <= length else min(length, rest / 2)
         try:
-            values, box = _make(loop, course, made.reached, step, sizes)
+            values, box = _make(loop, course, made.reached, step, last, sizes)
             check.require(box.contraction < MOST, "the left inverse hardly contracts")
             _require_joint(made, box)
         except DoesNotHold as reason:
@@ -63,10 +70,7 @@ def cover(loop: check.Loop, course: Course, begin: float, end: float) -> Cover:
             if shorter < SHORTEST:
                 break
             continue
-        made.reason = ""
-        made.values.append(values)
-        made.boxes.append(box)
-        made.reached = goal if step == rest else made.reached + step
+        made.add(values, box, goal if step == rest else made.reached + step)
         rows, last = sizes.rows, step
         shorter = min(1.0, LONGER * shorter)
     return made
@@ -108,12 +112,18 @@ def _sizes(loop: check.Loop, course: Course, s: float, rows: Sequence[int]) -> _
 
 
 def _make(
-    loop: check.Loop, course: Course, begin: float, step: float, sizes: _Sizes
+    loop: check.Loop,
+    course: Course,
+    begin: float,
+    step: float,
+    last: float,
+    sizes: _Sizes,
 ) -> tuple[check.Json, check.Box]:
-    """A box, as it stands in the certificate and as it is checked."""
+    """A box of a length, after one of the ``last`` length, as it stands in the
+    certificate and as it is checked."""
     piece, _ = course.piece_at(begin)
-    low = course.coordinate(piece, begin - OVERLAP * step)
-    high = course.coordinate(piece, begin + (1 + OVERLAP) * step)
+    low = course.coordinate(piece, begin - BEFORE * min(step, last))
+    high = course.coordinate(piece, begin + (1 + BEHIND) * step)
     reach = min(sizes.reach, step / 8)
     half = min((high - low) / 2, 0.5)
     order = min(max(math.ceil(-DIGITS / math.log10(half)), LOWEST), HIGHEST)

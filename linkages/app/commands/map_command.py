@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -42,20 +42,6 @@ if TYPE_CHECKING:
     ),
 )
 @click.option(
-    "--rigorous",
-    is_flag=True,
-    help=(
-        "Prove in ball arithmetic that no form jumps, that it is there, and what leaves "
-        "its singular points (docs/proof.md)."
-    ),
-)
-@click.option(
-    "--certificate",
-    type=options.FILE,
-    metavar="FILE.json.gz",
-    help="Prove it, and write what `bifurc check` needs to prove it again.",
-)
-@click.option(
     "--axes",
     type=options.JointWords(2, 3),
     metavar="I,J[,K]",
@@ -86,6 +72,7 @@ if TYPE_CHECKING:
         "for each of some joints, with their names in the first line; needs --out."
     ),
 )
+@options.proof_options
 @options.trace_option
 @options.figure_options
 @options.atlas_options
@@ -96,8 +83,7 @@ def map_command(
     no_certify: bool,
     nearest: bool,
     digits: int | None,
-    rigorous: bool,
-    certificate: Path | None,
+    proof: options.ProofOptions,
     axes: tuple[str, ...] | None,
     against: tuple[str, ...] | None,
     window: tuple[float, float] | None,
@@ -129,11 +115,10 @@ def map_command(
     from linkages.app.output import require_folder, require_out
 
     require_out(out)
-    proof = ProofOptions(rigorous, certificate)
-    for option in (*["--digits"] * bool(digits), *proof.names):
+    for option in [*proof.names, *["--digits"] * bool(digits)]:
         require_exact(option, as_json, nearest, choice.hold)
     mechanism, exact = choose_mapped(linkage, choice, nearest)
-    proof.require(linkage, mechanism)
+    require_proof(proof, linkage, mechanism)
     parts = mechanism.parts
     folders = folders_of(out, len(parts))
     over = [figure_axes(part, axes, against, window, overlay, trace) for part in parts]
@@ -142,59 +127,67 @@ def map_command(
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
         atlases = explore_parts(parts, replace(choice.search, certify=not no_certify))
-        try:
-            report(atlases, as_json, choice.verbose)
-        finally:  # where nothing can be shown, there are still the files
-            paths = [
-                write_numbers(atlas, folder, exact)
-                for atlas, folder in zip(atlases, folders, strict=True)
-            ]
+        paths = report_and_write(atlases, folders, as_json, choice.verbose, exact)
     if digits:
         confirm(atlases, linkage, choice.parameters, digits)
-    is_open = proof.names and not proof.make(atlases[0], linkage, choice)
+    least = prove(atlases[0], linkage, choice, proof)
     write_all_pictures(atlases, folders, paths, over, figures)
-    has_steps = not as_json and len(atlases) == 1
     steps: list[str] = []
-    if has_steps:
+    if not as_json and len(atlases) == 1:
         steps = steps_after(atlases[0], linkage, choice, nearest, out)
-    end(atlases, as_json, steps, ExitCode.DOES_NOT_HOLD if is_open else ExitCode.DONE)
+    end(atlases, as_json, steps, least)
 
 
-@dataclass(frozen=True)
-class ProofOptions:
-    """Whether a map is proved, and the file of its certificate, if any."""
+def report_and_write(
+    atlases: Sequence[Atlas],
+    folders: Sequence[Path | None],
+    as_json: bool,
+    is_whole: bool,
+    exact: str,
+) -> list[list[Path]]:
+    """Print the maps, and write the numbers of each into its folder: the paths of the
+    files."""
+    paths = []
+    try:
+        report(atlases, as_json, is_whole)
+    finally:  # where nothing can be shown, there are still the files
+        for atlas, folder in zip(atlases, folders, strict=True):
+            paths.append(write_numbers(atlas, folder, exact))
+    return paths
 
-    rigorous: bool
-    certificate: Path | None
 
-    @property
-    def names(self) -> list[str]:
-        """The options that are given."""
-        given = {
-            "--rigorous": self.rigorous,
-            "--certificate": self.certificate is not None,
-        }
-        return [name for name, is_given in given.items() if is_given]
+def require_proof(
+    proof: options.ProofOptions, name: str, mechanism: Linkage | Mechanism
+) -> None:
+    """Raise `CommandError` where a proof is asked for that there is not, or a file that
+    cannot be written."""
+    if not proof.names:
+        return
+    from linkages.app.output import require_ending, require_writable
+    from linkages.app.reports.proof import require_provable
+    from linkages.subject import as_subject
 
-    def require(self, name: str, mechanism: Linkage | Mechanism) -> None:
-        """Raise `CommandError` where a proof is asked for that there is not."""
-        if not self.names:
-            return
-        from linkages.app.output import require_ending, require_writable
-        from linkages.app.reports.proof import require_provable
-        from linkages.subject import as_subject
+    require_provable(name, as_subject(mechanism))
+    if proof.certificate is not None:
+        require_ending("--certificate", proof.certificate, ".json", ".json.gz")
+        require_writable(proof.certificate, "--certificate")
 
-        require_provable(name, as_subject(mechanism))
-        if self.certificate is not None:
-            require_ending("--certificate", self.certificate, ".json", ".json.gz")
-            require_writable(self.certificate, "--certificate")
 
-    def make(self, atlas: Atlas, linkage: str, choice: options.AtlasOptions) -> bool:
-        """Whether all of a map is proved, in what is left of the budget."""
-        from linkages.app.reports.proof import prove_map
+def prove(
+    atlas: Atlas,
+    linkage: str,
+    choice: options.AtlasOptions,
+    proof: options.ProofOptions,
+) -> ExitCode:
+    """With what the command ends at least: whether all of a map is proved, in what is
+    left of the budget, if that is asked for."""
+    if not proof.names:
+        return ExitCode.DONE
+    from linkages.app.reports.proof import prove_map
 
-        seconds = choice.search.budget - atlas.provenance.seconds
-        return prove_map(atlas, linkage, choice.parameters, self.certificate, seconds)
+    seconds = choice.search.budget - atlas.provenance.seconds
+    holds = prove_map(atlas, linkage, choice.parameters, proof.certificate, seconds)
+    return ExitCode.DONE if holds else ExitCode.DOES_NOT_HOLD
 
 
 def write_all_pictures(
