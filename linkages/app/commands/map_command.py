@@ -132,9 +132,7 @@ def map_command(
         confirm(atlases, linkage, choice.parameters, digits)
     least = prove(atlases[0], linkage, choice, proof)
     write_all_pictures(atlases, folders, paths, over, figures)
-    steps: list[str] = []
-    if not as_json and len(atlases) == 1:
-        steps = steps_after(atlases[0], linkage, choice, nearest, out)
+    steps = [] if as_json else steps_after(atlases, linkage, choice, nearest, out)
     end(atlases, as_json, steps, least)
 
 
@@ -266,18 +264,20 @@ def choose_mapped(
 
 
 def steps_after(
-    atlas: Atlas,
+    atlases: Sequence[Atlas],
     linkage: str,
     choice: options.AtlasOptions,
     nearest: bool,
     out: Path | None,
 ) -> list[str]:
-    """What can be done next with a linkage."""
+    """What can be done next with a linkage; nothing is said of several."""
+    if len(atlases) > 1:
+        return []
     from linkages.app.texts.next_steps import next_steps, next_steps_of_nearest
 
     if nearest:
-        return next_steps_of_nearest(atlas, linkage, choice, out)
-    return next_steps(atlas, linkage, choice, out is not None)
+        return next_steps_of_nearest(atlases[0], linkage, choice, out)
+    return next_steps(atlases[0], linkage, choice, out is not None)
 
 
 def end(

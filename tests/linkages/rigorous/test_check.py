@@ -155,8 +155,8 @@ def bend(certificate, rng):
 
 
 def shorten(certificate, rng):
-    """A box begins later: it leaves a gap."""
-    box = rng.choice(rng.choice(certificate["tubes"])["boxes"])
+    """A box after the first begins later: it leaves a gap."""
+    box = rng.choice(rng.choice(certificate["tubes"])["boxes"][1:])
     length = float.fromhex(box[2]) - float.fromhex(box[1])
     box[1] = changed(box[1], length * rng.uniform(0.1, 0.5))
 
