@@ -30,6 +30,7 @@ class Course:
     name: str
     branch: Branch
     passes: list[Pass]
+    texts: list[list[list[str]]]  # coefficients of the pieces, and of refined ones
     polynomials: list[list[arb_poly]]
 
     def piece_at(self, s: float) -> tuple[int, float]:
@@ -47,12 +48,16 @@ class Course:
         """The point at a coordinate of a piece."""
         return [angle(arb(x)) for angle in self.polynomials[piece]]
 
+    def add_piece(self, texts: list[list[str]]) -> int:
+        """Add a refined piece, its coefficients as they are written: its number."""
+        self.texts.append(texts)
+        self.polynomials.append([arb_poly(check.numbers(angle)) for angle in texts])
+        return len(self.texts) - 1
+
     @property
     def values(self) -> check.Json:
         """The curve in a certificate."""
-        pieces = np.swapaxes(self.branch.pieces, 1, 2).tolist()
-        texts = [[[x.hex() for x in angle] for angle in piece] for piece in pieces]
-        return {"name": self.name, "pieces": texts}
+        return {"name": self.name, "pieces": self.texts}
 
 
 def course_of(atlas: Atlas, number: int) -> Course:
@@ -70,9 +75,10 @@ def course_of(atlas: Atlas, number: int) -> Course:
         for s, k in places:
             passes.append(_pass_at(atlas, k, s - first, branch(s - first)))
         passes.append(_pass_at(atlas, point, branch.length, branch.ends[1]))
-    columns = np.swapaxes(branch.pieces, 1, 2).tolist()
-    polynomials = [[arb_poly(angle) for angle in piece] for piece in columns]
-    return Course(form.name, branch, passes, polynomials)
+    course = Course(form.name, branch, passes, [], [])
+    for piece in np.swapaxes(branch.pieces, 1, 2).tolist():
+        course.add_piece([[x.hex() for x in angle] for angle in piece])
+    return course
 
 
 def _pass_at(atlas: Atlas, point: int, s: float, u: np.ndarray) -> Pass:

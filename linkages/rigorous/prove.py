@@ -8,6 +8,7 @@ check, made smaller where it does not hold, and left open where none does.
 from __future__ import annotations
 
 import json
+from bisect import bisect
 from typing import Any
 
 import mpmath
@@ -79,7 +80,7 @@ class _Prover:
         self.loop = loop
         self.courses = [course_of(atlas, number) for number in range(len(atlas.forms))]
         self.tubes: list[check.Json] = []
-        self.boxes: list[list[check.Box]] = []
+        self.covers: list[Cover] = []
         self.points: list[check.Json] = []
         self.open: list[str] = []
         self.atlas = atlas
@@ -101,7 +102,7 @@ class _Prover:
     def claims(self) -> check.Json:
         """How far closed configurations are from the curves, and by how much equations
         that are not solved miss, at most."""
-        boxes = [box for boxes in self.boxes for box in boxes]
+        boxes = [box for made in self.covers for box in made.boxes]
         radius = check.largest([box.distance for box in boxes])
         misses = check.largest([box.misses for box in boxes])
         return {"radius": claim(radius), "misses": claim(misses)}
@@ -167,16 +168,14 @@ class _Prover:
             joints = {"ends": [begin, None]}
         if made.boxes:
             self.tubes.append({"curve": number, "boxes": made.values, **joints})
-            self.boxes.append(made.boxes)
+            self.covers.append(made)
 
     def _attach(self, point: check.Json) -> None:
         """Say of every half-branch in which box of which tube it is."""
         for half_branch in point["half_branches"]:
-            number, piece = half_branch["curve"], half_branch["piece"]
-            u = self.courses[number].point(piece, float.fromhex(half_branch["x"]))
-            for k, boxes in enumerate(self.boxes):
-                if self.tubes[k]["curve"] != number:
-                    continue
-                for j, box in enumerate(boxes):
-                    if self.tubes[k]["boxes"][j][0] == piece and box.holds_inside(u):
-                        half_branch |= {"tube": k, "box": j}
+            s = half_branch.pop("s")
+            for k, made in enumerate(self.covers):
+                is_there = made.begin < s < made.reached
+                if is_there and self.tubes[k]["curve"] == half_branch["curve"]:
+                    box = bisect(made.ends, s)
+                    half_branch |= {"tube": k, "box": box}

@@ -14,6 +14,7 @@ from bifurc.limits import is_time_over
 from linkages.rigorous import check
 from linkages.rigorous.check import DoesNotHold, arb_vector
 from linkages.rigorous.courses import Course, Pass
+from linkages.rigorous.refinement import refined_piece
 from linkages.rigorous.selection import best_rows, floats_of
 
 DIGITS = 36  # of the centre
@@ -21,6 +22,8 @@ ALONE = 2.0 ** -np.arange(3, 30)  # about a point, the largest first
 RADII = 2.0 ** -np.arange(3, 26)  # of spheres, the largest first
 OPENINGS = 2.0 ** -np.arange(0, 20)  # of sectors, in radii of their sphere
 SLACK = 1.01
+SMALL = 1e-3  # radius, at which curves are taken in more digits
+SHORT = 0.05  # piece of these, in radii
 NEWTON_STEPS = 6
 TRIES = 30  # combinations of equations, of which the most regular is taken
 
@@ -175,10 +178,13 @@ def _crossing(sphere: check.Sphere, course: Course, one: Pass, side: int) -> che
 
     leaves_at_once = height(radius / 2) < 0 < height(2 * radius)
     check.require(leaves_at_once, "a curve does not leave the sphere at once")
-    piece, x = course.piece_at(one.s + side * brentq(height, radius / 2, 2 * radius))
+    s = one.s + side * brentq(height, radius / 2, 2 * radius)
+    piece, x = course.piece_at(s)
+    if radius < SMALL:
+        piece, x = refined_piece(sphere.loop, course, s, SHORT * radius), 0.0
     turns = check.whole_turns(one.turns.tolist())
     place = [p - t for p, t in zip(course.point(piece, x), turns, strict=True)]
-    half_branch = {"piece": piece, "x": x.hex(), "turns": one.turns.tolist()}
+    half_branch = {"piece": piece, "x": x.hex(), "s": s, "turns": one.turns.tolist()}
     return {**half_branch, **_sector(sphere, place)}
 
 

@@ -12,6 +12,7 @@ from bifurc.limits import is_time_over
 from linkages.rigorous import check
 from linkages.rigorous.check import DoesNotHold
 from linkages.rigorous.courses import Course
+from linkages.rigorous.refinement import refined_piece
 from linkages.rigorous.selection import best_rows, floats_of
 
 ALONG, ACROSS = 0.7, 0.1  # of a contraction of 1 that a box takes along and across
@@ -23,16 +24,20 @@ MOST_LONGER = 16.0  # than the box before: they have to overlap
 MOST = 0.9  # contraction of a box: closer to 1 the enclosure is wide
 DIGITS = 14  # that the remainder of a series on a box is to leave out
 LOWEST, HIGHEST = 4, 16  # orders of such a series
+FINE = 1e-13  # F where a curve in doubles passes: a reach has to be larger by F'^-1
+FINE_ORDER = 40  # of the series on refined pieces
 SETTLED = 1.5  # so much larger an inverse may be for the same equations to be solved
 
 
 @dataclass
 class Cover:
     """Boxes from the begin of a part of a curve on: their ``values`` in the certificate,
-    the arclength that they reach, and why they end there if that is not the end."""
+    the arclengths at which they end, the last one, and why they end there if that is not the end."""
 
+    begin: float
     values: list[check.Json] = field(default_factory=list)
     boxes: list[check.Box] = field(default_factory=list)
+    ends: list[float] = field(default_factory=list)
     reached: float = 0.0
     reason: str = ""
 
@@ -40,13 +45,14 @@ class Cover:
         """Add a box that holds, up to an arclength."""
         self.values.append(values)
         self.boxes.append(box)
+        self.ends.append(reached)
         self.reached = reached
         self.reason = ""
 
 
 def cover(loop: check.Loop, course: Course, begin: float, end: float) -> Cover:
     """Boxes from one arclength of a curve to another, as far as they hold."""
-    made = Cover(reached=begin)
+    made = Cover(begin, reached=begin)
     rows: list[int] = []
     last = LONGEST
     shorter = 1.0  # than they may be to first order
@@ -86,11 +92,12 @@ def _require_joint(made: Cover, box: check.Box) -> None:
 @dataclass(frozen=True)
 class _Sizes:
     """How large a box at a place may be, to first order: the equations that are solved,
-    its length and its reach."""
+    its length and its reach; whether that ``is_fine`` beside what doubles leave."""
 
     rows: list[int]
     length: float
     reach: float
+    is_fine: bool
 
 
 def _sizes(loop: check.Loop, course: Course, s: float, rows: Sequence[int]) -> _Sizes:
@@ -108,7 +115,10 @@ def _sizes(loop: check.Loop, course: Course, s: float, rows: Sequence[int]) -> _
         bend = check.rows_of(at_place.second(direction), chosen)
         change = inverse * check.stacked(bend, [arb(0)] * loop.n)
         rates.append(max(float(frame.norm(change)), 1e-300))
-    return _Sizes(chosen, 2 * ALONG / rates[0], ACROSS / rates[1])
+    length, reach = 2 * ALONG / rates[0], ACROSS / rates[1]
+    if reach > FINE * float(check.norm(inverse)):
+        return _Sizes(chosen, length, reach, is_fine=False)
+    return _Sizes(chosen, length / 2, reach, is_fine=True)
 
 
 def _make(
@@ -121,14 +131,19 @@ def _make(
 ) -> tuple[check.Json, check.Box]:
     """A box of a length, after one of the ``last`` length, as it stands in the
     certificate and as it is checked."""
-    piece, _ = course.piece_at(begin)
-    low = course.coordinate(piece, begin - BEFORE * min(step, last))
-    high = course.coordinate(piece, begin + (1 + BEHIND) * step)
+    first = begin - BEFORE * min(step, last)
+    end = begin + (1 + BEHIND) * step
     reach = min(sizes.reach, step / 8)
-    half = min((high - low) / 2, 0.5)
-    order = min(max(math.ceil(-DIGITS / math.log10(half)), LOWEST), HIGHEST)
-    polynomial = course.polynomials[piece]
     rows = sizes.rows
+    if sizes.is_fine:
+        piece = refined_piece(loop, course, (first + end) / 2, (end - first) / 2)
+        low, high, order = -1.0, 1.0, FINE_ORDER
+    else:
+        piece, _ = course.piece_at(begin)
+        low, high = course.coordinate(piece, first), course.coordinate(piece, end)
+        half = min((high - low) / 2, 0.5)
+        order = min(max(math.ceil(-DIGITS / math.log10(half)), LOWEST), HIGHEST)
+    polynomial = course.polynomials[piece]
     place = check.Piece(polynomial, arb(low), arb(high), arb(reach), rows, order)
     box = check.make_box(loop, place)
     return [piece, low.hex(), high.hex(), reach.hex(), rows, order], box
