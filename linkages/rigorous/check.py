@@ -568,6 +568,7 @@ def enclose(loop: Loop, point: Point, alone: arb) -> Enclosure:
     require(radius < alone, "Krawczyk's operator leaves its box")
 
     near = augmented(loop, point, radius)
+    require(near.may_vanish, "an equation does not vanish there: it is a near miss")
     require(near.range_defect < 1, "the rank is not known from below")
     return Enclosure(radius, alone, near.misses)
 
@@ -575,13 +576,23 @@ def enclose(loop: Loop, point: Point, alone: arb) -> Enclosure:
 @dataclass(frozen=True)
 class Augmented:
     """The augmented equations over a box about the centre: ``values``, derivatives
-    ``matrix``, |I - C F' W| for some C, what the equations that are not among them miss
-    by."""
+    ``matrix``, |I - C F' W| for some C, and all of F and F' v_j, those that are not among
+    them as well."""
 
     values: arb_mat
     matrix: arb_mat
     range_defect: arb
-    misses: arb
+    others: list[arb_mat]
+
+    @property
+    def misses(self) -> arb:
+        """What the equations that are not among them miss by at most."""
+        return largest([norm(values) for values in self.others])
+
+    @property
+    def may_vanish(self) -> bool:
+        """Whether F = 0 and F' v_j = 0 are possible."""
+        return all(x.contains(0) for values in self.others for x in values.entries())
 
 
 def augmented(loop: Loop, point: Point, radius: arb) -> Augmented:
@@ -594,13 +605,13 @@ def augmented(loop: Loop, point: Point, radius: arb) -> Augmented:
     no_vectors = [arb(0)] * (loop.n * point.nullity)
     values = rows_of(over.value, rows).entries()
     matrix = [line + no_vectors for line in slope[:-1]]
-    misses = [norm(over.value)]
+    others = [over.value]
     for j, plain in enumerate(point.null):
         vector = thickened(plain, radius)
         image = over.jacobian * column(vector)
         values += (with_extra * image).entries()
         values += (arb_mat(point.null) * column(_minus(vector, plain))).entries()
-        misses.append(norm(image))
+        others.append(image)
         place = slice(loop.n * j, loop.n * (j + 1))
         for by_u, by_v in zip(
             (with_extra * over.second(vector)).tolist(), slope, strict=True
@@ -610,7 +621,7 @@ def augmented(loop: Loop, point: Point, radius: arb) -> Augmented:
             matrix.append([arb(0)] * loop.n + _placed(line, place, no_vectors))
     regular = selection * over.jacobian * arb_mat(point.range).transpose()
     defect = identity(len(rows)) - approximate_inverse(regular) * regular
-    return Augmented(column(values), arb_mat(matrix), norm(defect), largest(misses))
+    return Augmented(column(values), arb_mat(matrix), norm(defect), others)
 
 
 def _placed(part: Vector, place: slice, zeros: Vector) -> Vector:

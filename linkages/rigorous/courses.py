@@ -44,9 +44,9 @@ class Course:
         """The coordinate of an arclength on a piece."""
         return float((s - self.branch.centers[piece]) / self.branch.radii[piece])
 
-    def point(self, piece: int, x: float) -> check.Vector:
+    def point(self, piece: int, x: arb) -> check.Vector:
         """The point at a coordinate of a piece."""
-        return [angle(arb(x)) for angle in self.polynomials[piece]]
+        return [angle(x) for angle in self.polynomials[piece]]
 
     def add_piece(self, texts: list[list[str]]) -> int:
         """Add a refined piece, its coefficients as they are written: its number."""
@@ -54,10 +54,10 @@ class Course:
         self.polynomials.append([arb_poly(check.numbers(angle)) for angle in texts])
         return len(self.texts) - 1
 
-    @property
-    def values(self) -> check.Json:
-        """The curve in a certificate."""
-        return {"name": self.name, "pieces": self.texts}
+    def values(self, used: set[int]) -> check.Json:
+        """The curve in a certificate, the pieces that are not ``used`` there empty."""
+        pieces = [text if k in used else [] for k, text in enumerate(self.texts)]
+        return {"name": self.name, "pieces": pieces}
 
 
 def course_of(atlas: Atlas, number: int) -> Course:

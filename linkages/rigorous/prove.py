@@ -61,7 +61,7 @@ def make_certificate(loop: Loop, atlas: Atlas) -> check.Json:
         "precision": PRECISION,
         "geometry": geometry,
         "claims": prover.claims,
-        "curves": [course.values for course in prover.courses],
+        "curves": prover.curves,
         "tubes": prover.tubes,
         "points": prover.points,
         "open": prover.open,
@@ -99,6 +99,18 @@ class _Prover:
             self.open.append("components of more than one dimension")
 
     @property
+    def curves(self) -> list[check.Json]:
+        """The curves with the pieces that are used."""
+        used: list[set[int]] = [set() for _ in self.courses]
+        for tube in self.tubes:
+            used[tube["curve"]] |= {box[0] for box in tube["boxes"]}
+        for point in self.points:
+            for one in point["half_branches"]:
+                used[one["curve"]].add(one["piece"])
+        pairs = zip(self.courses, used, strict=True)
+        return [course.values(pieces) for course, pieces in pairs]
+
+    @property
     def claims(self) -> check.Json:
         """How far closed configurations are from the curves, and by how much equations
         that are not solved miss, at most."""
@@ -134,8 +146,13 @@ class _Prover:
         course = self.courses[number]
         if not course.passes:
             made = cover(self.loop, course, 0.0, course.branch.length)
-            whole = {"winding": course.branch.winding.tolist()}
-            self._add(number, made, course.branch.length, whole)
+            winding = course.branch.winding.tolist()
+            turns = check.whole_turns(winding)
+            closes = made.boxes and check.do_overlap(
+                made.boxes[-1], made.boxes[0], turns
+            )
+            ends = {"winding": winding} if closes else {"ends": [None, None]}
+            self._add(number, made, course.branch.length, ends)
             return
         for begin, end in zip(course.passes, course.passes[1:], strict=False):
             first = begin.s + self._gap(begin)
@@ -173,9 +190,12 @@ class _Prover:
     def _attach(self, point: check.Json) -> None:
         """Say of every half-branch in which box of which tube it is."""
         for half_branch in point["half_branches"]:
-            s = half_branch.pop("s")
+            s, solution = half_branch.pop("s"), half_branch.pop("solution")
             for k, made in enumerate(self.covers):
                 is_there = made.begin < s < made.reached
                 if is_there and self.tubes[k]["curve"] == half_branch["curve"]:
                     box = bisect(made.ends, s)
-                    half_branch |= {"tube": k, "box": box}
+                    if made.boxes[box].holds_inside(solution):
+                        half_branch |= {"tube": k, "box": box}
+            if "tube" not in half_branch:
+                self.open.append(f"where a half-branch of {point['name']} goes on")

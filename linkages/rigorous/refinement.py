@@ -3,7 +3,7 @@ rank: there a tube is narrower than doubles are exact."""
 
 from __future__ import annotations
 
-from flint import arb, arb_poly
+from flint import arb, arb_mat, arb_poly
 
 from linkages.rigorous import check
 from linkages.rigorous.courses import Course
@@ -30,8 +30,8 @@ def refined_piece(loop: check.Loop, course: Course, s: float, half: float) -> in
     inverse = check.approximate_inverse(matrix).tolist()
     for _ in range(MOST_STEPS):
         series = loop.series([arb_poly(angle) for angle in curve], ORDER)
-        values = check.arb_mat([series[row] for row in rows])
-        step = (check.arb_mat([line[:-1] for line in inverse]) * values).tolist()
+        values = arb_mat([series[row] for row in rows])
+        step = (arb_mat([line[:-1] for line in inverse]) * values).tolist()
         curve = [
             [(c - dc).mid() for c, dc in zip(angle, change, strict=True)]
             for angle, change in zip(curve, step, strict=True)

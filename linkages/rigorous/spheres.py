@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from flint import arb
+from flint import arb, arb_poly
 from scipy.optimize import brentq
 
 from bifurc.atlas import MeetingPoint
@@ -183,13 +183,34 @@ def _crossing(sphere: check.Sphere, course: Course, one: Pass, side: int) -> che
     if radius < SMALL:
         piece, x = refined_piece(sphere.loop, course, s, SHORT * radius), 0.0
     turns = check.whole_turns(one.turns.tolist())
-    place = [p - t for p, t in zip(course.point(piece, x), turns, strict=True)]
-    half_branch = {"piece": piece, "x": x.hex(), "s": s, "turns": one.turns.tolist()}
-    return {**half_branch, **_sector(sphere, place)}
+    text = _text_on_sphere(sphere, course.polynomials[piece], turns, arb(x))
+    lifted = course.point(piece, check.number(text))
+    half_branch = {"piece": piece, "x": text, "s": s, "turns": one.turns.tolist()}
+    return {**half_branch, **_sector(sphere, lifted, turns)}
 
 
-def _sector(sphere: check.Sphere, place: check.Vector) -> check.Json:
-    """The widest sector about a place in which there is one solution."""
+def _text_on_sphere(
+    sphere: check.Sphere, polynomial: list[arb_poly], turns: check.Vector, x: arb
+) -> str:
+    """The coordinate near x at which a piece crosses the sphere, in many digits."""
+    away = [
+        angle - turn - middle
+        for angle, turn, middle in zip(
+            polynomial, turns, sphere.point.centre, strict=True
+        )
+    ]
+    height = sum((angle * angle for angle in away), arb_poly([0])) - sphere.radius**2
+    for _ in range(NEWTON_STEPS):
+        x = (x - height(x) / height.derivative()(x)).mid()
+    return x.str(DIGITS, radius=False)
+
+
+def _sector(
+    sphere: check.Sphere, lifted: check.Vector, turns: check.Vector
+) -> check.Json:
+    """The widest sector about a place, of a curve that is whole turns away, in which
+    there is one solution; the solution there on the curve."""
+    place = [p - t for p, t in zip(lifted, turns, strict=True)]
     coordinates = [x.mid() for x in sphere.coordinates_of(place)]
     every_row = list(range(check.EQUATIONS))
     jacobian = floats_of(sphere.derivative(coordinates, every_row))
@@ -201,9 +222,11 @@ def _sector(sphere: check.Sphere, place: check.Vector) -> check.Json:
         texts = [f"[{float(x)!r} +/- {half!r}]" for x in middle]
         sector = check.Sector(check.numbers(texts), rows, place)
         try:
-            sphere.solution_in(sector)
+            solution = sphere.solution_in(sector)
         except DoesNotHold as reason:
             last = reason
         else:
-            return {"sector": texts, "rows": rows, "proved": sector}
+            exit_place = [u + t for u, t in zip(solution, turns, strict=True)]
+            proved = {"proved": sector, "solution": exit_place}
+            return {"sector": texts, "rows": rows, **proved}
     raise last

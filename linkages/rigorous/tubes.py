@@ -64,7 +64,7 @@ def cover(loop: check.Loop, course: Course, begin: float, end: float) -> Cover:
         goal = min(end, float(course.branch.breaks[piece + 1]))
         rest = goal - made.reached
         sizes = _sizes(loop, course, made.reached, rows)
-        length = min(shorter * sizes.length, LONGEST, MOST_LONGER * last)
+        length = shorter * min(sizes.length, LONGEST, MOST_LONGER * last)
         step = rest if rest <= length else min(length, rest / 2)
         try:
             values, box = _make(loop, course, made.reached, step, last, sizes)
