@@ -152,6 +152,8 @@ class _Prover:
                 made.boxes[-1], made.boxes[0], turns
             )
             ends = {"winding": winding} if closes else {"ends": [None, None]}
+            if made.reached == course.branch.length and not closes:
+                self.open.append(f"{course.name}: its ends do not overlap")
             self._add(number, made, course.branch.length, ends)
             return
         for begin, end in zip(course.passes, course.passes[1:], strict=False):

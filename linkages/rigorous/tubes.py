@@ -54,7 +54,7 @@ def cover(loop: check.Loop, course: Course, begin: float, end: float) -> Cover:
     """Boxes from one arclength of a curve to another, as far as they hold."""
     made = Cover(begin, reached=begin)
     rows: list[int] = []
-    last = LONGEST
+    last = 0.0  # length: a closed curve may end narrowly
     shorter = 1.0  # than they may be to first order
     while made.reached < end:
         if is_time_over():
@@ -64,7 +64,7 @@ def cover(loop: check.Loop, course: Course, begin: float, end: float) -> Cover:
         goal = min(end, float(course.branch.breaks[piece + 1]))
         rest = goal - made.reached
         sizes = _sizes(loop, course, made.reached, rows)
-        length = shorter * min(sizes.length, LONGEST, MOST_LONGER * last)
+        length = shorter * min(sizes.length, LONGEST, MOST_LONGER * (last or LONGEST))
         step = rest if rest <= length else min(length, rest / 2)
         try:
             values, box = _make(loop, course, made.reached, step, last, sizes)
