@@ -26,7 +26,11 @@ class ExitCode(IntEnum):
     )
     NO_ROUTE = 4, "there is no route"
     NOT_IN_CATALOGUE = 5, "for identify: no linkage of the catalogue has this geometry"
-    DOES_NOT_HOLD = 6, "for verify: something does not hold; for sweep: a member failed"
+    DOES_NOT_HOLD = (
+        6,
+        "for verify and check: something does not hold; for map --rigorous: something is "
+        "not proved; for sweep: a member failed",
+    )
     NOTHING_KNOWN = (
         7,
         "the budget of time ended before anything was known, or all that is known are "

@@ -454,6 +454,43 @@ def out_option(content: str) -> Option:
     return click.option("--out", type=FOLDER, help=f"Folder for {content}.")
 
 
+@dataclass(frozen=True)
+class ProofOptions:
+    """Whether a map is proved, and the file of its ``certificate``, if any: what stands
+    on the command line."""
+
+    rigorous: bool
+    certificate: Path | None
+
+    @property
+    def names(self) -> list[str]:
+        """The options that are given."""
+        given = {
+            "--rigorous": self.rigorous,
+            "--certificate": self.certificate is not None,
+        }
+        return [name for name, is_given in given.items() if is_given]
+
+
+PROOF_OPTIONS: dict[str, Option] = {
+    "rigorous": click.option(
+        "--rigorous",
+        is_flag=True,
+        help=(
+            "Prove in ball arithmetic that no form jumps, that it is there, and what "
+            "leaves its singular points (docs/proof.md)."
+        ),
+    ),
+    "certificate": click.option(
+        "--certificate",
+        type=FILE,
+        metavar="FILE.json.gz",
+        help="Prove it, and write what `bifurc check` needs to prove it again.",
+    ),
+}
+proof_options = record_options("proof", ProofOptions, PROOF_OPTIONS)
+
+
 POSITIVE_LENGTH = NumberRange(min=0, min_open=True)
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4}  # mm
 

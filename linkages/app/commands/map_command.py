@@ -72,6 +72,7 @@ if TYPE_CHECKING:
         "for each of some joints, with their names in the first line; needs --out."
     ),
 )
+@options.proof_options
 @options.trace_option
 @options.figure_options
 @options.atlas_options
@@ -82,6 +83,7 @@ def map_command(
     no_certify: bool,
     nearest: bool,
     digits: int | None,
+    proof: options.ProofOptions,
     axes: tuple[str, ...] | None,
     against: tuple[str, ...] | None,
     window: tuple[float, float] | None,
@@ -106,15 +108,17 @@ def map_command(
       bifurc map slider_crank.toml --out out --axes J1,J4
       bifurc map four-bennett-network --lock 2=40 --lock 6=-75
       bifurc map special-double-subtractive-goldberg --digits 50
+      bifurc map special-double-subtractive-goldberg --certificate map.json.gz
     """
     from linkages.app.atlas_source import explore_parts
     from linkages.app.files import figure_axes
     from linkages.app.output import require_folder, require_out
 
     require_out(out)
-    if digits:
-        allow_digits(as_json, nearest, choice.hold)
+    for option in [*proof.names, *["--digits"] * bool(digits)]:
+        require_exact(option, as_json, nearest, choice.hold)
     mechanism, exact = choose_mapped(linkage, choice, nearest)
+    require_proof(proof, linkage, mechanism)
     parts = mechanism.parts
     folders = folders_of(out, len(parts))
     over = [figure_axes(part, axes, against, window, overlay, trace) for part in parts]
@@ -123,21 +127,65 @@ def map_command(
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
         atlases = explore_parts(parts, replace(choice.search, certify=not no_certify))
-        try:
-            report(atlases, as_json, choice.verbose)
-        finally:  # where nothing can be shown, there are still the files
-            paths = [
-                write_numbers(atlas, folder, exact)
-                for atlas, folder in zip(atlases, folders, strict=True)
-            ]
+        paths = report_and_write(atlases, folders, as_json, choice.verbose, exact)
     if digits:
         confirm(atlases, linkage, choice.parameters, digits)
+    least = prove(atlases[0], linkage, choice, proof)
     write_all_pictures(atlases, folders, paths, over, figures)
-    has_steps = not as_json and len(atlases) == 1
-    steps: list[str] = []
-    if has_steps:
-        steps = steps_after(atlases[0], linkage, choice, nearest, out)
-    end(atlases, as_json, steps)
+    steps = [] if as_json else steps_after(atlases, linkage, choice, nearest, out)
+    end(atlases, as_json, steps, least)
+
+
+def report_and_write(
+    atlases: Sequence[Atlas],
+    folders: Sequence[Path | None],
+    as_json: bool,
+    is_whole: bool,
+    exact: str,
+) -> list[list[Path]]:
+    """Print the maps, and write the numbers of each into its folder: the paths of the
+    files."""
+    paths = []
+    try:
+        report(atlases, as_json, is_whole)
+    finally:  # where nothing can be shown, there are still the files
+        for atlas, folder in zip(atlases, folders, strict=True):
+            paths.append(write_numbers(atlas, folder, exact))
+    return paths
+
+
+def require_proof(
+    proof: options.ProofOptions, name: str, mechanism: Linkage | Mechanism
+) -> None:
+    """Raise `CommandError` where a proof is asked for that there is not, or a file that
+    cannot be written."""
+    if not proof.names:
+        return
+    from linkages.app.output import require_ending, require_writable
+    from linkages.app.reports.proof import require_provable
+    from linkages.subject import as_subject
+
+    require_provable(name, as_subject(mechanism))
+    if proof.certificate is not None:
+        require_ending("--certificate", proof.certificate, ".json", ".json.gz")
+        require_writable(proof.certificate, "--certificate")
+
+
+def prove(
+    atlas: Atlas,
+    linkage: str,
+    choice: options.AtlasOptions,
+    proof: options.ProofOptions,
+) -> ExitCode:
+    """With what the command ends at least: whether all of a map is proved, in what is
+    left of the budget, if that is asked for."""
+    if not proof.names:
+        return ExitCode.DONE
+    from linkages.app.reports.proof import prove_map
+
+    seconds = choice.search.budget - atlas.provenance.seconds
+    holds = prove_map(atlas, linkage, choice.parameters, proof.certificate, seconds)
+    return ExitCode.DONE if holds else ExitCode.DOES_NOT_HOLD
 
 
 def write_all_pictures(
@@ -180,18 +228,21 @@ def folders_of(out: Path | None, count: int) -> list[Path | None]:
     return [out / f"part-{number}" for number in range(1, count + 1)]
 
 
-def allow_digits(as_json: bool, nearest: bool, hold: options.HoldOptions) -> None:
-    """Raise `CommandError` for what does not go with more digits."""
+def require_exact(
+    option: str, as_json: bool, nearest: bool, hold: options.HoldOptions
+) -> None:
+    """Raise `CommandError` for what does not go with an option that takes the numbers of
+    a linkage in many digits."""
     if as_json:
         raise CommandError(
-            "--digits: it has no place in the JSON document; leave out --json"
+            f"{option}: it has no place in the JSON document; leave out --json"
         )
     if hold.is_without_centre:
-        raise CommandError("--digits: it does not go with --without-centre")
+        raise CommandError(f"{option}: it does not go with --without-centre")
     if hold.is_modified:
-        raise CommandError("--digits: it does not go with --modified-dh")
+        raise CommandError(f"{option}: it does not go with --modified-dh")
     if nearest:
-        raise CommandError("--digits: it does not go with --nearest")
+        raise CommandError(f"{option}: it does not go with --nearest")
 
 
 def choose_mapped(
@@ -213,23 +264,28 @@ def choose_mapped(
 
 
 def steps_after(
-    atlas: Atlas,
+    atlases: Sequence[Atlas],
     linkage: str,
     choice: options.AtlasOptions,
     nearest: bool,
     out: Path | None,
 ) -> list[str]:
-    """What can be done next with a linkage."""
+    """What can be done next with a linkage; nothing is said of several."""
+    if len(atlases) > 1:
+        return []
     from linkages.app.texts.next_steps import next_steps, next_steps_of_nearest
 
     if nearest:
-        return next_steps_of_nearest(atlas, linkage, choice, out)
-    return next_steps(atlas, linkage, choice, out is not None)
+        return next_steps_of_nearest(atlases[0], linkage, choice, out)
+    return next_steps(atlases[0], linkage, choice, out is not None)
 
 
-def end(atlases: Sequence[Atlas], as_json: bool, steps: Sequence[str]) -> None:
-    """End the command with the largest exit code of all verdicts, after what can be done
-    next, ``steps``, or the verdicts where a document does not say them."""
+def end(
+    atlases: Sequence[Atlas], as_json: bool, steps: Sequence[str], least: ExitCode
+) -> None:
+    """End the command with the largest exit code of all verdicts, and the ``least`` one,
+    after what can be done next, ``steps``, or the verdicts where a document does not say
+    them."""
     from linkages.app.answer.verdict import judge
     from linkages.app.output import say_next
 
@@ -238,7 +294,9 @@ def end(atlases: Sequence[Atlas], as_json: bool, steps: Sequence[str]) -> None:
     for verdict in verdicts:
         if as_json and verdict.code is not ExitCode.DONE:
             click.echo(verdict.sentence, err=True)
-    click.get_current_context().exit(max(verdict.code for verdict in verdicts))
+    click.get_current_context().exit(
+        max(least, *(verdict.code for verdict in verdicts))
+    )
 
 
 def report(atlases: Sequence[Atlas], as_json: bool, is_whole: bool) -> None:
