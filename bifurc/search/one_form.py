@@ -163,7 +163,7 @@ def _doubts(problem: Problem, form: Form) -> list[Doubt]:
         doubts.append(SearchDoubt.STALLED.doubt(form.name, ends=stalled))
     places = _singular_places(form)
     if places:
-        doubts.append(SearchDoubt.SINGULAR_ON_FORM.doubt(form.name, points=places))
+        doubts.append(SearchDoubt.SINGULAR_ON_FORM.doubt(form.name, count=places))
     return doubts
 
 

@@ -39,7 +39,7 @@ def parametrised_closure(
     free = dict(zip(ranges, numbers[first.n :], strict=True))
     loop = family.build(**{**complete, **free})
     rows = zip(loop.twists, loop.lengths, loop.offsets, strict=True)
-    slots = _residuals(numbers[: first.n], rows, first.characteristic_length)
+    slots = _residuals(writer, numbers[: first.n], rows, first.characteristic_length)
     tape = writer.tape(slots)
     return ParametrisedProblem(
         tape=tape,
@@ -70,10 +70,11 @@ def closure_of_tables(n: int, unit: float) -> Tape:
     rows = zip(
         numbers[n : 2 * n], numbers[2 * n : 3 * n], numbers[3 * n :], strict=True
     )
-    return recorder.tape(_residuals(numbers[:n], rows, unit))
+    return recorder.tape(_residuals(recorder, numbers[:n], rows, unit))
 
 
 def _residuals(
+    recorder: Recorder,
     angles: Sequence[RecordedNumber],
     rows: Iterable[tuple[Number, Number, Number]],
     unit: float,
@@ -86,4 +87,10 @@ def _residuals(
             half = 0.5 * by
             step = turn(axis, AT_ORIGIN, np.cos(half), np.sin(half), advance / unit)
             motor = product(motor, step)
-    return [(2.0 * number).slot for number in (*motor.real[1:], *motor.dual[1:])]
+    parts = [2.0 * number for number in (*motor.real[1:], *motor.dual[1:])]
+    return [
+        part.slot
+        if isinstance(part, RecordedNumber)
+        else recorder.constant(float(part))
+        for part in parts
+    ]

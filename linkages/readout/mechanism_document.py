@@ -27,7 +27,7 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
     pattern are ``vertices_moved`` away at most. ``translates`` is None where nothing is
     left out that differs by whole turns.
     """
-    mechanism = readout.mechanism
+    mechanism, structure = readout.mechanism, readout.structure
     place = _regular_place(atlas)
     loops = [] if place is None else loop_facts(readout, place)
     return {
@@ -46,15 +46,15 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
             }
             for loop in loops
         ],
-        "idle_bodies": list(readout.structure.idle_bodies),
-        "idle_turns": list(readout.structure.idle_turns),
-        "hanging": [asdict(joint) for joint in readout.structure.hanging.joints],
-        "holds_flaps": readout.structure.holds_flaps,
-        "stay_flat": list(readout.structure.stay_flat),
+        "idle_bodies": list(structure.idle_bodies),
+        "idle_turns": list(structure.idle_turns),
+        "hanging": [asdict(joint) for joint in structure.hanging.joints],
+        "holds_flaps": structure.holds_flaps,
+        "stay_flat": list(structure.stay_flat),
         "at_rest": list(mechanism.at_rest),
-        "ways_out": _ways_out(readout.structure),
-        "loose_chains": [asdict(chain) for chain in loose_chains(readout.structure)],
-        "characteristic_length": readout.structure.unit,
+        "ways_out": _ways_out(structure),
+        "loose_chains": [asdict(chain) for chain in loose_chains(structure)],
+        "characteristic_length": structure.unit,
         "origin": list(mechanism.origin),
         "coordinate_rounding": mechanism.coordinate_rounding,
         "vertices_moved": mechanism.moved,

@@ -12,7 +12,7 @@ cover.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
 from enum import Enum
@@ -24,7 +24,7 @@ from networkx.utils import UnionFind
 
 from bifurc.torus import common_period
 from linkages.mechanisms.joint import Motion
-from linkages.mechanisms.mechanism import Mechanism
+from linkages.mechanisms.mechanism import Mechanism, Variable
 from linkages.mechanisms.size import Size
 from linkages.structure.cycles import (
     Chain,
@@ -201,8 +201,7 @@ class Structure:
         held: set[str] = set()
         if not self.is_held_flat:
             held = {*self.stay_flat, *self.mechanism.at_rest}
-            numbers = [k for k, one in enumerate(variables) if one.label in held]
-            self.flat_vertices = [vertex.without(numbers) for vertex in vertices]
+            self.flat_vertices = _without(vertices, variables, held)
         if held:
             self.mechanism = self.mechanism.with_locks(dict.fromkeys(held, 0.0))
             self.groups = Groups(self.mechanism, self.unit)
@@ -674,6 +673,16 @@ class Structure:
                 sums.append(sum(lengths[body] for body in sorted(bodies)))
         total = min(sums, default=sum(lengths.values()))
         return SLIDE_REACH * (total or sum(lengths.values()))
+
+
+def _without(
+    vertices: Sequence[FlatVertex],
+    variables: Sequence[Variable],
+    labels: Collection[str],
+) -> list[FlatVertex]:
+    """What is left of vertices without the variables of these labels."""
+    numbers = [number for number, one in enumerate(variables) if one.label in labels]
+    return [vertex.without(numbers) for vertex in vertices]
 
 
 def _check_graph(mechanism: Mechanism) -> None:

@@ -42,6 +42,7 @@ DATA = {
     "real": 5,
     "reason": "sections disagree",
     "reasons": "too long",
+    "residual": 1e-12,
     "rough": 1,
     "rounding": 1e-9,
     "singular": 1,

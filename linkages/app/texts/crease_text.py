@@ -44,8 +44,9 @@ def describe_creases(structure: Structure) -> str:
 
 
 def _ways_out(structure: Structure) -> list[str]:
-    """How many ways lead out of the flat state, where that is known."""
-    ways = structure.ways_by_modes if structure.flat_vertices else None
+    """How many ways lead out of the flat state of several vertices, where that is
+    known."""
+    ways = structure.ways_by_modes if len(structure.flat_vertices) > 1 else None
     if ways is None or not len(ways):
         return []
     count, verb = count_of(len(ways), "way"), "leads" if len(ways) == 1 else "lead"

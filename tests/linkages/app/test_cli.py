@@ -20,6 +20,7 @@ from linkages.closure.closure import Closure
 from linkages.linkage import load
 from linkages.loop import Loop
 from linkages.networks.entries import NETWORKS
+from linkages.sheets.entries import SHEETS
 from tests.linkages.app.slider_cranks import slider_crank_text
 
 MINE = """
@@ -86,11 +87,11 @@ def write(tmp_path):
 # --- list and show ------------------------------------------------------------------------------------
 
 
-def test_list_names_every_linkage_and_every_network():
+def test_list_names_every_linkage_network_and_sheet():
     result = bifurc("list")
     assert result.exit_code == 0
     listed = [line.split()[:2] for line in result.stdout.splitlines()[1:]]
-    assert [name for name, _ in listed] == [*catalogue(), *NETWORKS]
+    assert [name for name, _ in listed] == [*catalogue(), *NETWORKS, *SHEETS]
     assert ["special-double-subtractive-goldberg", "6"] in listed
 
 
