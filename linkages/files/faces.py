@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
 from linkages.values import GeometryError, require
+
+SLENDER = (
+    1e-9  # area of a triangle, over that of the square on its longest side, of none
+)
 
 
 def faces_of_edges(
@@ -44,6 +49,50 @@ def faces_of_edges(
                 allowed = "such that edges end at others on all sides of a face"
                 raise GeometryError("edges at vertex", vertex, allowed)
     return faces
+
+
+def triangles_of(points: np.ndarray, face: Sequence[int]) -> list[list[int]]:
+    """The triangles into which the shortest diagonals cut a face, each by its vertices,
+    of ``points`` (v, 3): corner after corner is cut off that holds no other one."""
+    corners = points[list(face)] - points[face[0]]
+    spokes = np.cross(corners[1:-1], corners[2:]).sum(axis=0)
+    size = float(np.linalg.norm(spokes))
+    require(
+        size > 0.0, "face", list(face), "one with an area, to be cut into triangles"
+    )
+    first = corners[np.argmax(np.linalg.norm(corners, axis=1))]
+    right = first / np.linalg.norm(first)
+    plane = np.array([right, np.cross(spokes / size, right)])
+    places = dict(zip(face, corners @ plane.T, strict=True))
+    left, triangles = list(face), []
+    while len(left) > 3:
+        ears = [
+            ear for ear in map(partial(_ear, left, places), range(len(left))) if ear
+        ]
+        require(bool(ears), "face", list(face), "one whose sides do not cross")
+        _, at, triangle = min(ears)
+        triangles.append(triangle)
+        del left[at]
+    return [*triangles, left]
+
+
+def _ear(
+    face: list[int], places: Mapping[int, np.ndarray], at: int
+) -> tuple[float, int, list[int]] | None:
+    """How long the diagonal is that cuts off a corner, by number, and the triangle; None
+    where the corner is none that points outward, or another vertex lies there."""
+    triangle = [face[at - 1], face[at], face[(at + 1) % len(face)]]
+    a, b, c = (places[vertex] for vertex in triangle)
+    area = _double_area(np.array([a, b, c]))
+    if not area > SLENDER * float((c - a) @ (c - a)):
+        return None
+    for vertex in face:
+        if vertex not in triangle:
+            sides = ((a, b), (b, c), (c, a))
+            areas = [_double_area(np.array([*side, places[vertex]])) for side in sides]
+            if min(areas) > -SLENDER * area:
+                return None
+    return float(np.linalg.norm(c - a)), at, triangle
 
 
 def check_joined(

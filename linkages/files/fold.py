@@ -22,7 +22,7 @@ from networkx.utils import UnionFind
 from linkages.closure.system import ClosureSystem
 from linkages.coordinates import spread_of
 from linkages.decisions import is_parallel_axis, keeps_angle
-from linkages.files.faces import check_joined, faces_of_edges
+from linkages.files.faces import check_joined, faces_of_edges, triangles_of
 from linkages.files.misfits import closed_near
 from linkages.files.rounded_creases import Ray, exact_points
 from linkages.mechanisms.joint import Joint, JointKind
@@ -61,6 +61,7 @@ UNSAID = 1e-12  # over the size: as far vertices may be moved without a word
 
 # keys of this program, which FOLD tells by the colon
 THICKNESS, HEIGHTS = "bifurc:thickness", "bifurc:edges_height"
+TRIANGULATED = "bifurc:triangulated"
 
 
 class _Edge(NamedTuple):
@@ -117,6 +118,8 @@ def mechanism_of_fold(content: Frame, name: str) -> Mechanism:
         faces = faces_of_edges(points, _ends(frame, len(points)))
         folded = [side for side, edge in edges.items() if edge.letter in HINGES]
         check_joined(points, edges.keys(), folded, faces)
+    if _is_triangulated(frame):
+        faces = [part for face in faces for part in triangles_of(points, face)]
     creases = _creases(faces, edges)
     is_folded = FOLDED in frame.get("frame_classes", [])
     is_flat = not is_folded and not np.ptp(points[:, 2]) > 0.0
@@ -309,6 +312,13 @@ def _points(frame: Frame) -> tuple[np.ndarray, Coordinates]:
         for k, coordinate in enumerate(row):
             points[number, k] = checked_number(what, coordinate)
     return points, near
+
+
+def _is_triangulated(frame: Frame) -> bool:
+    """Whether panels bend along diagonals."""
+    given = frame.get(TRIANGULATED, False)
+    require(isinstance(given, bool), TRIANGULATED, quoted(given), "true or false")
+    return bool(given)
 
 
 def _faces(frame: Frame, vertices: int) -> list[list[int]]:

@@ -625,6 +625,39 @@ def test_two_creases_on_a_line_fold_while_the_others_stay_flat(tmp_path):
     assert not atlas.completeness.doubts
 
 
+def test_panels_bend_along_their_shortest_diagonals(tmp_path):
+    # a panel with a notch beside a rectangle
+    content = {
+        "vertices_coords": [[0, 0], [2, 0], [2, 1], [0, 1], [3, 2], [1, 1.2], [-1, 2]],
+        "faces_vertices": [[0, 1, 2, 3], [3, 2, 4, 5, 6]],
+        "bifurc:triangulated": True,
+    }
+    mechanism = read(tmp_path, content)
+    names = {joint.name for joint in mechanism.joints}
+    assert len(mechanism.panels) == 5 and len(names) == 4
+    assert {"2-3", "2-5", "3-5"} < names
+    area = sum(
+        0.5 * np.linalg.norm(np.cross(b - a, c - a))
+        for a, b, c in (np.array(panel.corners) for panel in mechanism.panels)
+    )
+    assert area == pytest.approx(2.0 + 1.4)  # by the shoelace formula
+    with pytest.raises(LinkageFileError, match="bifurc:triangulated: 1 is not allowed"):
+        read(tmp_path, content | {"bifurc:triangulated": 1})
+
+
+def test_a_bent_miura_ori_has_one_freedom_more_a_diagonal_at_its_vertex(tmp_path):
+    folded = read(tmp_path, miura(2, 2, 0.8))
+    bent = read(tmp_path, miura(2, 2, 0.8) | {"bifurc:triangulated": True})
+    ranks = [
+        np.linalg.matrix_rank(problem.jacobians(problem.reference[None])[0], tol=1e-8)
+        for problem in (Closure(folded), Closure(bent))
+    ]
+    assert Closure(folded).n - ranks[0] == 1
+    # two of the four diagonals cut off corners that are flaps
+    assert Closure(bent).n == Closure(folded).n + 2
+    assert Closure(bent).n - ranks[1] == 3
+
+
 def test_a_sheet_that_folds_along_one_line_is_not_seen_from_its_edge(tmp_path):
     turns = np.radians([0.0, 45.0, 90.0, 180.0, 225.0, 270.0])
     subject = as_subject(read(tmp_path, vertex_of(turns, "MVVVVM")))
