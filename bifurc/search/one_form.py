@@ -22,9 +22,9 @@ from bifurc.limits import CutOff, Deadline, cut_off_after, until
 from bifurc.numerics.null_spaces import null_vector
 from bifurc.problem import Problem
 from bifurc.search.answer.completeness import SearchClaim, SearchDoubt
-from bifurc.search.many_unknowns import MANY
 from bifurc.system import relative_gaps, relative_residuals
 
+LEAST = 120  # unknowns: with fewer all is looked at
 SHARES = (np.arange(8) + 0.5) / 8  # of a piece, at which it is looked at
 FOLLOWING = 0.7  # of the time, for following the form; the rest to look at it
 
@@ -35,7 +35,7 @@ def has_one_form(problem: Problem) -> bool:
     state = problem.given_state
     shortcuts = problem.shortcuts
     is_sparse = shortcuts.jacobian is not None and shortcuts.smallest_value is not None
-    if problem.n <= MANY or state is None or not is_sparse:
+    if problem.n < LEAST or state is None or not is_sparse:
         return False
     if not is_solution(float(relative_gaps(problem, state[None])[0])):
         return False

@@ -29,7 +29,7 @@ from linkages.app.texts.hanging_text import describe_hanging
 from linkages.app.texts.numbers import in_degrees
 from linkages.labels import FormLabels, loop_of
 from linkages.readout.drawn import drawn_place
-from linkages.subject import subject_at
+from linkages.subject import MOST_SHOWN, subject_at
 
 if TYPE_CHECKING:
     # it imports networkx, which a loop does not need
@@ -245,14 +245,15 @@ def _closure(branch: Branch) -> str:
 
 def _winding(atlas: Atlas, branch: Branch) -> str:
     """How often each joint turns round, with its sign; "-" for unknowns that do not
-    turn."""
+    turn; once for many."""
     words = []
     for turns, period in zip(branch.winding, atlas.periods, strict=True):
         if not np.isfinite(period):
             words.append("-")
         else:
             words.append(f"{turns:+d}" if turns else "0")
-    return " ".join(words)
+    is_long = len(words) > MOST_SHOWN and {*words} == {"-"}
+    return "-" if is_long else " ".join(words)
 
 
 def _inactive_joints(atlas: Atlas, labels: FormLabels) -> str:
