@@ -1,4 +1,5 @@
-"""What is claimed of linkages: kinds, whose words stand in the table beside."""
+"""What is claimed of linkages, and what is in doubt: kinds, whose words stand in the table
+beside."""
 
 from __future__ import annotations
 
@@ -8,12 +9,14 @@ from bifurc.completeness import (
     Claim,
     ClaimKind,
     Completeness,
+    DoubtKind,
     Kinds,
     Level,
     Scope,
 )
 
 LinkageClaim = Kinds(ClaimKind, __file__, "claims")
+LinkageDoubt = Kinds(DoubtKind, __file__, "doubts")
 ALL_ASSEMBLIES = (
     LinkageClaim.ALL_FOLLOWED,
     LinkageClaim.ALL_BUILT,

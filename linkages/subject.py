@@ -25,6 +25,7 @@ from linkages.labels import FormLabels, loop_of, subject_of, table_values
 from linkages.loop import LARGEST, SMALLEST, Loop
 from linkages.mechanisms.mechanism import Lock, Mechanism
 from linkages.networks.mechanism import mechanism_at
+from linkages.statements import LinkageDoubt
 from linkages.tolerance import make_with_errors
 from linkages.values import GeometryError
 
@@ -326,7 +327,16 @@ class MechanismSubject(Subject):
 
     def labelled(self, atlas: Atlas) -> Atlas:
         """With labels on the forms."""
-        return self._as_assigned(label_atlas(atlas, self.closure, self.values))
+        labelled = label_atlas(atlas, self.closure, self.values)
+        return self._as_assigned(self._with_doubt(labelled))
+
+    def _with_doubt(self, atlas: Atlas) -> Atlas:
+        """The atlas with what is in doubt where creases are at rest that may fold."""
+        count = len(self.mechanism.at_rest)
+        if not count:
+            return atlas
+        doubts = (*atlas.completeness.doubts, LinkageDoubt.AT_REST.doubt(count=count))
+        return replace(atlas, completeness=replace(atlas.completeness, doubts=doubts))
 
     def _as_assigned(self, atlas: Atlas) -> Atlas:
         """The atlas with the names of forms that fold creases as they are assigned."""
@@ -461,7 +471,7 @@ class SingleLoopSubject(MechanismSubject):
         named = name_atlas(atlas, Linkage(self.table))
         back = self.to_angles.inverse
         recounted = recount_labelled(named, back, self.unknowns, self.values)
-        return self._as_assigned(recounted)
+        return self._as_assigned(self._with_doubt(recounted))
 
     def in_loop_angles(self, atlas: Atlas) -> Atlas:
         names, subject = self.traced.domain.names, subject_of(self.table)

@@ -25,8 +25,13 @@ class Closure(ClosureSystem):
 
     @property
     def given_state(self) -> np.ndarray | None:
-        """The reference configuration of a mechanism; a loop is given by its table."""
-        return None if isinstance(self.subject, Loop) else self.reference
+        """The reference configuration of a mechanism, or of a sheet that is flat there one
+        near it in which all its creases fold; a loop is given by its table."""
+        if isinstance(self.subject, Loop):
+            return None
+        ways = self.flat_state.ways
+        is_left = bool(ways) and not ways[0].rest.any()
+        return ways[0].point if is_left else self.reference
 
     def is_given_at(self, point: np.ndarray) -> bool:
         """Whether what is singular at a configuration (n,) is as it is drawn."""

@@ -62,15 +62,27 @@ def _ways_and_whether_none(
     if len(domain.bounds) > MOST_UNKNOWNS:
         return (), False
     leading = LeadingFolds(structure.flat_vertices, structure.fold_signs)
-    for fold in leading.random(np.random.default_rng(0)):
-        way = _way_along(structure, domain, hold, fold)
-        if way is not None:
-            return (way,), False
+    way = _with_least_at_rest(structure, domain, hold, leading)
+    if way is not None:
+        return (way,), False
     from linkages.structure.flat_boxes import first_fold  # few sheets need it
 
     first, is_none = first_fold(leading)
     way = None if first is None else _way_along(structure, domain, hold, first)
     return (() if way is None else (way,)), is_none
+
+
+def _with_least_at_rest(
+    structure: Structure, domain: Domain, hold: Holding, leading: LeadingFolds
+) -> WayOut | None:
+    """The way out to which random folds lead in which the fewest creases rest."""
+    found: list[WayOut] = []
+    for fold in leading.random(np.random.default_rng(0)):
+        way = _way_along(structure, domain, hold, fold)
+        found += [] if way is None else [way]
+        if way is not None and not way.rest.any():
+            break
+    return min(found, key=lambda way: int(way.rest.sum()), default=None)
 
 
 def _with_those_together(

@@ -10,7 +10,7 @@ from typing import Protocol, TypeAlias
 import numpy as np
 
 from bifurc.branch import Branch
-from bifurc.completeness import Claim, Scope
+from bifurc.completeness import Scope
 from bifurc.decisions import is_start_solved
 from bifurc.equations.system import ScaledTape
 from bifurc.limits import Deadline, current_deadline, made_in_time, until
@@ -53,10 +53,10 @@ class Source(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class BesideFlatCreases:
-    """What a ``judge``, if there is one, says of forms in ``n`` unknowns, and the
-    ``claims`` on creases that are held flat."""
+    """What a ``judge``, if there is one, says of forms in ``n`` unknowns, and that so many
+    ``creases`` are held flat."""
 
-    claims: tuple[Claim, ...]
+    creases: int
     n: int
     judge: Callable[[Sequence[Branch], float], Audit] | None
 
@@ -65,8 +65,9 @@ class BesideFlatCreases:
         audit = Audit((), np.empty((0, self.n)))
         if self.judge is not None:
             audit = self.judge(branches, seconds)
-        claims = (*audit.claims, *self.claims)
-        return replace(audit, claims=claims, has_all_isolated=False)
+        words = count_of(self.creases, "crease")
+        claim = estimated(LinkageClaim.STAY_FLAT, creases=words)
+        return replace(audit, claims=(*audit.claims, claim), has_all_isolated=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,19 +168,9 @@ def _judged(problem: ClosureSystem, seeds: Seeds) -> Seeds:
         seeds = replace(seeds, isolated=problem.reference[None])
         if sees_all:  # folded states, too
             return seeds
-    claims = [
-        estimated(kind, creases=count_of(len(labels), "crease"))
-        for kind, labels in (
-            (LinkageClaim.STAY_FLAT, creases),
-            (LinkageClaim.AT_REST, structure.mechanism.at_rest),
-        )
-        if labels
-    ]
-    if not claims:
+    if not creases:
         return seeds
-    return replace(
-        seeds, audit=BesideFlatCreases(tuple(claims), problem.n, seeds.audit)
-    )
+    return replace(seeds, audit=BesideFlatCreases(len(creases), problem.n, seeds.audit))
 
 
 def ring_seeds(

@@ -319,7 +319,9 @@ def exact_points(
     if not np.all(np.any(flat[sheet.ends[:, 0]] != flat[sheet.ends[:, 1]], axis=1)):
         return points
     lines, vertices, panels = _nearly(sheet, rounding)
-    for equations in ([*lines, *vertices, *panels], [*lines, *vertices]):
+    # lines may be nearly straight, and panels nearly close, by chance
+    tried = ([*lines, *vertices, *panels], [*vertices, *panels], [*lines, *vertices])
+    for equations in tried:
         system = _System(equations, sheet.ends)
         if not equations or system.hold(flat):
             return points

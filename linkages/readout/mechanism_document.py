@@ -12,7 +12,6 @@ from linkages.mechanisms.subject import joint_values
 from linkages.readout.facts import form_facts, loop_facts
 from linkages.readout.readout import Readout
 from linkages.structure.loose_chains import loose_chains
-from linkages.structure.structure import Structure
 from linkages.turns.translates import translates_of
 
 
@@ -52,7 +51,7 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
         "holds_flaps": structure.holds_flaps,
         "stay_flat": list(structure.stay_flat),
         "at_rest": list(mechanism.at_rest),
-        "ways_out": _ways_out(structure),
+        "ways_out": structure.ways_out,
         "loose_chains": [asdict(chain) for chain in loose_chains(structure)],
         "characteristic_length": structure.unit,
         "origin": list(mechanism.origin),
@@ -60,13 +59,6 @@ def describe_mechanism(atlas: Atlas, readout: Readout) -> dict[str, Any]:
         "vertices_moved": mechanism.moved,
         "translates": _translates(atlas),
     }
-
-
-def _ways_out(structure: Structure) -> int | None:
-    """How many ways lead out of the flat state of a sheet, to leading order; None where
-    that is not known."""
-    ways = structure.ways_by_modes if structure.flat_vertices else None
-    return None if ways is None else len(ways)
 
 
 def _translates(atlas: Atlas) -> dict[str, Any] | None:

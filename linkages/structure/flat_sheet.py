@@ -75,15 +75,37 @@ def creases_that_stay_flat(
     """The labels of the ``variables`` that stay 0 about the flat state of a sheet with
     these inner ``vertices``, as their limits let them fold one way."""
     flat: set[int] = set()
+    signs = {
+        number: sign_of(variables[number])
+        for vertex in vertices
+        for number in vertex.variables
+    }
     waiting = list(range(len(vertices)))
     while waiting:
         vertex = vertices[waiting.pop()].without(flat)
-        signs = np.array([sign_of(variables[number]) for number in vertex.variables])
-        can_fold = creases_that_fold(vertex.directions, signs)
-        shut = set(np.array(vertex.variables, dtype=int)[~can_fold].tolist())
-        flat |= shut
-        waiting += [k for k, other in enumerate(vertices) if shut & {*other.variables}]
+        own = np.array([signs[number] for number in vertex.variables])
+        can_fold = creases_that_fold(vertex.directions, own)
+        changed = set(np.array(vertex.variables, dtype=int)[~can_fold].tolist())
+        flat |= changed
+        if not changed and len(own) == 2:
+            changed = _signed_along(vertex, signs)
+        waiting += [
+            k for k, other in enumerate(vertices) if changed & {*other.variables}
+        ]
     return tuple(variables[number].label for number in sorted(flat))
+
+
+def _signed_along(vertex: FlatVertex, signs: dict[int, int]) -> set[int]:
+    """The creases, by number, that get a sign as they fold by the same angle as another
+    one in a line, which has one: about no more of them nothing else folds."""
+    first, second = vertex.variables
+    sense = -round(float(vertex.directions[0] @ vertex.directions[1]))
+    changed = set()
+    for one, other in ((first, second), (second, first)):
+        if signs[one] == FREE and signs[other] != FREE:
+            signs[one] = sense * signs[other]
+            changed.add(one)
+    return changed
 
 
 def sign_of(variable: Variable) -> int:

@@ -14,11 +14,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bifurc.limits import is_time_over
 from linkages.decisions import is_no_fold
 from linkages.structure.flat_sheet import FlatVertex, forms_of
 
 MOST_WAYS = 1000
-MOST_ANGLES = 20_000_000  # that are written down on the way to them
+MOST_ANGLES = 5_000_000  # that are written down on the way to them
 
 
 class _State(NamedTuple):
@@ -43,15 +44,16 @@ def ways_by_modes(
     ways: list[np.ndarray] = []
     written = 0
     for first in range(len(vertices)):
-        # the vertices before it rest
-        states = [_State({}, frozenset(range(first)), (first,))]
+        states = [_State({}, frozenset(), (first,))]
         while states:
             state = states.pop()
             written += 1 + len(state.angles)
             if len(ways) > MOST_WAYS or written > MOST_ANGLES:
                 return None
+            if is_time_over():
+                return None
             if state.waiting:
-                states += choice.continued(state)
+                states += choice.continued(state, first)
             else:
                 ways.append(choice.angles(state))
     return np.array(ways).reshape(-1, len(signs))
@@ -72,13 +74,14 @@ class _Choice:
             for number in vertex.variables:
                 self.ends.setdefault(number, []).append(k)
 
-    def continued(self, state: _State) -> Iterator[_State]:
-        """The states with a mode more, at the first of the vertices that wait."""
+    def continued(self, state: _State, first: int) -> Iterator[_State]:
+        """The states with a mode more, at the first of the vertices that wait; none
+        where that is one of those before the ``first``, which rest."""
         at, *waiting = state.waiting
+        if at < first:
+            return
         if at in state.decided:
-            # its creases agree, unless it is one that rests
-            if all(number in state.angles for number in self.vertices[at].variables):
-                yield state._replace(waiting=tuple(waiting))
+            yield state._replace(waiting=tuple(waiting))
             return
         numbers = self.vertices[at].variables
         known = np.array([state.angles.get(number, np.nan) for number in numbers])

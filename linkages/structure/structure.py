@@ -146,6 +146,7 @@ class Structure:
 
     def __init__(self, mechanism: Mechanism):
         _check_graph(mechanism)
+        self.has_locks = bool(mechanism.locks)
         self.hanging = Hanging(mechanism)
         # where there are no loops, what hangs is all that there is
         self.holds_flaps = not mechanism.with_flaps and mechanism.independent_loops > 0
@@ -185,6 +186,7 @@ class Structure:
         those that are `at_rest`."""
         self.stay_flat: tuple[str, ...] = ()
         self.flat_vertices: list[FlatVertex] = []
+        self.is_flat_all_over = False
         self.is_held_flat = False
         if not self.mechanism.creases or self.mechanism.with_flat_creases:
             return
@@ -195,6 +197,7 @@ class Structure:
             return  # it is not flat
         as_given = copy(self)
         vertices = as_given._flat_vertices()
+        self.is_flat_all_over = len(vertices) == len(as_given.closures)
         self.stay_flat = creases_that_stay_flat(variables, vertices)
         free = [one.label for one in variables if one.locked is None]
         self.is_held_flat = set(self.stay_flat) == set(free)
@@ -218,6 +221,16 @@ class Structure:
         """The fold angles (w, v) of all ways out of the flat state of a sheet, to leading
         order; None where its vertices do not have modes."""
         return ways_by_modes(self.flat_vertices, self.fold_signs)
+
+    @property
+    def ways_out(self) -> int | None:
+        """How many ways of one freedom lead out of the flat state of a sheet, to leading
+        order; None where that is not known, as where creases are locked or at rest, and
+        where there are holes."""
+        is_all_free = not (self.mechanism.at_rest or self.has_locks)
+        if not (self.is_flat_all_over and is_all_free and self.are_about_flat_vertices):
+            return None
+        return None if self.ways_by_modes is None else len(self.ways_by_modes)
 
     @property
     def are_about_flat_vertices(self) -> bool:

@@ -104,15 +104,23 @@ def _mobile(atlas: Atlas) -> str:
         components = count_of(atlas.components, "component")
         bifurcations = count_of(len(atlas.bifurcations), "bifurcation")
         sentence = (
-            f"The linkage moves with mobility 1: {forms} in {components}, "
-            f"{bifurcations}."
+            f"The linkage moves with mobility {_at_least(atlas, 1)}: {forms} in "
+            f"{components}, {bifurcations}."
         )
         return sentence + _within_tolerance(atlas)
     dimension = max(surface.dimension for surface in atlas.surfaces)
-    sentence = f"The linkage moves with mobility {dimension}{_components(atlas)}"
+    mobility = _at_least(atlas, dimension)
+    sentence = f"The linkage moves with mobility {mobility}{_components(atlas)}"
     if atlas.forms:
         sentence += f", and has {forms} of mobility 1"
     return f"{sentence}.{_within_tolerance(atlas)}{remark_on_charts(atlas)}"
+
+
+def _at_least(atlas: Atlas, mobility: int) -> str:
+    """The mobility, and that it may be larger where creases are at rest that may fold."""
+    readout = subject_at(atlas).readout
+    is_part = readout is not None and bool(readout.mechanism.at_rest)
+    return f"{mobility} at least" if is_part else str(mobility)
 
 
 def _components(atlas: Atlas) -> str:

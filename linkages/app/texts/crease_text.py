@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from bifurc.tables import count_of
 from linkages.mechanisms.mechanism import Mechanism
 
@@ -46,14 +44,13 @@ def describe_creases(structure: Structure) -> str:
 def _ways_out(structure: Structure) -> list[str]:
     """How many ways lead out of the flat state of several vertices, where that is
     known."""
-    ways = structure.ways_by_modes if len(structure.flat_vertices) > 1 else None
-    if ways is None or not len(ways):
+    ways = structure.ways_out if len(structure.flat_vertices) > 1 else None
+    if not ways:
         return []
-    count, verb = count_of(len(ways), "way"), "leads" if len(ways) == 1 else "lead"
-    most = int(np.count_nonzero(ways, axis=1).max())
+    verb = "leads" if ways == 1 else "lead"
     return [
-        f"To leading order {count} of one freedom {verb} out of the flat state, of at "
-        f"most {count_of(most, 'crease')}."
+        f"To leading order {count_of(ways, 'way')} of one freedom {verb} out of the flat "
+        "state."
     ]
 
 

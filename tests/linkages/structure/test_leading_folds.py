@@ -1,19 +1,22 @@
 """Ways out of the flat state of a sheet, and that there are none, beside the bird's foot,
 least squares and maps."""
 
+from itertools import permutations
+
 import numpy as np
 import pytest
 from scipy.optimize import least_squares
 from scipy.spatial import Delaunay
 
 import linkages
+from linkages.app.answer.verdict import judge
 from linkages.closure.closure import Closure
-from linkages.readout.readout import Readout
 from linkages.structure.flat_boxes import first_fold
 from linkages.structure.flat_sheet import FlatVertex
 from linkages.structure.fold_modes import ways_by_modes
 from linkages.structure.leading_folds import LeadingFolds
 from linkages.structure.structure import Structure
+from linkages.subject import as_subject
 from studies.miura import miura
 from tests.linkages.files.test_fold import has_birds_foot, read
 from tests.linkages.structure.test_flat_sheet import random_vertex, sheet_of
@@ -105,22 +108,59 @@ def test_a_flat_state_is_left_or_isolated(seed, tmp_path):
         assert min(missed) > 1e-6
 
 
-def test_what_folds_in_a_way_out_is_mapped_where_nothing_else_is_found(tmp_path):
-    sheet = random_sheet(np.random.default_rng(44), tmp_path)
-    atlas = linkages.map_linkage(sheet)
-    mapped = linkages.mechanism_of(atlas)
-    assert len(atlas.forms) == 1 and mapped.at_rest
-    assert Structure(mapped).held > set(mapped.at_rest)  # and flaps
-    assert any("held flat besides" in one.text for one in atlas.completeness.claims)
-    readout = Readout(mapped)
-    points = atlas.forms[0].branch.sample(9)
+def test_what_folds_in_a_way_out_is_mapped_with_the_others_at_rest(tmp_path):
+    sheet = random_sheet(np.random.default_rng(25), tmp_path)
+    simpler = as_subject(sheet).simpler()
+    at_rest = simpler.mechanism.at_rest
+    assert at_rest and simpler.readout.structure.held >= set(at_rest)
+    assert simpler.readout.structure.ways_out is None
+    atlas = linkages.map_linkage(simpler.mechanism)
+    assert linkages.mechanism_of(atlas).at_rest == at_rest
+    assert any("held flat" in one.text for one in atlas.completeness.doubts)
+    assert " at least" in judge(atlas).sentence
+    (surface,) = atlas.surfaces
+    readout = simpler.readout
     names = readout.labels()
-    still = readout.values(points)[:, [names.index(one) for one in mapped.at_rest]]
-    assert not still.any()
+    values = readout.values(surface.points)
+    assert not values[:, [names.index(one) for one in at_rest]].any()
     whole = Closure(sheet)
     columns = [names.index(one.label) for one in whole.structure.unknowns]
-    solutions = readout.values(points)[:, columns]
-    assert np.abs(whole.residuals(solutions)).max() < 1e-9
+    assert np.abs(whole.residuals(values[:, columns])).max() < 1e-9
+
+
+def test_a_line_that_cannot_fold_as_a_whole_is_held(tmp_path):
+    """Its signs do not agree across the crease between that folds either way."""
+    corners = [(i, j) for j in range(4) for i in range(4)]
+    across = [(4 * j + i, 4 * j + i + 1) for j in range(4) for i in range(3)]
+    upright = [(4 * j + i, 4 * j + i + 4) for j in range(3) for i in range(4)]
+    letters = dict.fromkeys([*across, *upright], "B")
+    letters.update(zip([(4, 5), (5, 6), (6, 7)], "MUV", strict=True))
+    letters.update(zip([(8, 9), (9, 10), (10, 11)], "MUM", strict=True))
+    inner = [pair for pair in upright if pair[0] % 4 in (1, 2)]
+    letters.update(zip(inner, "MMVVMM", strict=True))
+    sheet = sheet_of(tmp_path, corners, list(letters), list(letters.values()))
+    structure = Structure(sheet)
+    assert {"4-5", "5-6", "6-7"} < set(structure.stay_flat)
+    assert structure.ways_out == 1
+
+
+@pytest.mark.parametrize("order", one_in(3, list(permutations(range(4)))))
+def test_ways_are_the_same_in_whatever_order_vertices_come(order):
+    """A triangle of vertices of four creases, one of which ends at a vertex that lets
+    nothing fold but a line."""
+    turns = np.radians([[0, 60, 150, 240], [180, 250, 310, 120], [300, 240, 20, 130]])
+    rows = [(0, 1, 3, 4), (0, 5, 6, 2), (1, 2, 7, 8)]
+    vertices = [
+        FlatVertex(numbers, np.transpose([np.cos(row), np.sin(row)]))
+        for numbers, row in zip(rows, turns, strict=True)
+    ]
+    vertices.append(FlatVertex((3, 9), np.array([[1.0, 0.0], [0.0, 1.0]])))
+    signs = np.zeros(10, dtype=int)
+    counts = len(ways_by_modes([vertices[k] for k in order], signs))
+    assert counts == len(ways_by_modes(vertices, signs))
+    found = ways_by_modes([vertices[k] for k in order], signs)
+    folds = LeadingFolds(vertices, signs)
+    assert all(np.abs(folds.residuals(one)[:-1]).max() < 1e-9 for one in found)
 
 
 def test_a_sheet_whose_vertices_fold_one_by_one_and_not_together_is_rigid(tmp_path):
@@ -155,6 +195,16 @@ def test_every_way_out_of_miura_ori_closes(tmp_path):
     assert len(ways) == 2**3 + 3 - 1
     points = np.array([way.point for way in ways])
     assert np.abs(problem.residuals(points)).max() < 1e-14
+
+
+def test_a_large_flat_sheet_is_followed_along_its_way_out(tmp_path):
+    sheet = read(tmp_path, miura(9, 9))
+    (form,) = linkages.map_linkage(sheet).forms
+    folded = Closure(read(tmp_path, miura(9, 9, 0.7)))
+    ends = form.branch(np.array([0.0, form.branch.length]))
+    assert np.abs(ends).min(axis=0).max() < 1e-6  # flat at one end
+    assert np.abs(ends).max(axis=0).min() > np.pi - 1e-6  # and folded flat
+    assert folded.n == len(ends[0]) == 144
 
 
 def test_vertices_of_more_creases_have_no_modes():
