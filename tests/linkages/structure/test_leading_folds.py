@@ -121,7 +121,7 @@ def test_what_folds_in_a_way_out_is_mapped_with_the_others_at_rest(tmp_path):
     (surface,) = atlas.surfaces
     readout = simpler.readout
     names = readout.labels()
-    values = readout.values(surface.points)
+    values = readout.values(surface.samples)
     assert not values[:, [names.index(one) for one in at_rest]].any()
     whole = Closure(sheet)
     columns = [names.index(one.label) for one in whole.structure.unknowns]
