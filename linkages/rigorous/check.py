@@ -950,6 +950,8 @@ class Check:
             f"{len(boxes)} boxes in {len(self.tubes)} tubes; every closed configuration "
             f"within {reach:.1e} across lies within {float(radius):.1e} of the curve; "
             f"contraction {contraction:.2f} at most"
+            if boxes
+            else "there are no boxes"
         )
         statement.seconds = time.process_time() - began
         return statement
