@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import gzip
 import json
+import math
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -30,7 +31,21 @@ from flint import arb, arb_mat, arb_poly, arb_series, ctx
 FORMAT = "bifurc certificate 1"
 EQUATIONS = 6
 HIGHEST = 64  # order of a series
-MALFORMED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
+MALFORMED = (
+    ArithmeticError,
+    AttributeError,
+    LookupError,
+    RecursionError,
+    TypeError,
+    ValueError,
+)
+PRECISIONS = (64, 1024)  # bits
+WIDEST_GEOMETRY = 1e-30  # ball of a number of the table, relative; of zero, absolute
+WIDEST_TUBE = 1e-8  # rad: beyond, what is proved says little of a motion
+LARGEST_MISS = 1e-8  # of equations that are not solved: beyond, a rigid loop would pass
+WIDEST_POINT = (
+    1e-25  # rad: a near miss that is smaller is not told from a singular point
+)
 UNPROVED = "that these are all motions"
 DEEPEST = 14  # bisections of a direction, after which it counts as not excluded
 Vector: TypeAlias = list[Any]  # of balls
@@ -41,7 +56,7 @@ class DoesNotHold(Exception):
     """A condition of a theorem that is not met, with its place."""
 
 
-def require(condition: bool, what: str) -> None:
+def require(condition: object, what: str) -> None:
     """Raise `DoesNotHold` unless a condition is certain."""
     if not condition:
         raise DoesNotHold(what)
@@ -51,9 +66,13 @@ def require(condition: bool, what: str) -> None:
 
 
 def number(text: str) -> arb:
-    """The number that a text is, exactly or in a ball: a hexadecimal float, a decimal, or
-    "[middle +/- radius]"."""
-    value = arb(float.fromhex(text)) if "0x" in text else arb(text)
+    """The number that a text is, exactly or in a ball: a hexadecimal float as `float.hex`
+    writes it (others might be rounded), a decimal, or "[middle +/- radius]"."""
+    if "0x" in text.lower():
+        exact = float.fromhex(text)
+        require(exact.hex() == text, f"{text} is not the hexadecimal text of a double")
+        return arb(exact)
+    value = arb(text)
     require(value.is_finite(), f"{text} is not a finite number")
     return value
 
@@ -131,12 +150,25 @@ class Loop:
     """
 
     def __init__(self, geometry: Json):
-        self.scale = number(geometry["scale"])
-        require(self.scale > 0, "the scale is not positive")
         columns = [geometry[key] for key in ("lengths", "twists", "offsets")]
-        table = zip(*map(numbers, columns), strict=True)
+        table = [list(row) for row in zip(*map(numbers, columns), strict=True)]
+        self.scale = number(geometry["scale"])
+        self._require_sizes(table)
         self.links = [self._link(*row) for row in table]
         self.n = len(self.links)
+
+    def _require_sizes(self, table: Sequence[Vector]) -> None:
+        """The numbers are narrow balls, and the scale does not make translations small:
+        where a loop has any, it is at most twice the largest link."""
+        for value in (number for row in table for number in row):
+            size = value.mid().abs_upper() if value.mid() != 0 else arb(1)
+            is_narrow = value.rad() <= WIDEST_GEOMETRY * size
+            require(is_narrow, f"the ball {value} of the table is too wide")
+        require(self.scale > 0, "the scale is not positive")
+        links = [abs(length) + abs(offset) for length, _, offset in table]
+        extent = largest([link.abs_upper() for link in links])
+        is_fair = extent == 0 or self.scale <= 2 * extent
+        require(is_fair, "the scale is larger than the loop")
 
     @staticmethod
     def _link(length: arb, twist: arb, offset: arb) -> arb_mat:
@@ -337,7 +369,7 @@ class Box:
         return sum((t * x for t, x in zip(self.normal, step, strict=True)), arb(0))
 
     def holds_inside(self, u: Vector) -> bool:
-        """Whether all points of a ball u (n,) lie in the interior of Q (lemma 1)."""
+        """Whether all points of a ball u (n,) lie in the interior of Q (the lemma)."""
         speed = self.along(self.velocity)
         ends = [self.along(_minus(u, self.point(x))) for x in (-self.half, self.half)]
         if not (ends[0] > 0 and ends[1] < 0):
@@ -374,6 +406,12 @@ def _minus(u: Vector, v: Vector) -> Vector:
 
 def _plus(u: Vector, v: Vector) -> Vector:
     return [x + y for x, y in zip(u, v, strict=True)]
+
+
+def _near(u: Vector, place: Vector) -> Vector:
+    """The point that is whole turns from u and nearest to a place."""
+    away = [float(x) / (2 * math.pi) for x in _minus(u, place)]
+    return _minus(u, whole_turns([round(turns) for turns in away]))
 
 
 def thickened(u: Vector, radius: arb) -> Vector:
@@ -432,6 +470,9 @@ def _prove_unique(
     misfit = (of_rows * rows_of(values, rows)).entries()
     box.radius = (box.frame.size(misfit) / (1 - box.contraction)).abs_upper()
     require(box.distance < box.reach, "the tube is narrower than the curve is exact")
+    require(
+        box.distance <= WIDEST_TUBE, "the curve is farther off than a motion may be"
+    )
 
 
 def _bound_misses(
@@ -444,6 +485,7 @@ def _bound_misses(
         slopes = rows_of(over.jacobian, others)
         moved = slopes * column(box.frame.balls(box.radius))
         box.misses = (norm(rows_of(values, others)) + norm(moved)).abs_upper()
+        require(box.misses <= LARGEST_MISS, "the other equations miss by too much")
 
 
 def _normal(curve: Sequence[arb_poly]) -> Vector:
@@ -479,7 +521,7 @@ class Tube:
 
 
 def make_tube(boxes: list[Box], winding: Sequence[int] | None) -> Tube:
-    """The tube of boxes that overlap (lemma 2), closed after so many turns of each joint
+    """The tube of boxes that overlap (the lemma), closed after so many turns of each joint
     where a ``winding`` is given; raises `DoesNotHold`."""
     for number, (box, following) in enumerate(pairwise(boxes)):
         overlap = do_overlap(box, following, [arb(0)] * len(box.normal))
@@ -492,7 +534,8 @@ def make_tube(boxes: list[Box], winding: Sequence[int] | None) -> Tube:
 
 def whole_turns(turns: Sequence[int]) -> Vector:
     """Whole turns in rad."""
-    return [2 * arb.pi() * int(turn) for turn in turns]
+    require(all(type(turn) is int for turn in turns), f"{turns} are no whole turns")
+    return [2 * arb.pi() * turn for turn in turns]
 
 
 def do_overlap(box: Box, following: Box, shift: Vector) -> bool:
@@ -568,6 +611,7 @@ def enclose(loop: Loop, point: Point, alone: arb) -> Enclosure:
     require(radius < alone, "Krawczyk's operator leaves its box")
 
     near = augmented(loop, point, radius)
+    require(near.is_no_half_turn, "the loop may be off by half a turn")
     require(near.may_vanish, "an equation does not vanish there: it is a near miss")
     require(near.range_defect < 1, "the rank is not known from below")
     return Enclosure(radius, alone, near.misses)
@@ -583,6 +627,7 @@ class Augmented:
     matrix: arb_mat
     range_defect: arb
     others: list[arb_mat]
+    is_no_half_turn: bool
 
     @property
     def misses(self) -> arb:
@@ -621,7 +666,10 @@ def augmented(loop: Loop, point: Point, radius: arb) -> Augmented:
             matrix.append([arb(0)] * loop.n + _placed(line, place, no_vectors))
     regular = selection * over.jacobian * arb_mat(point.range).transpose()
     defect = identity(len(rows)) - approximate_inverse(regular) * regular
-    return Augmented(column(values), arb_mat(matrix), norm(defect), others)
+    is_no_half_turn = over.is_no_half_turn
+    return Augmented(
+        column(values), arb_mat(matrix), norm(defect), others, is_no_half_turn
+    )
 
 
 def _placed(part: Vector, place: slice, zeros: Vector) -> Vector:
@@ -656,6 +704,7 @@ class Sphere:
         coordinates = [ball(length * radius) for length in lengths]
         shift = (self.basis * column(coordinates)).entries()
         over = loop.at([c + d for c, d in zip(point.centre, shift, strict=True)])
+        require(over.is_no_half_turn, "the loop may be off by half a turn")
         centre = loop.at(point.centre)
         self.value = centre.value
         self.slope = centre.jacobian * self.basis
@@ -666,7 +715,7 @@ class Sphere:
         self._eliminate()
 
     def _bound_range(self, y: Vector) -> None:
-        """Lemma 3: how large y is where the rows vanish, from y = (I - C F' W) y - C (F +
+        """For theorem 4: how large y is where the rows vanish, from y = (I - C F' W) y - C (F +
         F' V x + 1/2 F''(z, z))."""
         rows, k = self.point.rows, self.point.nullity
         slope = rows_of(self.slope, rows).tolist()
@@ -740,12 +789,11 @@ class Sphere:
     def holds(self, sector: Sector, direction: Vector) -> bool:
         """Whether the x of a cone of directions on the sphere lie in a sector."""
         size = self._sizes(direction)
-        pairs = zip(sector.x, direction, strict=True)
-        return all(x.contains(size * part) for x, part in pairs)
+        return _hold(sector.x, [size * part for part in direction])
 
     def solution_in(self, sector: Sector) -> Vector:
-        """Theorem 4: what holds the only closed configuration of a sector on the sphere;
-        raises `DoesNotHold` where there may be two."""
+        """Theorem 4: what holds the only solution of the rows in a sector on the sphere,
+        which exists; raises `DoesNotHold` where there may be two, or none."""
         z = [*sector.x, *self.y]
         middle = self.derivative([x.mid() for x in z], sector.rows)
         inverse = approximate_inverse(middle)
@@ -754,12 +802,13 @@ class Sphere:
         require(contraction < 1, "a sector may hold two half-branches")
         step = _minus(sector.place, self.point.centre)
         place = self.coordinates_of(sector.place)
-        is_inside = all(x.contains(y) for x, y in zip(z, place, strict=True))
-        require(is_inside, "an arc is not in its sector")
-        values = rows_of(self.loop.at(sector.place).value, sector.rows).entries()
-        values.append((_dot(step, step) - self.radius**2) / (2 * self.radius))
-        misfit = (inverse * column(values)).entries()
+        values = rows_of(self.loop.at(sector.place).value, sector.rows)
+        height = (_dot(step, step) - self.radius**2) / (2 * self.radius)
+        misfit = (inverse * stacked(values, [height])).entries()
         distance = frame.balls(frame.size(misfit) / (1 - contraction))
+        # what is mapped into itself
+        is_inside = _hold(z, _plus(place, distance))
+        require(is_inside, "an arc is not in its sector")
         return _plus(sector.place, (self.basis * column(distance)).entries())
 
     def coordinates_of(self, u: Vector) -> Vector:
@@ -809,6 +858,11 @@ def _dot(u: Vector, v: Vector) -> arb:
     return sum((x * y for x, y in zip(u, v, strict=True)), arb(0))
 
 
+def _hold(u: Vector, v: Vector) -> bool:
+    """Whether the balls of u hold those of v."""
+    return all(x.contains(y) for x, y in zip(u, v, strict=True))
+
+
 def _length(u: Vector) -> arb:
     return sum((x * x for x in u), arb(0)).nonnegative_part().sqrt()
 
@@ -845,7 +899,9 @@ class Check:
 
     def __init__(self, certificate: Json):
         require(certificate["format"] == FORMAT, f"the format is not {FORMAT!r}")
-        ctx.prec = int(certificate["precision"])
+        least, most = PRECISIONS
+        require(least <= certificate["precision"] <= most, "the precision is unusual")
+        ctx.prec = certificate["precision"]
         self.certificate = certificate
         self.loop = Loop(certificate["geometry"])
         self.curves = [
@@ -853,10 +909,12 @@ class Check:
             for curve in certificate["curves"]
         ]
         self.tubes: list[Tube | None] = []
+        self.enclosed: list[tuple[Vector, arb]] = []  # singular points
         self.exits: list[tuple[Json, Vector]] = []  # half-branches, and where they are
 
     def statements(self) -> Iterator[Statement]:
         """What holds, as soon as it is known; the last one rests on the others."""
+        self._require_used_pieces()
         statements = []
         for statement in (
             self._no_jump,
@@ -866,17 +924,20 @@ class Check:
         ):
             statements.append(statement())
             yield statements[-1]
-        if not self._open_ends:
+        if self.tubes and not self._open_ends:
             yield self._joined(statements)
 
     def _no_jump(self) -> Statement:
-        """Theorem 1, with lemma 2."""
+        """Theorem 1, with the lemma on tubes."""
         statement = Statement("no jump")
         began = time.process_time()
         for number, tube in enumerate(self.certificate["tubes"]):
             try:
+                self._require_ends(tube)
                 boxes = [self._box(tube["curve"], *values) for values in tube["boxes"]]
-                self.tubes.append(make_tube(boxes, tube.get("winding")))
+                made = make_tube(boxes, tube.get("winding"))
+                self._require_new(made)
+                self.tubes.append(made)
             except DoesNotHold as reason:
                 statement.failures.append(f"{self._tube_name(number)}: {reason}")
                 self.tubes.append(None)
@@ -889,9 +950,51 @@ class Check:
             f"{len(boxes)} boxes in {len(self.tubes)} tubes; every closed configuration "
             f"within {reach:.1e} across lies within {float(radius):.1e} of the curve; "
             f"contraction {contraction:.2f} at most"
+            if boxes
+            else "there are no boxes"
         )
         statement.seconds = time.process_time() - began
         return statement
+
+    def _require_used_pieces(self) -> None:
+        """Every piece of a curve is that of a box or of a half-branch: of another one
+        nothing would be proved."""
+        used = {
+            (tube["curve"], box[0])
+            for tube in self.certificate["tubes"]
+            for box in tube["boxes"]
+        }
+        for point in self.certificate["points"]:
+            used |= {(one["curve"], one["piece"]) for one in point["half_branches"]}
+        written = {
+            (k, number)
+            for k, curve in enumerate(self.curves)
+            for number, piece in enumerate(curve)
+            if piece
+        }
+        require(used == written, "the pieces of the curves are not those that are used")
+
+    def _require_ends(self, tube: Json) -> None:
+        """A tube has boxes, and either closes or has two ends."""
+        require(len(tube["boxes"]) > 0, "it has no boxes")
+        require(("winding" in tube) != ("ends" in tube), "it has no ends, or too many")
+        if "winding" in tube:
+            is_whole = isinstance(tube["winding"], list)
+            require(is_whole, "how it closes is not said")
+            return
+        require(len(tube["ends"]) == 2, "it has not two ends")
+        points = range(len(self.certificate["points"]))
+        for end in tube["ends"]:
+            is_known = end is None or end["point"] in points
+            require(is_known, "an end is at no point")
+
+    def _require_new(self, tube: Tube) -> None:
+        """The middle of a tube lies in no other one: the same motion is not listed
+        twice."""
+        middle = tube.boxes[len(tube.boxes) // 2].end(0)
+        for box in self._boxes:
+            is_new = not box.holds_inside(_near(middle, box.point(arb(0))))
+            require(is_new, "it runs where another one does")
 
     def _box(self, curve: int, piece: int, *values: Any) -> Box:
         low, high, reach, rows, order = values
@@ -922,9 +1025,10 @@ class Check:
         words = (
             f"on every section {self.loop.n - 1} of the 6 equations are solved exactly"
         )
-        is_whole = misses == 0
         others = f", the others miss by {float(misses):.1e} at most"
-        statement.numbers = words + (": the loop closes" if is_whole else others)
+        statement.numbers = words + (": the loop closes" if misses == 0 else others)
+        if not self._boxes:
+            statement.numbers = "there are no boxes"
         for number, tube in enumerate(self.tubes):
             if tube is None:
                 statement.failures.append(f"{self._tube_name(number)} does not hold")
@@ -954,13 +1058,27 @@ class Check:
         """Theorem 3."""
         point = point_of(values)
         enclosure = enclose(self.loop, point, number(values["alone"]))
-        is_as_claimed = enclosure.radius <= number(values["within"])
-        require(is_as_claimed, "the enclosure is wider than is claimed")
+        within = number(values["within"])
+        require(enclosure.radius <= within, "the enclosure is wider than is claimed")
+        require(
+            within <= WIDEST_POINT, "the enclosure is too wide: it may be a near miss"
+        )
+        is_inside = arb(self.loop.n).sqrt() * within < number(values["sphere"])
+        require(is_inside, "the point may lie outside of its sphere")
+        self._require_new_point(point.centre, within)
         rank = self.loop.n - point.nullity
         return (
             f"rank {rank} within {float(enclosure.radius):.1e}, alone within "
             f"{float(enclosure.alone):.1e}, misses {float(enclosure.misses):.1e}"
         )
+
+    def _require_new_point(self, centre: Vector, within: arb) -> None:
+        """No other enclosure overlaps this one: the same point is not listed twice."""
+        for other, radius in self.enclosed:
+            away = _minus(_near(centre, other), other)
+            is_new = any(x.abs_lower() > within + radius for x in away)
+            require(is_new, "it is listed twice")
+        self.enclosed.append((centre, within))
 
     def _check_sphere(self, values: Json) -> str:
         """Theorem 4."""
@@ -1036,8 +1154,11 @@ class Check:
         return [*self.certificate["open"], *beyond, UNPROVED]
 
 
-def _kind(half_branches: int) -> str:
-    """What a singular point on smooth curves is."""
+def _kind(half_branches: int) -> str | None:
+    """What a singular point on smooth curves is; where none or one leaves it, nothing
+    that is known here."""
+    if half_branches < 2:
+        return None
     return "bifurcation" if half_branches > 2 else "rank drop"
 
 
@@ -1055,7 +1176,10 @@ def read_certificate(path: str) -> Json:
     """The content of a file."""
     opened = gzip.open if path.endswith(".gz") else open
     with opened(path, "rt", encoding="utf-8") as file:
-        return json.load(file)
+        try:
+            return json.load(file)
+        except RecursionError:
+            raise ValueError("it is nested too deeply") from None
 
 
 def check_certificate(certificate: Json, say: Callable[[str], object]) -> bool:
@@ -1068,6 +1192,7 @@ def check_certificate(certificate: Json, say: Callable[[str], object]) -> bool:
             holds = holds and statement.holds
         for words in check.unclaimed:
             say(f"not claimed: {words}")
+        require(check.tubes or check.certificate["points"], "nothing is proved")
     except DoesNotHold as reason:
         say(f"does not hold: {reason}")
         return False

@@ -61,7 +61,8 @@ class Course:
 
 
 def course_of(atlas: Atlas, number: int) -> Course:
-    """A form of an atlas, by its index, as a course."""
+    """A form of an atlas, by its index, as a course; one that ends somewhere has no
+    passes, and cannot be covered through the points on it."""
     form = atlas.forms[number]
     places = []
     for k, meeting in enumerate(atlas.points):
@@ -69,7 +70,7 @@ def course_of(atlas: Atlas, number: int) -> Course:
     places.sort()
     branch = form.branch
     passes = []
-    if places:
+    if places and branch.closed:
         first, point = places[0]
         branch = branch.begun_at(first)
         for s, k in places:

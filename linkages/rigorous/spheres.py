@@ -17,6 +17,7 @@ from linkages.rigorous.courses import Course, Pass
 from linkages.rigorous.refinement import refined_piece
 from linkages.rigorous.selection import best_rows, floats_of
 
+NEAR = 1e-8  # a refined point to that of the map, in rad: farther off it is another one
 DIGITS = 36  # of the centre
 ALONE = 2.0 ** -np.arange(3, 30)  # about a point, the largest first
 RADII = 2.0 ** -np.arange(3, 26)  # of spheres, the largest first
@@ -34,7 +35,12 @@ TRIES = 30  # combinations of equations, of which the most regular is taken
 def enclosed_point(loop: check.Loop, meeting: MeetingPoint) -> check.Json:
     """A singular point as it stands in a certificate; raises `DoesNotHold` where it is
     not enclosed."""
-    point = _refined(loop, _start(loop, meeting))
+    start = _start(loop, meeting)
+    point = _refined(loop, start)
+    away = max(
+        abs(float(x - y)) for x, y in zip(point.centre, start.centre, strict=True)
+    )
+    check.require(away <= NEAR, f"the point that is enclosed is {away:.1e} beside it")
     values = {
         "name": meeting.name,
         "kind": meeting.kind.value,

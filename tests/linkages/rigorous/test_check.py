@@ -7,15 +7,24 @@ import random
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import mpmath
 import numpy as np
 import pytest
 from flint import arb, arb_poly, ctx
 
+from bifurc.singular.point import Kind
 from linkages.kinematics import Direction, link_transform
+from linkages.loop import Loop
 from linkages.rigorous import check
-from tests.linkages.rigorous.certificates import failures, named_certificate
+from linkages.rigorous.selection import floats_of
+from linkages.rigorous.spheres import counted_half_branches, enclosed_point
+from tests.linkages.rigorous.certificates import (
+    certificate_of_loop,
+    failures,
+    named_certificate,
+)
 from tests.samples import one_in
 
 DIGITS = 60
@@ -238,6 +247,72 @@ def wrong_turns(certificate, rng):
     place["turns"][rng.randrange(len(place["turns"]))] += 1
 
 
+def leave_a_tube_open(certificate, rng):
+    """A tube that has no ends."""
+    tube = rng.choice(certificate["tubes"])
+    del tube["ends"]
+    tube["winding"] = None
+
+
+def empty_a_tube(certificate, rng):
+    """A tube without boxes."""
+    rng.choice(certificate["tubes"])["boxes"] = []
+
+
+def widen_point(certificate, rng):
+    """A singular point that may be a near miss."""
+    rng.choice(certificate["points"])["within"] = "1e-24"
+
+
+def leave_sphere(certificate, rng):
+    """A sphere that may not hold its point."""
+    rng.choice(certificate["points"])["sphere"] = "1e-36"
+
+
+def narrow_sector(certificate, rng):
+    """A sector that does not hold all that a half-branch may be."""
+    half_branch = rng.choice(rng.choice(certificate["points"])["half_branches"])
+    middles = [check.number(text).mid() for text in half_branch["sector"]]
+    half_branch["sector"] = [f"[{x.str(36, radius=False)} +/- 1e-30]" for x in middles]
+
+
+def scale_up(certificate, rng):
+    """A scale beside which no translation counts."""
+    certificate["geometry"]["scale"] = rng.choice(["2.1e3", "1e30"])
+
+
+def widen_table(certificate, rng):
+    """A length that is known to a few digits only."""
+    certificate["geometry"]["lengths"][rng.randrange(4)] = "[1 +/- 1e-29]"
+
+
+def round_table(certificate, rng):
+    """A length that would be rounded."""
+    certificate["geometry"]["lengths"][rng.randrange(4)] = "0x1.00000000000004p+0"
+
+
+def hide_a_piece(certificate, rng):
+    """A piece that no box is on."""
+    pieces = rng.choice(certificate["curves"])["pieces"]
+    pieces.append([["0x1.0000000000000p+0"]] * 4)
+
+
+def repeat_point(certificate, rng):
+    """A singular point listed twice, under two names."""
+    point = copy.deepcopy(rng.choice(certificate["points"]))
+    certificate["points"].append({**point, "name": "another"})
+
+
+def repeat_tube(certificate, rng):
+    """An arc listed twice, the second time on a curve of its own."""
+    tube = copy.deepcopy(rng.choice(certificate["tubes"]))
+    curve = certificate["curves"][tube["curve"]]
+    used = {box[0] for box in tube["boxes"]}
+    pieces = [piece if k in used else [] for k, piece in enumerate(curve["pieces"])]
+    certificate["tubes"].append({**tube, "curve": len(certificate["curves"])})
+    certificate["curves"].append({"name": "another", "pieces": pieces})
+
+
 WRONG = [
     bend,
     shorten,
@@ -251,6 +326,17 @@ WRONG = [
     swap_arcs,
     rename_kind,
     wrong_turns,
+    leave_a_tube_open,
+    empty_a_tube,
+    widen_point,
+    leave_sphere,
+    narrow_sector,
+    scale_up,
+    widen_table,
+    round_table,
+    hide_a_piece,
+    repeat_point,
+    repeat_tube,
 ]
 
 
@@ -287,3 +373,57 @@ def test_a_certificate_that_is_not_whole_does_not_hold():
         certificate = copy.deepcopy(whole)
         del certificate[key]
         assert failures(certificate)
+
+
+def test_a_certificate_that_states_nothing_does_not_hold():
+    certificate = json.loads(named_certificate("kite"))
+    certificate |= {"tubes": [], "points": [], "curves": []}
+    assert failures(certificate) == ["does not hold: nothing is proved"]
+
+
+FLAT = {"lengths": ["1", "1", "1", "3"], "twists": ["0"] * 4, "offsets": ["0"] * 4}
+
+
+def flat_point(first):
+    """Where this loop is stretched, and its certificate; turned by pi in the first joint it
+    is off by half a turn."""
+    geometry = {**FLAT, "scale": "1"}
+    loop = check.Loop(geometry)
+    u = np.array([first, 0.0, 0.0, np.pi])
+    jacobian = floats_of(loop.at(check.arb_vector(u)).jacobian)
+    null = np.linalg.svd(jacobian)[2][2:].T
+    point = SimpleNamespace(u=u, null_space=null)
+    meeting = SimpleNamespace(name="P", kind=Kind.RANK_DROP, point=point)
+    return loop, meeting
+
+
+def test_a_half_turn_is_no_singular_point():
+    with pytest.raises(check.DoesNotHold, match="half a turn"):
+        enclosed_point(*flat_point(0.0))
+
+
+def test_a_point_that_no_curve_leaves_is_no_rank_drop():
+    loop, meeting = flat_point(np.pi)
+    point = enclosed_point(loop, meeting)
+    point |= counted_half_branches(loop, point, [])
+    certificate = json.loads(named_certificate("kite"))
+    certificate |= {"geometry": {**FLAT, "scale": "1"}, "points": [point]}
+    certificate |= {"curves": [], "tubes": []}
+    (failure,) = failures(certificate)
+    assert "0 half-branches make no rank drop" in failure
+
+
+def test_a_loop_that_is_nearly_rigid_beside_its_scale_does_not_move():
+    twists = [0.9, 1.3, 1.1, 1.4]
+    certificate = certificate_of_loop(Loop([0.0] * 4, twists, [0.0] * 4))
+    assert failures(certificate) == []
+    certificate["geometry"]["lengths"] = ["1", "2", "0.7", "1.3"]
+    certificate["claims"]["misses"] = "1e9"
+    assert any("miss by too much" in line for line in failures(certificate))
+
+
+def test_json_that_is_nested_too_deeply_is_no_certificate(tmp_path):
+    file = tmp_path / "deep.json"
+    file.write_text("[" * 100000)
+    with pytest.raises(ValueError, match="nested"):
+        check.read_certificate(str(file))
