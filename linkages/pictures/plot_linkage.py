@@ -25,6 +25,7 @@ from linkages.subject import subject_at
 from linkages.viewing.start import Place, first_place, start_of
 
 SIZE = (4.2, 3.6)  # inches
+MOST_NAMED = 60  # joints; more names would cover what is drawn
 ROOM = 0.08  # around the picture, in its extent, for names of joints
 SAMPLES = 60  # configurations of a form for which rails are long enough
 FINE_SAMPLES = 720  # at which paths of points are drawn
@@ -129,8 +130,8 @@ def draw_picture(ax: Axes, picture: Picture, corners: np.ndarray) -> None:
             _draw_polygon(ax, stroke, zorder)
         else:
             _draw_line(ax, stroke, zorder)
-    names = [one.text for one in picture.names]
-    label_spots(ax, names, [one.place for one in picture.names])
+    named = picture.names if len(picture.names) <= MOST_NAMED else ()
+    label_spots(ax, [one.text for one in named], [one.place for one in named])
 
 
 def _draw_polygon(ax: Axes, stroke: Stroke, zorder: float) -> None:

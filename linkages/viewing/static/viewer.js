@@ -161,7 +161,7 @@ var Mc=`.bifurc-viewer {
 .bv-route select { max-width: 300px; }
 .bv-route-text { color: var(--bv-muted); }
 
-.bv-numbers { display: grid; grid-template-columns: auto 1fr; gap: 3px 12px; align-items: center; font-size: 12px; }
+.bv-numbers { max-height: 190px; overflow-y: auto; display: grid; grid-template-columns: auto 1fr; gap: 3px 12px; align-items: center; font-size: 12px; }
 .bv-cells { display: grid; grid-template-columns: repeat(auto-fit, minmax(84px, 1fr)); gap: 3px 8px; }
 .bv-cell { display: grid; grid-template-columns: auto 1fr; column-gap: 5px; white-space: nowrap; }
 .bv-cell span { color: var(--bv-muted); overflow: hidden; text-overflow: ellipsis; }
