@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias
@@ -15,6 +16,7 @@ from bifurc.curves.certificate import Certificate
 from bifurc.curves.monitor import Profile
 from bifurc.diagrams.diagram import Diagram
 from bifurc.errors import ProblemError, RouteError
+from bifurc.limits import Deadline
 from bifurc.settings import SearchSettings
 from bifurc.singular.point import Kind, SingularPoint
 from bifurc.surfaces.chart_atlas import ChartAtlas
@@ -209,6 +211,16 @@ class Provenance:
     derivatives: str = "exact"
     equations: str = ""
     seconds: float = 0.0
+
+    def at_end(self, deadline: Deadline, is_cut_off: bool) -> Provenance:
+        """The same of a search that ended before its ``deadline``, or was cut off."""
+        interrupted = deadline.is_interrupted
+        return replace(
+            self,
+            interrupted=interrupted,
+            out_of_time=(is_cut_off or deadline.passed) and not interrupted,
+            seconds=time.perf_counter() - deadline.began,
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,6 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache, partial
+from itertools import compress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -311,17 +312,13 @@ class MechanismSubject(Subject):
         return [k for k, label in enumerate(self.labels) if label in labels]
 
     def simpler(self) -> MechanismSubject | None:
+        if not self.readout.structure.flat_vertices:
+            return None  # of a single loop there are no other equations to be made
         ways = self.closure.flat_state.ways
         if not ways or not ways[0].rest.any():
             return None
-        unknowns = self.readout.structure.unknowns
-        at_rest = [
-            one.label
-            for one, rests in zip(unknowns, ways[0].rest, strict=True)
-            if rests
-        ]
-        at_rest += self.mechanism.at_rest
-        other = _of_mechanism(replace(self.mechanism, at_rest=tuple(at_rest)))
+        at_rest = (*self.mechanism.at_rest, *compress(self.labels, ways[0].rest))
+        other = _of_mechanism(replace(self.mechanism, at_rest=at_rest))
         # fewer creases may leave it in another way
         return other.simpler() or other
 

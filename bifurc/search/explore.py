@@ -191,8 +191,6 @@ def _explored_along(
     atlas = explore_many_unknowns(
         problem, index, provenance, deadline, is_flow=is_flow, progress=request.progress
     )
-    seconds = time.perf_counter() - deadline.began
-    atlas = replace(atlas, provenance=replace(atlas.provenance, seconds=seconds))
     if not events or atlas.diagram is None:
         return atlas
     along = _diagram_in_time(problem, atlas, None, events, is_flow)
@@ -204,9 +202,12 @@ def _explored_along(
 
 def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
     """The atlas, factor by factor or in units of the search's own where the problem lets
-    it."""
+    it; of one that is given by a state, and has many unknowns and one freedom there, what
+    leads on from that."""
     if request.seeds is None and has_one_form(problem):
-        return _explored_from_state(problem, request)
+        deadline = current_deadline()
+        provenance = _provenance(problem, request, False, deadline)
+        return explore_one_form(problem, provenance, deadline)
     if not is_of_equations(problem) or not has_no_own_answers(problem):
         return _explored_in_own_units(problem, request)
     if request.seeds is not None:
@@ -216,16 +217,6 @@ def _explored_in_any_units(problem: Problem, request: _Request) -> Atlas:
         lambda part: _explored_in_own_units(part, request),
         lambda: _explored_in_boxes(problem, request),
     )
-
-
-def _explored_from_state(problem: Problem, request: _Request) -> Atlas:
-    """The atlas of a problem that is given by a state, and has many unknowns and one
-    freedom there."""
-    deadline = current_deadline()
-    provenance = _provenance(problem, request, False, deadline)
-    atlas = explore_one_form(problem, provenance, deadline)
-    seconds = time.perf_counter() - deadline.began
-    return replace(atlas, provenance=replace(atlas.provenance, seconds=seconds))
 
 
 def _explored_in_boxes(problem: FunctionProblem, request: _Request) -> Atlas:

@@ -419,7 +419,7 @@ class Findings:
             return known
         return SeedFate(Fate.RIGID, self.rigid.add(RigidAssembly(place, hidden)))
 
-    def isolated_near(
+    def known_near(
         self, u: np.ndarray, within: float
     ) -> tuple[np.ndarray, SeedFate] | None:
         """The first known singular point, or assembly that is held, at less than

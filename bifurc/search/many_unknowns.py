@@ -96,9 +96,7 @@ def explore_many_unknowns(
                     progress("curves so far", len(search.branches))
     except CutOff:
         is_cut_off = True
-    interrupted = deadline.is_interrupted
-    is_late = (is_cut_off or deadline.passed) and not interrupted
-    provenance = replace(provenance, interrupted=interrupted, out_of_time=is_late)
+    provenance = provenance.at_end(deadline, is_cut_off)
     ordered = search.ordered
     courses = [ordered.course(branch) for branch in search.branches]
     found = Courses(

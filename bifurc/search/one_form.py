@@ -7,7 +7,6 @@ dimension is looked at all along it, and so is every equation. Others are not lo
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +20,7 @@ from bifurc.decisions import is_only_null_vector, is_singular_on_form, is_soluti
 from bifurc.limits import CutOff, Deadline, cut_off_after, until
 from bifurc.numerics.null_spaces import null_vector
 from bifurc.problem import Problem
-from bifurc.search.answer.completeness import SearchClaim, SearchDoubt
+from bifurc.search.answer.completeness import SearchClaim, SearchDoubt, ended_early
 from bifurc.system import relative_gaps, relative_residuals
 
 LEAST = 120  # unknowns: with fewer all is looked at
@@ -32,12 +31,12 @@ FOLLOWING = 0.7  # of the time, for following the form; the rest to look at it
 def has_one_form(problem: Problem) -> bool:
     """Whether a problem of many unknowns is given by a state in which it has one
     freedom, and F' is factored as a sparse matrix."""
-    state = problem.given_state
     shortcuts = problem.shortcuts
     is_sparse = shortcuts.jacobian is not None and shortcuts.smallest_value is not None
-    if problem.n < LEAST or state is None or not is_sparse:
+    if problem.n < LEAST or not is_sparse:
         return False
-    if not is_solution(float(relative_gaps(problem, state[None])[0])):
+    state = problem.given_state
+    if state is None or not is_solution(float(relative_gaps(problem, state[None])[0])):
         return False
     tangent = null_vector(problem, state)
     # another border leads to the same vector where there is no other
@@ -64,9 +63,7 @@ def explore_one_form(
             look = _monitored(problem, branch)
     except CutOff:
         is_cut_off = True
-    interrupted = deadline.is_interrupted
-    is_late = (is_cut_off or deadline.passed) and not interrupted
-    provenance = replace(provenance, interrupted=interrupted, out_of_time=is_late)
+    provenance = provenance.at_end(deadline, is_cut_off)
     return _atlas(problem, look, provenance)
 
 
@@ -82,7 +79,7 @@ def _atlas(problem: Problem, look: _Look, provenance: Provenance) -> Atlas:
     doubts = [SearchDoubt.OTHER_FORMS.doubt()]
     if form is not None:
         doubts += _doubts(problem, form)
-    claims = (*_interruptions(provenance), _claim(problem, look))
+    claims = (*ended_early(provenance, left=0), _claim(problem, look))
     domain = problem.domain
     return Atlas(
         names=domain.names,
@@ -97,17 +94,6 @@ def _atlas(problem: Problem, look: _Look, provenance: Provenance) -> Atlas:
         completeness=Completeness(claims, tuple(doubts), 1.0),
         provenance=provenance,
     )
-
-
-def _interruptions(provenance: Provenance) -> list[Claim]:
-    """What is said of a search that did not come to its end."""
-    if provenance.interrupted:
-        return [SearchClaim.INTERRUPTED.claim(Scope.SEARCH, Level.INTERRUPTED)]
-    if not provenance.out_of_time:
-        return []
-    budget = float(provenance.settings.budget)
-    kind = SearchClaim.OUT_OF_TIME
-    return [kind.claim(Scope.SEARCH, Level.OUT_OF_TIME, budget=budget, left=0)]
 
 
 def _claim(problem: Problem, look: _Look) -> Claim:

@@ -136,7 +136,7 @@ class SeedJudge:
     def _known_point(self, seed: Seed) -> SeedFate | None:
         """The known singular point, or assembly that is held, from which rounding does
         not tell it: F is rounding half-way, too."""
-        known = self.findings.isolated_near(seed.point, is_known_assembly.threshold)
+        known = self.findings.known_near(seed.point, is_known_assembly.threshold)
         if known is None:
             return None
         place, fate = known

@@ -47,25 +47,25 @@ def make_certificate(loop: Loop, atlas: Atlas) -> check.Json:
     ``loop`` is the table in numbers of any kind, of which ``atlas`` is the map. What is
     left when the time is over counts as open.
     """
-    ctx.prec = PRECISION
     columns = ("lengths", "twists", "offsets")
     geometry: check.Json = {
         key: [exact_text(one) for one in getattr(loop, key)] for key in columns
     }
     geometry["scale"] = float(loop.characteristic_length).hex()
-    prover = _Prover(check.Loop(geometry), atlas)
-    prover.run()
-    return {
-        "format": check.FORMAT,
-        "name": loop.name,
-        "precision": PRECISION,
-        "geometry": geometry,
-        "claims": prover.claims,
-        "curves": prover.curves,
-        "tubes": prover.tubes,
-        "points": prover.points,
-        "open": prover.open,
-    }
+    with ctx.workprec(PRECISION):
+        prover = _Prover(check.Loop(geometry), atlas)
+        prover.run()
+        return {
+            "format": check.FORMAT,
+            "name": loop.name,
+            "precision": PRECISION,
+            "geometry": geometry,
+            "claims": prover.claims,
+            "curves": prover.curves,
+            "tubes": prover.tubes,
+            "points": prover.points,
+            "open": prover.open,
+        }
 
 
 def certificate_bytes(content: check.Json) -> bytes:

@@ -54,18 +54,24 @@ def judge_completeness(
     return Completeness(claims, tuple(doubts), missed_at_most)
 
 
+def ended_early(provenance: Provenance, left: int) -> tuple[Claim, ...]:
+    """The claim that a search did not come to its end, with so much ``left``; none where
+    it did."""
+    if provenance.interrupted:
+        return (SearchClaim.INTERRUPTED.claim(Scope.SEARCH, Level.INTERRUPTED),)
+    if not provenance.out_of_time:
+        return ()
+    budget = float(provenance.settings.budget)
+    kind = SearchClaim.OUT_OF_TIME
+    return (kind.claim(Scope.SEARCH, Level.OUT_OF_TIME, budget=budget, left=left),)
+
+
 def _claims(findings: Findings, provenance: Provenance, left: int) -> tuple[Claim, ...]:
     """What is claimed beside the estimate, with so many starts ``left``."""
     # what an audit says holds once all that it led to is looked at
-    if provenance.out_of_time:
-        budget = float(provenance.settings.budget)
-        level = Level.OUT_OF_TIME
-        out_of_time = SearchClaim.OUT_OF_TIME
-        return (out_of_time.claim(Scope.SEARCH, level, budget=budget, left=left),)
-    if provenance.interrupted:
-        return (SearchClaim.INTERRUPTED.claim(Scope.SEARCH, Level.INTERRUPTED),)
-    if findings.audit is None:
-        return ()
+    early = ended_early(provenance, left)
+    if early or findings.audit is None:
+        return early
     loose = sum(not closes_to_rounding(t.misclosure) for t in findings.traced.values())
     if loose:
         kind = SearchClaim.CLOSING_TOLERANCE

@@ -19,7 +19,7 @@ from bifurc.isometry import Course
 from bifurc.large.large_branch import LargeBranch, LargePoint
 from bifurc.problem import Problem
 from bifurc.search.answer.assemble import component_numbers
-from bifurc.search.answer.completeness import SearchClaim, SearchDoubt
+from bifurc.search.answer.completeness import SearchClaim, SearchDoubt, ended_early
 from bifurc.search.answer.doubts import ended_at_assumed_bounds
 from bifurc.singular.point import Kind, SingularPoint
 
@@ -249,13 +249,7 @@ def _hopf_point(found: Courses, number: int, point: LargePoint) -> DiagramPoint:
 def _claims(
     reach: Reach, provenance: Provenance, names: Sequence[str]
 ) -> Iterator[Claim]:
-    if provenance.interrupted:
-        yield SearchClaim.INTERRUPTED.claim(Scope.SEARCH, Level.INTERRUPTED)
-    elif provenance.out_of_time:
-        budget = float(provenance.settings.budget)
-        kind = SearchClaim.OUT_OF_TIME
-        left = reach.left
-        yield kind.claim(Scope.SEARCH, Level.OUT_OF_TIME, budget=budget, left=left)
+    yield from ended_early(provenance, reach.left)
     yield SearchClaim.MANY_UNKNOWNS.claim(
         Scope.STARTS,
         Level.ESTIMATED,
