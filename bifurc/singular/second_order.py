@@ -42,7 +42,7 @@ def common_lines(forms: np.ndarray) -> np.ndarray | None:
     no form is left."""
     if not np.all(np.isfinite(forms)):
         return None
-    forms = _independent_forms(forms)
+    forms = independent_forms(forms)
     if not len(forms):
         return None
     a, b, c = forms[0]
@@ -100,11 +100,12 @@ def _reduced_forms(
     return np.stack([xx, xy, yy], axis=1)
 
 
-def _independent_forms(forms: np.ndarray) -> np.ndarray:
-    """Independent forms (i, 3), of unit length, that span the given ones (w, 3)."""
+def independent_forms(forms: np.ndarray) -> np.ndarray:
+    """Independent forms (i, c), of unit length, that span the given ones, rows (w, c) of
+    coefficients; none where these are zero."""
     _, sigma, right = np.linalg.svd(forms, full_matrices=False)
     if not len(sigma) or has_no_form(float(sigma[0])):
-        return np.empty((0, 3))
+        return forms[:0]
     independent: np.ndarray = right[sigma > DEPENDENT * sigma[0]]
     return independent
 

@@ -20,7 +20,6 @@ from bifurc.decisions import (
     is_null,
     is_on_circle,
     is_on_sphere,
-    is_same_half_branch,
     may_be_null,
 )
 from bifurc.numerics.binary_forms import unit_vectors
@@ -28,6 +27,7 @@ from bifurc.numerics.singular_values import Factors, factors_of, singular_values
 from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.second_order import forms_on_null_space
+from bifurc.singular.tangent_cone import TangentCone, tangent_cone, without_duplicates
 from bifurc.system import relative_jacobians, relative_residuals
 
 UNSEEN = -1  # dimension of a section that could not be made
@@ -48,11 +48,6 @@ ROOT_TOLERANCE = 1e-12
 ROUNDS, LAST_STEP = 40, 1e-15
 # Of a point on a sphere, over the radius: last step of the iteration.
 SETTLED = 1e-4
-BESIDE = 1e3  # times the gap of points that are one: those are looked at as well
-# Steps of an iteration onto zeros of quadratic forms, its least damping, the values of
-# forms of size 1 that are zero, and the least singular value of their rates at a zero
-# that is isolated.
-STEPS_OF_FORMS, LEAST_DAMPING, ZERO_OF_FORMS, LONE = 15, 1e-14, 1e-9, 1e-2
 # Residual of a point on a sphere, over the radius squared, and rounding.
 SOLVED, SOLVED_ROUNDING = 1e-8, 5e-15
 # Solutions of higher nullity on a sphere whose local dimension is looked at, and starts
@@ -111,11 +106,11 @@ class Sections:
         return _sphere_section(self, radius)
 
     @cached_property
-    def starts(self) -> tuple[np.ndarray, np.ndarray]:
-        """Unit vectors (d, k) of the null space from which solutions on spheres are looked
-        for: those that second order shows to be alone, and others."""
+    def cone(self) -> TangentCone:
+        """Unit vectors of the null space to which second order leads, and others, from
+        which solutions on spheres are looked for."""
         forms = forms_on_null_space(self.problem, self.point, self.null_space)
-        return _moved_to_zeros(forms, _spread_directions(self.null_space.shape[1]))
+        return tangent_cone(forms, _spread_directions(self.null_space.shape[1]))
 
     @cached_property
     def _factors(self) -> Factors:
@@ -355,14 +350,18 @@ def _dips(samples: np.ndarray) -> np.ndarray:
 def _sphere_section(sections: Sections, radius: float) -> Section:
     """What Gauss-Newton reaches from starts spread over the sphere."""
     problem, point = sections.problem, sections.point
+    cone = sections.cone
     ends = _reached(sections, radius)
     if not len(ends):
-        return Section(np.empty((0, problem.n)), 0)
+        return Section(ends, 0, not cone.is_whole)
     if not problem.domain.are_inside(ends).any():
         inside = _led_inside(problem, ends, point, radius)
         ends = np.concatenate([ends, inside])
     cut = _separate_surfaces(problem, ends)
-    return replace(cut, points=_without_duplicates(cut.points, radius))
+    points = without_duplicates(cut.points, radius)
+    are_all = cone.is_whole and len(points) == len(cone.lone)
+    is_doubtful = cut.dimension == 1 and not are_all
+    return replace(cut, points=points, doubtful=is_doubtful)
 
 
 def _reached(sections: Sections, radius: float) -> np.ndarray:
@@ -374,52 +373,17 @@ def _reached(sections: Sections, radius: float) -> np.ndarray:
         starts = point + radius * directions @ sections.null_space.T
         return _on_sphere(problem, starts, point, radius)
 
-    lone, others = sections.starts
+    lone, others, is_whole = sections.cone
     ends = from_directions(lone)
     if len(ends) < len(lone):  # so far away they are not what second order says
         others = _spread_directions(sections.null_space.shape[1])
+    elif is_whole:
+        return ends
     stride = max(1, len(others) // MOST_ALIKE)
     some = from_directions(others[::stride])
     if stride > 1 and not (len(some) and _are_of_higher_nullity(problem, some).all()):
         some = from_directions(others)
     return np.concatenate([ends, some])
-
-
-def _moved_to_zeros(
-    forms: np.ndarray, directions: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Unit vectors (d, k) moved to where quadratic forms (w, k, k) vanish together: of
-    the places that are isolated to first order one each, as one half-branch leaves in
-    each; and the others, where they came to no zero as they were.
-
-    The damping is that of Fan and Yuan (2005), for zeros that are not isolated.
-    """
-    size = np.abs(forms).max(initial=0.0)
-    if not 0.0 < size < np.inf:
-        return directions[:0], directions
-    forms = forms / size
-    x = directions
-    for _ in range(STEPS_OF_FORMS):
-        x, gaps, normal = _nearer_to_zeros(forms, x)
-    is_zero = gaps < ZERO_OF_FORMS
-    is_lone = is_zero & (np.linalg.eigvalsh(normal)[:, 0] > LONE**2)
-    others = np.where(is_zero[:, None], x, directions)[~is_lone]
-    return _without_duplicates(x[is_lone], 1.0), others
-
-
-def _nearer_to_zeros(
-    forms: np.ndarray, x: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Unit vectors (d, k) after one step towards zeros of forms (w, k, k), and the sizes
-    (d,) of the forms and the normal equations (d, k, k) before it."""
-    halves = np.tensordot(x, forms, axes=(1, 1))  # (d, w, k), of the rates
-    values = (halves @ x[:, :, None])[:, :, 0]
-    normal = 4 * np.swapaxes(halves, 1, 2) @ halves + x[:, :, None] * x[:, None]
-    gaps = np.linalg.norm(values, axis=1)
-    damping = (gaps**2 + LEAST_DAMPING)[:, None, None] * np.eye(x.shape[1])
-    down = 2 * values[:, None] @ halves  # (d, 1, k)
-    x = x - np.linalg.solve(normal + damping, np.swapaxes(down, 1, 2))[:, :, 0]
-    return x / np.linalg.norm(x, axis=1)[:, None], gaps, normal
 
 
 def _on_sphere(
@@ -464,29 +428,6 @@ def _spread_directions(k: int) -> np.ndarray:
     half = rng.normal(size=(100 * (k - 1), k))
     half /= np.linalg.norm(half, axis=1)[:, None]
     return np.concatenate([half, -half])
-
-
-def _without_duplicates(points: np.ndarray, radius: float) -> np.ndarray:
-    """One of every cluster of points (k, n) on a sphere of ``radius`` that are joined by
-    small gaps, the first."""
-    within = BESIDE * is_same_half_branch.threshold * radius
-    is_left = np.ones(len(points), dtype=bool)
-    first = []
-    for number in range(len(points)):
-        if not is_left[number]:
-            continue
-        first.append(number)
-        is_left[number] = False
-        waiting = [number]
-        while waiting:
-            left = np.flatnonzero(is_left)
-            gaps = np.linalg.norm(points[left] - points[waiting.pop()], axis=1)
-            near = left[gaps < within]
-            joined = near[is_same_half_branch(gaps[gaps < within], radius)]
-            is_left[joined] = False
-            if len(joined) < len(near):
-                waiting += joined.tolist()
-    return points[first]
 
 
 def _separate_surfaces(problem: Problem, points: np.ndarray) -> Section:

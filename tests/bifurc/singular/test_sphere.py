@@ -79,7 +79,7 @@ def beside_a_plane(of_the_others):
 def test_half_branches_beside_a_surface(of_the_others, half_branches, alone):
     problem = beside_a_plane(of_the_others)
     sections = Sections(problem, np.zeros(4), np.eye(4))
-    assert len(sections.starts[0]) == alone
+    assert len(sections.cone.lone) == alone
     for radius in (0.04, 0.02, 0.01):
         cut = sections.of_radius(radius)
         assert (len(cut.points), cut.dimension) == (half_branches, 2)

@@ -145,7 +145,7 @@ def test_a_line_that_cannot_fold_as_a_whole_is_held(tmp_path):
     assert structure.ways_out == 1
 
 
-@pytest.mark.parametrize("order", permutations(range(4)))
+@pytest.mark.parametrize("order", list(permutations(range(4))))
 def test_what_rests_first_rests_in_whatever_order_vertices_come(order):
     """A triangle of vertices of four creases, on one side of which is a vertex of a line:
     it would have to fold by the same angle on both sides, and does so in no way."""
