@@ -52,24 +52,24 @@ def tangent_cone(forms: np.ndarray, starts: np.ndarray) -> TangentCone:
         return TangentCone(starts[:0], starts)
     rows = independent_forms(forms.reshape(-1, size * size))
     forms = rows.reshape(-1, size, size)
-    cone = _from_starts(forms, starts)
+    cone, are_alone = _from_starts(forms, starts)
     needed = size - 1
     lines = 2**needed
-    if len(forms) < max(needed, 1) or lines > MOST_PATHS:
+    if not are_alone or len(forms) < max(needed, 1) or lines > MOST_PATHS:
         return cone
     if len(forms) == needed and len(cone.lone) == 2 * lines:
         return cone._replace(is_whole=True)
     return _along_paths(forms, cone)
 
 
-def _from_starts(forms: np.ndarray, starts: np.ndarray) -> TangentCone:
+def _from_starts(forms: np.ndarray, starts: np.ndarray) -> tuple[TangentCone, bool]:
     """The zeros of independent ``forms`` to which ``starts`` are moved, these as they were
-    where they came to none.
+    where they came to none; and whether all of these are isolated.
 
     The damping is that of Fan and Yuan (2005), for zeros that are not isolated.
     """
     if not len(forms):
-        return TangentCone(starts[:0], starts)
+        return TangentCone(starts[:0], starts), False
     x = starts
     for _ in range(STEPS_OF_FORMS):
         x, gaps, normal = _nearer_to_zeros(forms, x)
@@ -77,7 +77,8 @@ def _from_starts(forms: np.ndarray, starts: np.ndarray) -> TangentCone:
     least = np.linalg.eigvalsh(normal)[:, 0]
     is_lone = is_zero & (least > LONE**2) & (gaps < CLOSE * least)
     others = np.where(is_zero[:, None], x, starts)[~is_lone]
-    return TangentCone(without_duplicates(x[is_lone], 1.0), others)
+    lone = without_duplicates(x[is_lone], 1.0)
+    return TangentCone(lone, others), bool(np.array_equal(is_lone, is_zero))
 
 
 def _nearer_to_zeros(
@@ -102,7 +103,7 @@ def _along_paths(forms: np.ndarray, cone: TangentCone) -> TangentCone:
     if lines is None:
         return cone
     real = lines[np.linalg.norm(lines.imag, axis=1) < LONE].real
-    led = _from_starts(forms, np.concatenate([real, -real])).lone
+    led = _from_starts(forms, np.concatenate([real, -real]))[0].lone
     both = without_duplicates(np.concatenate([led, cone.lone]), 1.0)
     is_whole = len(both) == len(led) == 2 * len(real)
     return TangentCone(both, cone.others, is_whole)
