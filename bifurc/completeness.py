@@ -21,8 +21,8 @@ Kind = TypeVar("Kind")
 class Level(StrEnum):
     """How sure it is that nothing is missing."""
 
-    # None is missing.
-    PROVED = "proved"
+    # None is missing: all were counted and followed, in floating point.
+    COUNTED = "counted"
     # None is missing that is larger than the statement says.
     CERTIFIED = "certified"
     # One more random start finds something new with at most the stated probability.
@@ -31,6 +31,11 @@ class Level(StrEnum):
     OUT_OF_TIME = "out of time"
     # Ctrl-C ended the search.
     INTERRUPTED = "interrupted"
+
+    @classmethod
+    def _missing_(cls, value: object) -> Level | None:
+        """What older files call proved was counted."""
+        return cls.COUNTED if value == "proved" else None
 
 
 BEST_FIRST = tuple(Level)
@@ -170,7 +175,7 @@ class Completeness:
 
     @property
     def level(self) -> Level:
-        """That of the worst claim; of an answer in doubt nothing is proved."""
+        """That of the worst claim; of an answer in doubt nothing is known."""
         level = worst_level(self.claims) or Level.ESTIMATED
         if self.doubts:
             return max(level, Level.ESTIMATED, key=BEST_FIRST.index)

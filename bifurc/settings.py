@@ -84,9 +84,9 @@ class SearchSettings:
     ``starts``: random starts that are projected onto the solutions, and up to 16 times as
     many for problems that draw more (`Seeds.more`). ``budget`` (s): the
     search ends when it is used up, but for the step it is in. ``charts``: the most with
-    which surfaces are covered. ``prove``: whether the problem's audit, if it has one,
+    which surfaces are covered. ``count``: whether the problem's audit, if it has one,
     takes the time to find out if a branch is missing. ``boxes``: into how many the bounds
-    of exact equations of two to four unknowns are divided at most, to prove that nothing
+    of exact equations of two to four unknowns are divided at most, to tell that nothing
     is missing; 0 for not at all. ``paths``: along how many all isolated solutions of
     as many polynomials as unknowns, up to eight, are followed at most, fewer of more;
     0 for none; so are the curves of polynomials where something is open, and with more
@@ -100,7 +100,7 @@ class SearchSettings:
     starts: int = 200
     budget: float = math.inf
     charts: int = 1500
-    prove: bool = True
+    count: bool = True
     boxes: int = 20_000
     paths: int = USUAL_PATHS
     certify: bool = True
@@ -113,7 +113,7 @@ class SearchSettings:
         check_whole("boxes", self.boxes, 0)
         check_whole("paths", self.paths, 0)
         check_number("budget", self.budget)
-        check_type("prove", self.prove, bool)
+        check_type("count", self.count, bool)
         check_type("certify", self.certify, bool)
         check_type("near_motions", self.near_motions, bool)
         check_type("tracing", self.tracing, TraceSettings)

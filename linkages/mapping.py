@@ -48,7 +48,7 @@ def map_linkage(
     folded form (joints 2,4 inactive) 8.885766 [ 1  0 -1  0]
     folded form (joints 1,3 inactive) 8.885766 [ 0  1  0 -1]
     >>> [point.name for point in atlas.bifurcations], str(atlas.completeness.level)
-    (['B1', 'B2', 'B3'], 'proved')
+    (['B1', 'B2', 'B3'], 'counted')
     """
     check_type("settings", settings, SearchSettings)
     deadline = deadline_within(settings.budget)

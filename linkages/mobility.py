@@ -50,7 +50,7 @@ def survey(loop: Loop, starts: int = 40, seed: int = 0) -> Survey:
     problem = Closure(loop)
     seeds = problem.seeds(np.random.default_rng(seed), starts)
     # neither whether a motion is missing is asked, nor what nearly moves
-    settings = SearchSettings(prove=False, near_motions=False)
+    settings = SearchSettings(count=False, near_motions=False)
     atlas = explore(problem, settings=settings, seeds=seeds, seed=seed)
     gaps = seeds.gaps  # those of the starts that did not close
     return Survey(

@@ -40,7 +40,7 @@ from studies.methods.cases import bratu
 from studies.study import Study
 
 LINKAGE = "special-double-subtractive-goldberg"
-UNPROVED = SearchSettings(prove=False, certify=False)
+UNCOUNTED = SearchSettings(count=False, certify=False)
 CPU_INFO = Path("/proc/cpuinfo")
 IMPORTS = "import linkages.mapping, linkages.app.cli"
 COMMAND = "from linkages.app.cli import main; main()"
@@ -80,7 +80,7 @@ def benchmarks() -> dict[str, float]:
 def _tracing_benchmarks() -> dict[str, float]:
     """One form of the linkage, traced again and again."""
     problem = Closure(entry(LINKAGE).build())
-    form = explore(problem, settings=UNPROVED).forms[0].branch
+    form = explore(problem, settings=UNCOUNTED).forms[0].branch
     point, tangent = form(0.3), form(0.3, 1)
 
     settings = MarchSettings(
@@ -113,7 +113,7 @@ def _search_benchmarks() -> dict[str, float]:
     work: dict[str, Callable[[], object]] = {
         "200 random starts of a 6R, projected": lambda: problem.project(starts),
         "24 complete slices of a 6R": lambda: slice_configurations(loop, 1, angles),
-        "explore, four forms of a 6R": lambda: explore(problem, settings=UNPROVED),
+        "explore, four forms of a 6R": lambda: explore(problem, settings=UNCOUNTED),
         "complete map of a 6R, named": lambda: map_linkage(linkage),
     }
     return {name: median_time(task) for name, task in work.items()}

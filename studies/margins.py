@@ -340,7 +340,7 @@ def _joined(cases: dict[str, Floats]) -> Floats:
 
 HEAD = """# Decisions, and how clear they are
 
-What *proved*, *certified*, *estimated*, *in doubt* and *undecided* mean stands in [how sure](how_sure.md).
+What *counted*, *certified*, *estimated*, *in doubt* and *undecided* mean stands in [how sure](how_sure.md).
 
 Every comparison on which a count, a kind, a level or a word hangs compares one quantity with one threshold. They stand
 in the tables `decisions.toml` of both packages; singular values and residuals are over the problem's magnitude,

@@ -1,11 +1,11 @@
-"""Proofs that no motion is missing, put to the test: random members of the catalogue,
+"""Counts that leave no motion out, put to the test: random members of the catalogue,
 searched a second time.
 
     python -m studies.missing_motions [--count 500] [--seed 0]
 
-The first search has a single random start and the proof
+The first search has a single random start and the count
 (`linkages.slices.completeness`). The second has other slices and 1500 random starts. A
-proof is refuted where the second finds other motions. So that small motions are among
+count is refuted where the second finds other motions. So that small motions are among
 them, every second linkage is a plane-symmetric Bricard linkage close to the birth of a
 second motion.
 """
@@ -26,9 +26,9 @@ from linkages import Closure, GeometryError, Loop
 from linkages.catalogue import catalogue, entry
 from studies.study import Study
 
-FIRST = SearchSettings(starts=1, prove=True)
+FIRST = SearchSettings(starts=1, count=True)
 SECOND = SearchSettings(starts=1500)
-LEVELS = (Level.PROVED, Level.CERTIFIED, Level.ESTIMATED)
+LEVELS = (Level.COUNTED, Level.CERTIFIED, Level.ESTIMATED)
 AT_BIRTH = "beside a birth"
 # at this twist, with these parameters, a second motion is born in a point; it grows as
 # the root of the distance
@@ -84,7 +84,7 @@ def _lengths(atlas: Atlas) -> list[float]:
 )
 @click.option("--seed", default=0, show_default=True, help="Of the random linkages.")
 def main(count: int, seed: int) -> None:
-    """Search random linkages twice, and count the proofs that the second search
+    """Search random linkages twice, and count what the second search
     refutes."""
     levels: dict[str, Counter[str]] = {}
     refuted = 0
@@ -97,7 +97,7 @@ def main(count: int, seed: int) -> None:
         seconds.append(time.process_time() - start)
         level = atlas.completeness.level
         levels.setdefault(kind, Counter())[level] += 1
-        if level is not Level.PROVED:
+        if level is not Level.COUNTED:
             continue
         if not same_motions(atlas, explore(problem, settings=SECOND, seed=2)):
             refuted += 1
@@ -108,7 +108,7 @@ def main(count: int, seed: int) -> None:
     click.echo(table(("linkages", *LEVELS), rows))
     milliseconds = 1e3 * np.median(seconds)
     click.echo(
-        f"{refuted} proofs refuted; search and proof took {milliseconds:.0f} ms "
+        f"{refuted} counts refuted; search and count took {milliseconds:.0f} ms "
         "(median)"
     )
 

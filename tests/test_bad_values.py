@@ -198,7 +198,7 @@ CASES: dict[str, tuple[Callable[[], object], str]] = {
     "a budget that is no number": (lambda: SearchSettings(budget=NAN), "budget"),
     "a budget of text": (lambda: SearchSettings(budget="a"), "budget"),
     "fewer charts than none": (lambda: SearchSettings(charts=-1), "charts"),
-    "a word for prove": (lambda: SearchSettings(prove="yes"), "prove"),
+    "a word for count": (lambda: SearchSettings(count="yes"), "count"),
     "a number for tracing": (lambda: SearchSettings(tracing=3), "tracing"),
     "a loose tolerance in a search": (
         lambda: SearchSettings(tracing=TraceSettings(tolerance=1e-4)),

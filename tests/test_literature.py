@@ -27,12 +27,12 @@ def test_cyclohexane_has_one_flexible_form_and_two_rigid_chairs():
     twist = np.arccos(1 / 3)
     atlas = explore(
         Closure(Loop((0,) * 6, (twist,) * 6, (1,) * 6, "cyclohexane")),
-        settings=SearchSettings(starts=300, prove=True),
+        settings=SearchSettings(starts=300, count=True),
     )
     assert len(atlas.forms) == 1
     assert atlas.forms[0].branch.closed
     assert not atlas.points
-    assert atlas.completeness.level == "proved"
+    assert atlas.completeness.level == "counted"
     chairs = sorted(np.degrees(theta).tolist() for theta in atlas.rigid)
     np.testing.assert_allclose(chairs, [[-60, 60] * 3, [60, -60] * 3], atol=1e-9)
 
@@ -43,7 +43,7 @@ def test_a_flat_folding_vertex_has_four_half_branches_flat_and_folded():
     sectors = tuple(np.radians([60.0, 90.0, 120.0, 90.0]))
     atlas = explore(
         Closure(Loop((0,) * 4, sectors, (0,) * 4, "vertex of four creases")),
-        settings=SearchSettings(prove=True),
+        settings=SearchSettings(count=True),
     )
     assert len(atlas.forms) == 2
     assert [p.kind for p in atlas.points] == [Kind.BIFURCATION] * 2

@@ -51,7 +51,7 @@ class IsolatedInBoxes:
     def claim(self) -> Claim:
         """What is said of the solutions where they are all."""
         kind = SearchClaim.BOXES_OF_SOLUTIONS
-        return kind.claim(Scope.ASSEMBLIES, Level.PROVED, boxes=self.count)
+        return kind.claim(Scope.ASSEMBLIES, Level.COUNTED, boxes=self.count)
 
 
 class _Boxes(NamedTuple):

@@ -463,7 +463,7 @@ class Search:
         findings = self.findings
         judge = findings.book.seeds.audit
         while judge is not None and findings.awaits_audit and not self.run.is_over:
-            seconds = self.run.deadline.left if self.settings.prove else 0.0
+            seconds = self.run.deadline.left if self.settings.count else 0.0
             audit = judge(findings.branches, seconds)
             findings.set_audit(audit)
             solutions, gaps = self.problem.project(audit.starts)

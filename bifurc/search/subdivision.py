@@ -408,7 +408,7 @@ def audit_of(division: Subdivision) -> Audit:
     """What a complete subdivision says: nothing is missing; next to singular points
     that is not claimed."""
     nowhere = np.empty((0, division.left.shape[1]))
-    kind, level = SearchClaim.BOXES, Level.PROVED
+    kind, level = SearchClaim.BOXES, Level.COUNTED
     if division.beside:
         kind, level = SearchClaim.BOXES_BESIDE_POINTS, Level.CERTIFIED
     data = {"boxes": int(division.count), "beside": float(division.beside)}

@@ -439,7 +439,7 @@ def atlas_options(command: Command) -> Command:
 no_certify_option = click.option(
     "--no-certify",
     is_flag=True,
-    help="Do not prove that no form jumps from one arc to another.",
+    help="Do not certify that no form jumps from one arc to another.",
 )
 
 

@@ -107,7 +107,7 @@ class CutMotions:
         is_missed = ~_lie_on(stretches.points, branches, self.lattice)
         starts = np.concatenate([stretches.points[is_missed], self._others(atlas)])
         level, inner = Level.ESTIMATED, _claims_of(atlas.completeness)
-        is_known = atlas.completeness.level in (Level.PROVED, Level.CERTIFIED)
+        is_known = atlas.completeness.level in (Level.COUNTED, Level.CERTIFIED)
         if is_known and audit is not None and stretches.are_all:
             level, inner = Level.CERTIFIED, audit.claims
         first = replace(inner[0], words=f"without limits, {inner[0].words}")
@@ -127,7 +127,7 @@ class CutMotions:
         settings = SearchSettings(
             starts=self.count,
             budget=seconds or QUICK,
-            prove=seconds > 0.0,
+            count=seconds > 0.0,
             near_motions=False,
         )
         loop, rng = self.single.loop, np.random.default_rng(self.seed)

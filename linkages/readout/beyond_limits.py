@@ -18,7 +18,7 @@ from linkages.readout.readout import Readout
 
 SAMPLES = 401  # of a form, for the ranges along it
 QUICK = SearchSettings(
-    starts=50, budget=5.0, charts=100, prove=False, certify=False, near_motions=False
+    starts=50, budget=5.0, charts=100, count=False, certify=False, near_motions=False
 )
 
 

@@ -151,7 +151,7 @@ class SliceAudit:
             claim = estimated(LinkageClaim.SLICES_DIFFER, joints=joints)
             return Audit((claim,), nowhere)
         if not branches and not any(_number(cut) for cut in self.slices):
-            claim = LinkageClaim.NO_MOTION.claim(Scope.MOTIONS, Level.PROVED)
+            claim = LinkageClaim.NO_MOTION.claim(Scope.MOTIONS, Level.COUNTED)
             return Audit((claim,), nowhere)
         room = self._room(passes)
         following = self._follow_nonreal(passes, room, deadline)
@@ -254,12 +254,12 @@ class SliceAudit:
         if following.room:
             rest = f"; no motion turns {joint_names(following.room)} alone"
         counts = f"{', and '.join(parts)}{rest}"
-        return LinkageClaim.COUNTED.claim(Scope.MOTIONS, Level.PROVED, counts=counts)
+        return LinkageClaim.COUNTED.claim(Scope.MOTIONS, Level.COUNTED, counts=counts)
 
 
 def _with_assemblies(motions: Audit, assemblies: Assemblies) -> Audit:
     """The audit of motions with what is known of isolated assemblies."""
-    claim = LinkageClaim.ALL_FOLLOWED.claim(Scope.ASSEMBLIES, Level.PROVED)
+    claim = LinkageClaim.ALL_FOLLOWED.claim(Scope.ASSEMBLIES, Level.COUNTED)
     if not assemblies.complete:
         ends = assemblies.statement
         lost = LinkageClaim.PATHS_LOST

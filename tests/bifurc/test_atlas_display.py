@@ -63,7 +63,7 @@ def test_a_prompt_shows_forms_bifurcations_and_the_level_in_a_few_lines(atlas):
     for point in atlas.points:
         names = ", ".join(atlas.forms[form].name for form, _ in point.passes)
         assert f"  {point.name}: bifurcation of {names}" in lines
-    assert lines[-1] == "  completeness: proved>"
+    assert lines[-1] == "  completeness: counted>"
     assert len(repr(atlas)) < 1000
 
 
@@ -77,7 +77,7 @@ def test_of_many_things_the_first_are_shown_and_the_others_counted(atlas):
 
 
 def test_an_atlas_of_nothing_says_so(nothing):
-    assert repr(nothing) == "<Atlas of u1, u2: nothing\n  completeness: proved>"
+    assert repr(nothing) == "<Atlas of u1, u2: nothing\n  completeness: counted>"
     assert "table" not in Reader(nothing._repr_html_()).seen
 
 
@@ -109,7 +109,7 @@ def test_a_notebook_shows_tables_of_forms_points_and_completeness(atlas):
     titles = [text for text in reader.texts if text in ("Forms", "Singular points")]
     assert titles == ["Forms", "Singular points"]
     assert reader.seen.count("tr") == 2 + len(atlas.forms) + len(atlas.points)
-    assert "Completeness: proved." in reader.texts
+    assert "Completeness: counted." in reader.texts
     assert any(atlas.completeness.statement in text for text in reader.texts)
 
 
@@ -121,6 +121,6 @@ def test_names_cannot_break_the_html_of_a_notebook(atlas):
 
 
 def test_levels_are_the_words_that_files_and_screens_show():
-    words = ["proved", "certified", "estimated", "out of time", "interrupted"]
+    words = ["counted", "certified", "estimated", "out of time", "interrupted"]
     assert list(Level) == words
     assert f"{Level.OUT_OF_TIME}" == "out of time"

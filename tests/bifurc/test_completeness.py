@@ -62,17 +62,23 @@ def claim(level, scope=Scope.MOTIONS):
 
 
 def test_the_level_is_that_of_the_worst_claim():
-    claims = (claim(Level.PROVED), claim(None), claim(Level.CERTIFIED))
+    claims = (claim(Level.COUNTED), claim(None), claim(Level.CERTIFIED))
     assert Completeness(claims, (), 0.1).level is Level.CERTIFIED
     assert Completeness((claim(None),), (), 0.1).level is Level.ESTIMATED
     assert Completeness((claim(Level.OUT_OF_TIME),), (), 0.1).level is Level.OUT_OF_TIME
 
 
+def test_what_older_files_call_proved_was_counted():
+    assert Level("proved") is Level.COUNTED
+    with pytest.raises(ValueError, match="'sure' is not a valid Level"):
+        Level("sure")
+
+
 @pytest.mark.parametrize("level", Level)
-def test_a_doubt_leaves_nothing_proved(level):
+def test_a_doubt_leaves_nothing_counted(level):
     doubt = SearchDoubt.TOO_LONG.doubt("form 1")
     doubtful = Completeness((claim(level),), (doubt,), 0.1)
-    expected = Level.ESTIMATED if level in ("proved", "certified") else level
+    expected = Level.ESTIMATED if level in ("counted", "certified") else level
     assert doubtful.level is expected
     assert doubtful.is_in_doubt
     assert (
@@ -82,7 +88,7 @@ def test_a_doubt_leaves_nothing_proved(level):
 
 @pytest.mark.parametrize("kind", [*SearchClaim])
 def test_every_claim_is_told_by_its_kind_and_put_in_words(kind):
-    made = kind.claim(Scope.MOTIONS, Level.PROVED, **DATA)
+    made = kind.claim(Scope.MOTIONS, Level.COUNTED, **DATA)
     assert [one for one in SearchClaim if one.is_kind_of(made)] == [kind]
     assert "{" not in made.text and made.text
 
@@ -109,7 +115,7 @@ def test_claims_and_doubts_come_back_from_a_dataset():
     doubts = tuple(
         kind.doubt("form 1", np.float64(0.1), **DATA) for kind in SearchDoubt
     )
-    completeness = Completeness((*claims, claim(Level.PROVED)), doubts, 0.25)
+    completeness = Completeness((*claims, claim(Level.COUNTED)), doubts, 0.25)
     atlas = replace(draw({"ring": ring(0.5)}, {}), completeness=completeness)
     back = from_dataset(to_dataset(atlas)).completeness
     assert back == completeness
@@ -120,13 +126,13 @@ def test_claims_and_doubts_come_back_from_a_dataset():
 def test_a_document_has_every_claim_and_every_doubt():
     doubt = SearchDoubt.TOO_LONG.doubt("form 1")
     document = completeness_document(
-        Completeness((claim(Level.PROVED),), (doubt,), 0.25)
+        Completeness((claim(Level.COUNTED),), (doubt,), 0.25)
     )
     assert document["claims"] == [
         {
             "kind": "test",
             "scope": "motions",
-            "level": "proved",
+            "level": "counted",
             "data": {},
             "text": "so it is",
         }

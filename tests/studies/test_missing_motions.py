@@ -18,7 +18,7 @@ def test_every_second_linkage_has_a_small_motion_beside_a_large_one():
         small, large = sorted(
             form.branch.length
             for form in explore(
-                Closure(loop), settings=SearchSettings(starts=20, prove=True)
+                Closure(loop), settings=SearchSettings(starts=20, count=True)
             ).forms
         )
         assert small < 1.0 < 5.0 < large
@@ -36,4 +36,4 @@ def test_a_motion_that_is_missing_is_noticed():
 def test_the_command_refutes_nothing():
     result = CliRunner().invoke(main, ["--count", "6"])
     assert result.exit_code == 0, result.output
-    assert "0 proofs refuted" in result.output
+    assert "0 counts refuted" in result.output

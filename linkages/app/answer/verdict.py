@@ -71,7 +71,7 @@ def exit_by(verdict: Verdict) -> NoReturn:
 
 def is_without_gaps(completeness: Completeness) -> bool:
     """Whether every slice was complete, and nothing rests on random starts alone."""
-    return completeness.level in (Level.PROVED, Level.CERTIFIED)
+    return completeness.level in (Level.COUNTED, Level.CERTIFIED)
 
 
 def _interrupted(atlas: Atlas) -> str:

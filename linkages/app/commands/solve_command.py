@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     default=20_000,
     show_default=True,
     type=click.IntRange(0, 10_000_000),
-    help="Divide the bounds of two to four unknowns into so many boxes at most, to prove "
+    help="Divide the bounds of two to four unknowns into so many boxes at most, to tell "
     "that nothing is missing; 0 for none.",
 )
 @click.option(

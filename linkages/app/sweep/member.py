@@ -86,7 +86,7 @@ def map_member(
         member = subject.member(values)
     except (GeometryError, EquationFileError, ArithmeticError) as error:
         return {"status": int(Status.REFUSED), "message": str(error)}
-    settings = SearchSettings(prove=False, starts=starts)
+    settings = SearchSettings(count=False, starts=starts)
     try:
         atlas = member.atlas(settings, seed)
     except GeometryError as error:  # such as for locks that leave nothing to move

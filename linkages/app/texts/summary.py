@@ -389,7 +389,7 @@ def _certificates(atlas: Atlas) -> str:
                 "status": certificate.status,
                 "points": str(certificate.points),
                 "curvature at most": f"{certificate.bound:.3g}",
-                f"not proved between ({unit})": _show_intervals(certificate.gaps),
+                f"not certified between ({unit})": _show_intervals(certificate.gaps),
                 f"known to rounding between ({unit})": _show_intervals(
                     certificate.blurred
                 ),

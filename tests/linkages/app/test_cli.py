@@ -122,12 +122,12 @@ def test_map_shows_forms_and_bifurcations_in_degrees():
     assert result.exit_code == 0
     assert "4 forms in 1 component, 4 bifurcations" in result.stdout
     assert "3 at 180.0000, 6 at 180.0000" in result.stdout
-    assert "Certainty (proved): no motion is missing" in result.stdout
+    assert "Certainty (counted): no motion is missing" in result.stdout
     assert "rigid" not in result.stdout.lower()
     assert len(result.stdout.splitlines()) <= 25
     assert len(result.output.splitlines()) <= 25 + 3
     whole = bifurc("map", "special-double-subtractive-goldberg", "--verbose").stdout
-    assert "Completeness (proved): " in whole
+    assert "Completeness (counted): " in whole
     assert "Certificates" in whole
 
 
@@ -264,7 +264,7 @@ def test_json_is_one_document_with_the_documented_keys_and_nothing_else():
     assert document["seed"] == 7
     assert document["tolerance"] == 1e-13
     assert document["completeness"]["level"] == "complete slices"
-    assert document["completeness"]["certainty"] == "proved"
+    assert document["completeness"]["certainty"] == "counted"
 
 
 HEAVY = ("matplotlib", "xarray", "sympy", "mpmath", "scipy")

@@ -110,8 +110,8 @@ def test_forms_of_platforms_have_certificates_on_screen_and_in_json(folder):
     output = run("map", "platform.toml", "--verbose").stdout
     table = output.split("Certificates (each form is one arc of solutions)")[1]
     assert "Form 1  certified" in table
-    assert "not proved between (rad)" not in table
-    assert "not proved between (lengths over 3.209)" in table
+    assert "not certified between (rad)" not in table
+    assert "not certified between (lengths over 3.209)" in table
     document = json.loads(run("map", "platform.toml", "--json").stdout)
     certificates = [form["certificate"] for form in document["forms"]]
     assert {one["status"] for one in certificates} == {"certified"}

@@ -88,7 +88,7 @@ def test_a_right_map_near_a_surface_is_certified(error):
     atlas = curves_of(loop, settings=SETTINGS)
     assert counts(atlas) == (4, 4)
     assert all(form.certificate.holds for form in atlas.forms)
-    assert atlas.completeness.level is Level.PROVED
+    assert atlas.completeness.level is Level.COUNTED
 
 
 @pytest.mark.parametrize("error", [1e-2, 1e-3])
@@ -98,4 +98,4 @@ def test_a_right_map_of_a_bricard_linkage_near_a_surface_is_certified(error):
     atlas = curves_of(loop, settings=SETTINGS)
     assert counts(atlas) == (4, 4)
     assert all(form.certificate.holds for form in atlas.forms)
-    assert atlas.completeness.level is Level.PROVED
+    assert atlas.completeness.level is Level.COUNTED

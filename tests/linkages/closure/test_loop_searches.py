@@ -158,7 +158,7 @@ def test_a_seed_that_only_looks_as_on_a_surface_is_taken_for_what_it_is():
     atlas = curves_of(loop)
     assert not atlas.surfaces
     assert len(atlas.forms) == 1
-    assert atlas.completeness.level == "proved"
+    assert atlas.completeness.level == "counted"
 
 
 def test_nothing_is_proved_of_an_atlas_with_a_form_that_was_cut_off():

@@ -15,7 +15,7 @@ from linkages.mechanisms.mechanism import Mechanism
 from linkages.readout.readout import Readout
 from tests.maps import map_of
 
-FEW = SearchSettings(starts=60, prove=False, certify=False, near_motions=False)
+FEW = SearchSettings(starts=60, count=False, certify=False, near_motions=False)
 # a 6R loop whose opposite axes are images in a half turn about the z axis (Bricard
 # 1897): points and directions of the first three
 POINTS = np.array([[1.0, 0.2, 0.3], [0.4, 0.9, -0.5], [-0.6, 0.8, 0.7]])

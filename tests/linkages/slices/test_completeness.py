@@ -28,7 +28,7 @@ SMALL = {
     "R3": -0.267,
 }
 
-NUMBERS_ALONE = SearchSettings(prove=False)
+NUMBERS_ALONE = SearchSettings(count=False)
 
 
 def small_and_large(twist):
@@ -52,7 +52,7 @@ def extents(atlas):
 )
 def test_numbers_alone_prove_many_linkages_complete(name):
     atlas = curves_of(entry(name).build(), settings=NUMBERS_ALONE)
-    assert atlas.completeness.level == "proved"
+    assert atlas.completeness.level == "counted"
     assert atlas.completeness.statement.startswith("no motion is missing")
 
 
@@ -67,16 +67,16 @@ def test_numbers_alone_prove_many_linkages_complete(name):
 def test_following_proves_what_numbers_leave_open(name):
     problem = Closure(entry(name).build())
     counted = explore(problem, settings=NUMBERS_ALONE)
-    followed = explore(problem, settings=SearchSettings(prove=True))
+    followed = explore(problem, settings=SearchSettings(count=True))
     assert counted.completeness.level == "certified"
     assert "more than 15 degrees" in counted.completeness.statement
-    assert followed.completeness.level == "proved"
+    assert followed.completeness.level == "counted"
     assert len(counted.forms) == len(followed.forms)
 
 
 def test_sheets_that_run_to_infinity_leave_the_statement_at_certified():
     problem = Closure(entry("wohlhart-symmetric").build())
-    atlas = explore(problem, settings=SearchSettings(prove=True))
+    atlas = explore(problem, settings=SearchSettings(count=True))
     assert atlas.completeness.level == "certified"
 
 
@@ -88,7 +88,7 @@ def test_no_list_with_a_motion_left_out_is_called_complete(name):
     problem = Closure(entry(name).build())
     branches = [form.branch for form in explore(problem).forms]
     audit = problem.seeds(np.random.default_rng(0), 10).audit
-    assert audit(branches, np.inf).level == "proved"
+    assert audit(branches, np.inf).level == "counted"
     for i in range(len(branches)):
         assert audit(branches[:i] + branches[i + 1 :], np.inf).level == "estimated"
 
@@ -97,11 +97,11 @@ def test_no_list_with_a_motion_left_out_is_called_complete(name):
 @pytest.mark.parametrize("twist", [2.264, 2.2643, 2.264327])
 @pytest.mark.parametrize("seed", one_in(3, range(3)))
 def test_a_motion_smaller_than_the_gap_between_slices_is_found(twist, seed):
-    settings = SearchSettings(starts=1, prove=True)
+    settings = SearchSettings(starts=1, count=True)
     atlas = explore(small_and_large(twist), settings=settings, seed=seed)
     small, large = extents(atlas)
     assert small < 0.15 < 5 < large
-    assert atlas.completeness.level == "proved"
+    assert atlas.completeness.level == "counted"
 
 
 @pytest.mark.parametrize("twist", [2.2643, 2.264327])
@@ -115,7 +115,7 @@ def test_a_small_motion_that_no_slice_passes_is_not_denied_and_is_reached_from_t
     small, large = by_length[0].branch, by_length[-1].branch
     audit = problem.seeds(np.random.default_rng(seed), 1).audit
     blind = audit([large], np.inf)
-    assert blind.level != "proved"
+    assert blind.level != "counted"
     if blind.level == "certified":  # else a slice happens to pass the small motion
         points, gaps = problem.project(blind.starts)
         distance, _ = small.nearest(points[gaps < 1e-12])
@@ -127,11 +127,11 @@ def test_a_four_bar_that_hardly_closes_is_found_and_proved(missing):
     # the longest bar is as long as the others together, but for a little: the motion is
     # an oval of its square root
     loop = entry("four-bar").build(a=1.0, b=1.1, c=1.2, d=3.3 - missing)
-    settings = SearchSettings(starts=1, prove=True)
+    settings = SearchSettings(starts=1, count=True)
     atlas = curves_of(loop, settings=settings)
     assert len(atlas.forms) == 1
     assert 3 * np.sqrt(missing) < extents(atlas)[0] < 5 * np.sqrt(missing)
-    assert atlas.completeness.level == "proved"
+    assert atlas.completeness.level == "counted"
 
 
 def test_a_loop_that_cannot_move_is_proved_not_to():
@@ -141,13 +141,13 @@ def test_a_loop_that_cannot_move_is_proved_not_to():
     offsets = rng.uniform(-0.3, 0.3, 6)
     atlas = curves_of(Loop(lengths, twists, offsets, "general 6R"))
     assert not atlas.forms
-    assert atlas.completeness.level == "proved"
+    assert atlas.completeness.level == "counted"
     assert atlas.completeness.statement.startswith("there is no motion")
 
 
 def test_surfaces_and_long_loops_are_estimated():
     planar = Loop((1.0, 1.2, 0.9, 1.1, 0.8), (0.0,) * 5, (0.0,) * 5, "planar 5R")
-    settings = SearchSettings(starts=20, charts=50, prove=True)
+    settings = SearchSettings(starts=20, charts=50, count=True)
     atlas = curves_of(planar, settings=settings)
     assert atlas.completeness.level == "estimated"
     assert "could not be made complete" in atlas.completeness.statement
@@ -174,9 +174,9 @@ def test_little_time_ends_at_numbers_alone():
 def test_random_members_are_proved_and_other_seeds_find_the_same(name, seed):
     found = entry(name)
     problem = Closure(found.build(**found.draw(np.random.default_rng(seed))))
-    settings = SearchSettings(starts=20, prove=True)
+    settings = SearchSettings(starts=20, count=True)
     atlases = [explore(problem, settings=settings, seed=k) for k in range(2)]
-    assert [a.completeness.level for a in atlases] == ["proved"] * 2
+    assert [a.completeness.level for a in atlases] == ["counted"] * 2
     lengths = [sorted(form.branch.length for form in a.forms) for a in atlases]
     np.testing.assert_allclose(lengths[0], lengths[1], rtol=1e-9)
 
@@ -199,7 +199,7 @@ ONE_START = SearchSettings(starts=1)
 def test_every_isolated_assembly_is_in_the_atlas_whatever_the_seed(loop, count, seed):
     atlas = curves_of(loop, settings=ONE_START, seed=seed)
     assert len(atlas.rigid) == count
-    assert atlas.completeness.level == "proved"
+    assert atlas.completeness.level == "counted"
     assert "no isolated assembly of full rank is missing" in (
         atlas.completeness.statement
     )

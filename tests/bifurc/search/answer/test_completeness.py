@@ -49,7 +49,7 @@ def test_a_start_that_cannot_be_corrected_reached_no_solution():
     assert lost.statement.startswith("none of 2 random starts reached a solution")
 
 
-@pytest.mark.parametrize("level", ["proved", "certified", "estimated"])
+@pytest.mark.parametrize("level", ["counted", "certified", "estimated"])
 def test_the_word_of_the_audit_stands_before_the_estimate(level):
     findings = findings_of([FORM] * 10)
     audit = Audit((Claim("test", "so it is", level=Level(level)),), np.empty((0, 2)))
@@ -67,12 +67,12 @@ def test_what_ended_a_search_early_is_said_first():
     assert late.missed_probability == 1.0
     findings = findings_of([FORM, None])
     findings.set_audit(
-        Audit((Claim("test", "so it is", level=Level.PROVED),), np.empty((0, 2)))
+        Audit((Claim("test", "so it is", level=Level.COUNTED),), np.empty((0, 2)))
     )
     assert judge_completeness(findings, provenance).level is Level.OUT_OF_TIME
     proven = findings_of([FORM])
     proven.set_audit(
-        Audit((Claim("test", "so it is", level=Level.PROVED),), np.empty((0, 2)))
+        Audit((Claim("test", "so it is", level=Level.COUNTED),), np.empty((0, 2)))
     )
     assert judge_completeness(proven, provenance).level is Level.OUT_OF_TIME
     stopped = judge_completeness(findings_of([FORM]), Provenance(interrupted=True))
