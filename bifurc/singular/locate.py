@@ -217,7 +217,7 @@ def _least_squares(matrix: np.ndarray, sides: np.ndarray, turns: _Turns) -> _Sol
     """The shortest solution of a system (r, n) whose matrix is one with that of null
     spaces."""
     left, sigma, right = np.linalg.svd(matrix, full_matrices=False)
-    largest = max(sigma[0], turns.largest)
+    largest = float(sigma.max(initial=turns.largest))
     regular = sigma > ROUNDING * largest
     shares = (left[:, regular].T @ sides) / sigma[regular]
     return _Solution(

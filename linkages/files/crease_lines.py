@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any, NamedTuple, TypeAlias
 
@@ -17,6 +18,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from linkages.decisions import is_same_vertex
+from linkages.formats.assembly import listed
 from linkages.values import GeometryError, require
 
 Place: TypeAlias = tuple[float, float]
@@ -24,7 +26,9 @@ Edge: TypeAlias = tuple[int, int]
 
 log = logging.getLogger(__name__)
 
-FLAT = "F"
+FLAT, CUT, MOUNTAIN_AND_VALLEY = "F", "C", {"M", "V"}
+FOLDS = {"U", *MOUNTAIN_AND_VALLEY}
+RANKS = "FBCUMV"  # of lines that lie on each other that counts which stands later here
 ROUNDING = 1e-9  # of the largest distance that is merged: below it none is said
 
 
@@ -52,8 +56,9 @@ class _Vertices(NamedTuple):
 def fold_content(lines: Sequence[CreaseLine]) -> dict[str, Any]:
     """The vertices and edges of a FOLD file with these lines.
 
-    What is merged and split is said in a warning. Raises `GeometryError` where there is
-    no line, and where lines that lie on each other disagree.
+    What is merged and split is said in a warning, and where lines lie on each other: a
+    fold counts more than a boundary, and what is a mountain and a valley is unassigned.
+    Raises `GeometryError` where there is no line, and where a cut lies on a fold.
     """
     require(len(lines) > 0, "lines", "none", "the lines of a crease pattern")
     ends = np.array([[line.start, line.end] for line in lines])
@@ -80,17 +85,18 @@ def _edges(
     """The edges between vertices with the line of each; the lines have their ends in
     ``pairs`` (l, 2) of them."""
     tree = KDTree(vertices.points)
-    edges: dict[Edge, CreaseLine] = {}
+    edges = _Edges()
     split, beside = 0, 0.0
     for line, pair in zip(lines, pairs.tolist(), strict=True):
         chain, distance = _chain(tree, pair, within)
         split += len(chain) > 2
         beside = max(beside, distance)
         for edge in pairwise(chain):
-            _add(edges, (min(edge), max(edge)), line)
+            edges.add((min(edge), max(edge)), line)
     empty = int(np.count_nonzero(pairs[:, 0] == pairs[:, 1]))
     _warn(vertices.moved, split, beside, empty, ROUNDING * within)
-    return edges
+    edges.warn()
+    return edges.lines
 
 
 def _crossings(ends: np.ndarray, within: float) -> np.ndarray:
@@ -176,14 +182,40 @@ def _chain(tree: KDTree, pair: Sequence[int], within: float) -> tuple[list[int],
     return chain, float(beside[between].max(initial=0.0))
 
 
-def _add(edges: dict[Edge, CreaseLine], edge: Edge, line: CreaseLine) -> None:
-    """Add an edge of a line; of lines that lie on each other a flat one gives way."""
-    known = edges.get(edge)
-    if known is None or known.letter == FLAT:
-        edges[edge] = line
-    elif line.letter not in (known.letter, FLAT):
-        value = f"{line.letter}, and {known.letter} of {known.place} lies on it"
-        raise GeometryError(line.place, value, "one letter where lines coincide")
+@dataclass(frozen=True)
+class _Edges:
+    """The ``lines`` of edges, and which of them lie on others of another letter, with
+    those that do, ``on_others``."""
+
+    lines: dict[Edge, CreaseLine] = field(default_factory=dict)
+    on_others: dict[str, str] = field(default_factory=dict)
+
+    def add(self, edge: Edge, line: CreaseLine) -> None:
+        """Add an edge of a line."""
+        known = self.lines.setdefault(edge, line)
+        letters = {known.letter, line.letter}
+        if len(letters) == 1:
+            return
+        if CUT in letters and letters & FOLDS:
+            value = f"{line.letter}, and {known.letter} of {known.place} lies on it"
+            raise GeometryError(line.place, value, "no cut where a fold is")
+        if letters == MOUNTAIN_AND_VALLEY:
+            self.lines[edge] = known._replace(letter="U", angle=None)
+        else:
+            ranked = sorted((known, line), key=lambda one: RANKS.index(one.letter))
+            self.lines[edge] = ranked[1]
+        if FLAT not in letters:
+            self.on_others.setdefault(line.place, known.place)
+
+    def warn(self) -> None:
+        """Say that lines lie on others."""
+        if self.on_others:
+            pairs = [f"{one} on {other}" for one, other in self.on_others.items()]
+            log.warning(
+                "lines lie on others of another letter; a fold counts, and is unassigned "
+                "where it is a mountain and a valley: %s",
+                listed(pairs),
+            )
 
 
 def _warn(moved: float, split: int, beside: float, empty: int, least: float) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -22,25 +22,24 @@ def faces_of_edges(
     enclose, each by its vertices counterclockwise.
 
     At the end of an edge a face goes on along the next one clockwise. Edges inside of a
-    face that are joined to none of its sides make faces of their own. Raises
-    `GeometryError` where points have heights, where there is no face, and for an edge
-    that ends inside one.
+    face that are joined to none of its sides make faces of their own; an edge with one
+    face on both sides, as one that ends inside of it, is a side of none. Raises
+    `GeometryError` where points have heights, where there is no face, and where one
+    comes to a vertex twice.
     """
     is_flat = not np.any(points[:, 2])
     allowed = "given where vertices have heights"
     require(is_flat, "faces_vertices", "a missing key", allowed)
-    around = _neighbours(points, ends)
+    between = {
+        (min(start, end), max(start, end))
+        for cycle in _cycles(points, ends)
+        for start, end in cycle
+        if (end, start) not in cycle
+    }
     faces = []
-    sides = sorted({(start, end) for pair in ends for start, end in (pair, pair[::-1])})
-    waiting = set(sides)
-    for first in sides:
-        side = first
-        face = []
-        while side in waiting:
-            waiting.remove(side)
-            face.append(side[0])
-            side = _next_side(around, side)
-        if face and _double_area(points[face]) > 0.0:
+    for cycle in _cycles(points, sorted(between)):
+        face = [start for start, _ in cycle]
+        if _double_area(points[face]) > 0.0:
             faces.append(face)
     require(len(faces) > 0, "edges_vertices", "without a face", "those of a face")
     for face in faces:
@@ -49,6 +48,25 @@ def faces_of_edges(
                 allowed = "such that edges end at others on all sides of a face"
                 raise GeometryError("edges at vertex", vertex, allowed)
     return faces
+
+
+def _cycles(
+    points: np.ndarray, ends: Sequence[Sequence[int]]
+) -> Iterator[dict[tuple[int, int], None]]:
+    """The sides along which faces go round, in order; a face inside of which nothing else
+    is has one such cycle, and so has what is around everything."""
+    around = _neighbours(points, ends)
+    sides = sorted({(start, end) for pair in ends for start, end in (pair, pair[::-1])})
+    waiting = set(sides)
+    for first in sides:
+        side = first
+        cycle: dict[tuple[int, int], None] = {}
+        while side in waiting:
+            waiting.remove(side)
+            cycle[side] = None
+            side = _next_side(around, side)
+        if cycle:
+            yield cycle
 
 
 def triangles_of(points: np.ndarray, face: Sequence[int]) -> list[list[int]]:

@@ -25,6 +25,7 @@ from linkages.decisions import is_parallel_axis, keeps_angle
 from linkages.files.faces import check_joined, faces_of_edges, triangles_of
 from linkages.files.misfits import closed_near
 from linkages.files.rounded_creases import Ray, exact_points
+from linkages.formats.assembly import listed
 from linkages.mechanisms.joint import Joint, JointKind
 from linkages.mechanisms.mechanism import Crease, Mechanism, Panel
 from linkages.mechanisms.origin import Coordinates, WrittenNumber, counted_from_near
@@ -116,6 +117,7 @@ def mechanism_of_fold(content: Frame, name: str) -> Mechanism:
         faces = _faces(frame, len(points))
     else:
         faces = faces_of_edges(points, _ends(frame, len(points)))
+        edges = _on_faces(edges, faces)
         folded = [side for side, edge in edges.items() if edge.letter in HINGES]
         check_joined(points, edges.keys(), folded, faces)
     if _is_triangulated(frame):
@@ -424,6 +426,28 @@ def _creases(faces: Sequence[list[int]], edges: Mapping[Side, _Edge]) -> list[_C
     return creases
 
 
+def _on_faces(
+    edges: Mapping[Side, _Edge], faces: Sequence[list[int]]
+) -> dict[Side, _Edge]:
+    """The edges that are sides of faces; with a warning for creases that are none, as
+    they end inside of a face."""
+    sides = {
+        (min(side), max(side))
+        for face in faces
+        for side in zip(face, [*face[1:], face[0]], strict=True)
+    }
+    inside = [
+        edge.name
+        for side, edge in edges.items()
+        if side not in sides and edge.letter in HINGES
+    ]
+    if inside:
+        log.warning(
+            "creases that end inside of a face fold nothing: %s", listed(inside)
+        )
+    return {side: edge for side, edge in edges.items() if side in sides}
+
+
 class _Hinge(NamedTuple):
     """The ``joint`` of a crease, its ``letter``, and the fold ``angle`` (rad) that the
     file gives."""
@@ -440,12 +464,16 @@ def _hinges(
     bodies: Sequence[str],
     is_folded: bool,
 ) -> list[_Hinge]:
-    """The hinges between bodies, those in one line once; of what ``is_folded`` in space
-    the angles are seen there."""
+    """The hinges between bodies, those in one line once, with a warning for creases inside
+    of one; of what ``is_folded`` in space the angles are seen there."""
     hinges: list[_Hinge] = []
     between: defaultdict[frozenset[str], list[Joint]] = defaultdict(list)
+    inside: list[str] = []
     for crease in creases:
         if crease.edge.letter not in HINGES:
+            continue
+        if bodies[crease.left] == bodies[crease.right]:
+            inside.append(crease.edge.name)
             continue
         left = _normal(points[faces[crease.left]])
         right = _normal(points[faces[crease.right]])
@@ -458,6 +486,11 @@ def _hinges(
         if is_folded:
             angle = _dihedral(left, right, np.array(joint.direction))
         hinges.append(_Hinge(joint, crease.edge.letter, angle))
+    if inside:
+        log.warning(
+            "creases of which flat edges make both faces one body do not fold: %s",
+            listed(inside),
+        )
     return hinges
 
 
@@ -521,8 +554,6 @@ def _joint(
     what = f"crease {crease.edge.name}"
     require(length != 0.0, what, "its ends coincide,", "of a length other than zero")
     pair = (bodies[crease.left], bodies[crease.right])
-    allowed = f"flat (F) as well, as other edges make its faces one body, {pair[0]}"
-    require(pair[0] != pair[1], what, "a fold", allowed)
     along = tuple(((start - end) / length).tolist())
     middle = tuple((0.5 * (start + end) + crease.edge.height * upwards).tolist())
     return Joint(crease.edge.name, JointKind.REVOLUTE, pair, middle, along)

@@ -2,9 +2,12 @@
 
 import logging
 
+import numpy as np
 import pytest
 
 import linkages
+from bifurc.singular.locate import locate_singular_point
+from linkages.closure.closure import Closure
 from linkages.file import LinkageFileError
 
 RIM = "1 0 0 4 0\n1 4 0 4 4\n1 4 4 0 4\n1 0 4 0 0\n"
@@ -15,6 +18,9 @@ SVG = """<?xml version="1.0"?>
 <svg xmlns="http://www.w3.org/2000/svg"><style>.m, .n {{stroke: #F00}}</style>
 <defs><line x1="0" y1="0" x2="9" y2="9" stroke="red"/></defs>
 <g transform="translate(7, -3) rotate(30) scale(10)">{}</g></svg>"""
+CUT_ON_FOLD = SVG.format(
+    '<line x2="4" stroke="red"/>\n<line x2="4" stroke="lime"/><rect width="4" height="4"/>'
+)
 DRAWN = """<rect width="4px" height="4" stroke="black"/>
 <line x1="0" y1="0" x2="4" y2="4" class="m"/>
 <path d="M4 0l-2,2" style="fill:none;stroke:blue"/>
@@ -84,6 +90,42 @@ def test_opacity_is_the_fold_angle(tmp_path, caplog):
 
 
 @pytest.mark.parametrize(
+    ("line", "letters"),
+    [
+        pytest.param("3 0 0 2 2\n", {"0-4": None}, id="a valley on a mountain"),
+        pytest.param("1 0 0 2 2\n", {"0-4": "M"}, id="a boundary on a mountain"),
+        pytest.param("3 0 0 4 0\n", {}, id="a valley on the rim"),
+    ],
+)
+def test_of_lines_on_each_other_the_fold_counts(line, letters, tmp_path, caplog):
+    given = creases(read(tmp_path, CP, "cp"))
+    found = read(tmp_path, CP + line, "cp")
+    assert {joint.name for joint in found.joints} == set(given)
+    expected = {**given, **letters}
+    assert creases(found) == {k: one for k, one in expected.items() if one}
+    assert "lines lie on others of another letter" in caplog.text
+    assert "line 8 on line" in caplog.text
+
+
+def test_creases_that_end_inside_of_faces_fold_nothing(tmp_path, caplog):
+    given = read(tmp_path, CP, "cp")
+    found = read(tmp_path, CP + "2 0 0 1 0.5\n3 2 0.5 2.5 1\n", "cp")
+    assert creases(found) == creases(given)
+    assert len(found.panels) == len(given.panels)
+    assert "end inside of a face fold nothing: 0-5, 6-7" in caplog.text
+
+
+def test_a_crease_inside_of_one_body_does_not_fold(tmp_path, caplog):
+    """Of three creases about a vertex two are flat, so that the third one cannot fold."""
+    drawn = """<rect width="4" height="4" stroke="black"/>
+    <path d="M0 0L1 1M4 0L1 1" stroke="yellow"/>
+    <path d="M1 1L0 4M4 2L2 4" stroke="red"/>"""
+    found = read(tmp_path, SVG.format(drawn), "svg")
+    assert len(found.joints) == 1
+    assert "make both faces one body do not fold" in caplog.text
+
+
+@pytest.mark.parametrize(
     ("text", "ending", "message"),
     [
         ("", "cp", "lines: none is not allowed"),
@@ -92,9 +134,7 @@ def test_opacity_is_the_fold_angle(tmp_path, caplog):
         ("2 0 0 1 x\n", "cp", 'line 1: "x" is not allowed; it must be a number'),
         ("2 0 0 1 1e999\n", "cp", "line 1: inf"),
         ("2 1 1 1 1\n", "cp", "lines: all in one point"),
-        (CP + "3 0 0 2 2\n", "cp", "line 8: V, and M of line 5 lies on it"),
-        (RIM + "2 1 1 3 3\n", "cp", "vertex 4: inside of face f0"),
-        (RIM + "2 0 0 3 2\n", "cp", "edges at vertex: 0"),
+        (CUT_ON_FOLD, "svg", "C, and M of <line> on line 5 lies on it"),
         ("<svg><g></svg>", "svg", "mismatched tag"),
         ("<html/>", "svg", "first element, line 1: <html>"),
         (SVG.format('<path d="M0 0C1 1 2 2 3 3" stroke="red"/>'), "svg", '"C"'),
@@ -117,3 +157,13 @@ def test_a_file_that_is_no_pattern_is_refused_in_one_line(
         read(tmp_path, text, ending)
     assert message in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_creases_that_meet_nowhere_are_located_without_equations(tmp_path):
+    strip = RIM + "2 1 0 1 4\n3 2 0 2 4\n"
+    problem = Closure(read(tmp_path, strip, "cp"))
+    flat = np.zeros(2)
+    assert problem.residuals(flat[None]).shape == (1, 0)
+    located = locate_singular_point(problem, flat, 2, 0.5)
+    assert located is not None
+    assert located.u == pytest.approx(flat)

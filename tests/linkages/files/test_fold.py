@@ -499,14 +499,15 @@ def test_faces_come_from_edges_where_they_are_not_given(tmp_path):
     assert outlines[0] == outlines[1]
 
 
-def test_an_edge_that_ends_inside_a_face_is_named_by_its_vertex(tmp_path):
+def test_a_crease_that_ends_inside_a_face_folds_nothing(tmp_path, caplog):
     content = flat_vertex("VVVV")
     del content["faces_vertices"]
     content["vertices_coords"].append([0.2, 0.1])
     content["edges_vertices"].append([0, 5])
     content["edges_assignment"].append("V")
-    with pytest.raises(LinkageFileError, match="edges at vertex: 0"):
-        read(tmp_path, content)
+    found = read(tmp_path, content)
+    assert len(found.joints) == 4
+    assert "creases that end inside of a face fold nothing: 0-5" in caplog.text
 
 
 def test_angles_and_folded_coordinates_leave_the_same_way_to_go(tmp_path):
