@@ -9,10 +9,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, partial
 from itertools import compress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -277,7 +278,7 @@ class MechanismSubject(Subject):
     def closure(self) -> Closure:
         from linkages.readout.rigidity import is_as_drawn
 
-        closure = Closure(self.mechanism, structure=self.readout.structure)
+        closure = self.readout.closure
         closure.as_drawn = partial(is_as_drawn, self.readout)
         return closure
 
@@ -527,7 +528,18 @@ def _of_mechanism(mechanism: Mechanism) -> MechanismSubject:
     return SingleLoopSubject(readout, single)
 
 
-@lru_cache(maxsize=2)
+_KNOWN: WeakKeyDictionary[Atlas, Subject] = WeakKeyDictionary()
+
+
 def subject_at(atlas: Atlas) -> Subject:
     """The subject of an atlas; raises `NoLinkageError` where it is no linkage."""
-    return as_subject(mechanism_at(atlas) or loop_of(atlas))
+    if atlas not in _KNOWN:
+        _KNOWN[atlas] = as_subject(mechanism_at(atlas) or loop_of(atlas))
+    return _KNOWN[atlas]
+
+
+def keep_subject(atlas: Atlas, subject: Subject) -> None:
+    """Let a mechanism be the subject of an atlas as it is, with its loops and equations:
+    those of a large one take long."""
+    if isinstance(subject, MechanismSubject):
+        _KNOWN[atlas] = subject

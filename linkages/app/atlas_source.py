@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
-from bifurc.limits import Deadline
+from bifurc.limits import Deadline, deadline_within, made_before_the_end, until
 from linkages.app.answer.verdict import judge
 from linkages.app.choice import choose_held, require_table
 from linkages.app.exit_codes import CommandError, ExitCode
@@ -45,7 +45,7 @@ def explore_parts(
     """The maps of mechanisms, one after the other, that share one budget."""
     if len(parts) == 1:
         return [explore_linkage(parts[0], search)]
-    deadline = Deadline(search.budget)
+    deadline = deadline_within(search.budget)
     atlases = []
     for number, part in enumerate(parts):
         budget = deadline.left / (len(parts) - number)
@@ -105,8 +105,12 @@ def atlas_of(source: str, options: AtlasOptions) -> Atlas:
                 "saved atlas, which is not searched again"
             )
         return open_linkage_atlas(source)
-    linkage = choose_held(source, options.parameters, options.hold)
-    return _explored(linkage, options.search)
+    with until(Deadline(options.search.budget)):
+        linkage = made_before_the_end(
+            f"while {source} was read",
+            lambda: choose_held(source, options.parameters, options.hold),
+        )
+        return _explored(linkage, options.search)
 
 
 def route_between(atlas: Atlas, start: str, goal: str) -> Route:

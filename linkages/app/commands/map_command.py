@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bifurc.limits import HeldInterrupt
+from bifurc.limits import Deadline, HeldInterrupt, made_before_the_end, until
 from linkages.app import options
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 
@@ -117,7 +117,12 @@ def map_command(
     require_out(out)
     for option in [*proof.names, *["--digits"] * bool(digits)]:
         require_exact(option, as_json, nearest, choice.hold)
-    mechanism, exact = choose_mapped(linkage, choice, nearest)
+    deadline = Deadline(choice.search.budget)
+    with until(deadline):
+        stage = f"while {linkage} was read"
+        mechanism, exact = made_before_the_end(
+            stage, lambda: choose_mapped(linkage, choice, nearest)
+        )
     require_proof(proof, linkage, mechanism)
     parts = mechanism.parts
     folders = folders_of(out, len(parts))
@@ -126,7 +131,9 @@ def map_command(
         require_folder(folder)
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
-        atlases = explore_parts(parts, replace(choice.search, certify=not no_certify))
+        with until(deadline):
+            search = replace(choice.search, certify=not no_certify)
+            atlases = explore_parts(parts, search)
         paths = report_and_write(atlases, folders, as_json, choice.verbose, exact)
     if digits:
         confirm(atlases, linkage, choice.parameters, digits)
