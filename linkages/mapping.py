@@ -73,7 +73,7 @@ def map_linkage(
         with until(current_deadline().share(WHOLE if simpler else 1.0)):
             atlas = subject.labelled(search(traced))
         is_open = not (atlas.forms or atlas.surfaces or interrupt.was_pressed)
-        if simpler and is_open:
+        if simpler and is_open and made_in_time(lambda: simpler.traced):
             subject = simpler
             atlas = simpler.labelled(search(simpler.traced))
         interrupt.settle()

@@ -99,7 +99,7 @@ function factsOf(scene, track, passes) {
   const missed = track.misclosure ? `, misses closure by ${track.misclosure.toExponential(1)}` : "";
   const closure = track.closed ? "closed" : "open";
   const kind = isCurve(track) ? `${track.kind === "form" ? "" : `${track.kind}, `}${closure}${missed}` : `${track.kind}${missed}`;
-  const length = isCurve(track) ? arclengthText(track.length, scene) : `${track.samples.length} places`;
+  const length = isCurve(track) ? arclengthText(track.length, scene) : `${track.samples.length} place${track.samples.length === 1 ? "" : "s"}`;
   const points = new Set(passes.map(({ point }) => point.name)).size;
   const facts = [track.name, kind, length, `mobility ${track.mobility}`].join(" ").toLowerCase();
   return { kind, length, points, facts, mobility: track.mobility, size: track.length };

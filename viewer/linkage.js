@@ -49,7 +49,7 @@ const LETTER = 9; // pixels: the width of a letter of a name
 const NAME_GAP = 17; // pixels between the middles of two names, one above the other
 const BESIDE_JOINT = 9; // pixels between the edge of a joint and the middle of its name
 const FARTHEST = 3; // of a name's place from where it belongs, in NAME_GAP beyond its own width
-const MANY_NAMES = 60; // more of them appear near the pointer only
+const MANY_NAMES = 30; // more of them appear near the pointer only
 const NEAR = 70; // pixels
 const MANY_RODS = 300; // more of them are drawn with fewer sides
 // symbols of joints, their axis along y, of the size of a joint's radius and of length 1

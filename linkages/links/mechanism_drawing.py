@@ -19,6 +19,7 @@ ASIDE = 0.7  # how far along its axis a joint is drawn that would cover another 
 RAIL_END = 0.15  # how far a rail goes on beyond the places that the slide comes to
 ENOUGH_OF_AN_AXIS = 0.35  # of its length: showing more of it makes no view better
 MOST_SPOTS = 60  # joints that are looked at for the best view
+OVER_A_SHEET = View(elevation=60.0, azimuth=-90.0)  # x is to the right
 TRIANGLE = 3  # joints of a body that is drawn as a polygon; one of more is a star
 
 Segment: TypeAlias = list[list[float]]
@@ -58,11 +59,11 @@ def draw_bodies(structure: Structure, points: np.ndarray) -> list[Drawing]:
 
 def joints_of_bodies(mechanism: Mechanism) -> dict[str, list[int]]:
     """The numbers of the joints of every body."""
-    numbers: dict[str, list[int]] = {body: [] for body in mechanism.bodies}
-    for number, joint in enumerate(mechanism.joints):
-        for body in joint.bodies:
-            numbers[body].append(number)
-    return numbers
+    numbers = {joint.name: number for number, joint in enumerate(mechanism.joints)}
+    return {
+        body: [numbers[joint.name] for joint in mechanism.joints_of[body]]
+        for body in mechanism.bodies
+    }
 
 
 def _lines(places: np.ndarray) -> list[Segment]:
@@ -210,7 +211,7 @@ def _places(structure: Structure) -> np.ndarray:
     short, and apart from the others of its bodies; between panels, in the middle of
     their hinge."""
     mechanism = structure.mechanism
-    places = structure.size.points / structure.unit
+    places = _shortest_places(structure)
     sheets = _sheets(mechanism)
     for number, joint in enumerate(mechanism.joints):
         if joint.kind.facets.place is Place.ALONG and sheets.keys() >= {*joint.bodies}:
@@ -228,6 +229,18 @@ def _places(structure: Structure) -> np.ndarray:
             places[number] = places[others].mean(axis=0)
     apart: np.ndarray = places + _steps_aside(mechanism, places)
     return apart
+
+
+def _shortest_places(structure: Structure) -> np.ndarray:
+    """The points (k, 3) of joints between which bodies are short; a turn and a slide that
+    are one cylindrical joint have one."""
+    joints = structure.mechanism.joints
+    numbers = {joint.name: number for number, joint in enumerate(joints)}
+    size = structure.size
+    places = np.zeros((len(joints), 3))
+    for place, point in zip(size.places, size.points, strict=True):
+        places[[numbers[name] for name in place.joints]] = point / structure.unit
+    return places
 
 
 def _sheets(mechanism: Mechanism) -> dict[str, np.ndarray]:
@@ -298,13 +311,16 @@ def breadths_of_mechanism(structure: Structure, points: np.ndarray) -> np.ndarra
 
 def best_view_of_mechanism(structure: Structure, point: np.ndarray) -> View:
     """From where the joints of a configuration (n,) are seen farthest apart, the held
-    body at rest; some of them where they are many."""
+    body at rest; some of them where they are many. A sheet that lies flat is seen as it is
+    drawn, from above and in front."""
     mechanism = structure.mechanism
     poses = Poses(structure).at(point[None])[0]
     held = mechanism.bodies.index(held_body(mechanism))
     poses = np.linalg.inv(poses[held]) @ poses
     seats = _Seats(structure)
     spots = seats.at(poses)
+    if mechanism.panels and np.ptp(spots[:, 2]) < SAME:
+        return OVER_A_SHEET
     axes = []
     for joint, holder in zip(mechanism.joints, seats.holders, strict=True):
         if joint.kind.facets.place is Place.ALONG:

@@ -18,7 +18,6 @@ from linkages.decisions import is_parallel_axis
 from linkages.geometry_table import link_name
 from linkages.links.distances import MARGIN, largest_rates, places_along
 from linkages.links.mechanism_drawing import (
-    SAME,
     Drawing,
     best_view_of_mechanism,
     breadths_of_mechanism,
@@ -38,7 +37,7 @@ from linkages.structure.structure import Structure
 STEP = 1e-5  # rad, along a branch: of the differences that are taken for speeds
 UPWARD = np.array([0.0, 0.0, 1.0])
 UPRIGHT = np.eye(3)
-OF_EXTENT, OF_BODY = 0.03, 0.17  # the radius of a joint, in what it is drawn in
+OF_EXTENT, OF_BODY = 0.03, 0.12  # the radius of a joint, in what it is drawn in
 FLAT = 1e-9  # sine of a twist of a planar loop
 
 Pair: TypeAlias = tuple[int, int]  # of bodies, by their numbers
@@ -132,20 +131,20 @@ class Parts(ABC):
 
     def joint_radius(self, point: np.ndarray, extent: float) -> float:
         """How large a joint is drawn at a configuration (n,): in the ``extent`` of all,
-        and smaller where bodies are, from joint to joint, small beside that."""
+        and smaller where bodies, from joint to joint, are small beside that, as panels
+        of a sheet are."""
         symbols = self.symbols_at(point)
-        places = np.array([symbol.place for symbol in symbols])
-        on_body: dict[int, list[int]] = {}
-        for number, symbol in enumerate(symbols):
+        on_body: dict[int, list[np.ndarray]] = {}
+        for symbol in symbols:
             for body in symbol.bodies:
-                on_body.setdefault(body, []).append(number)
-        nearest = np.full(len(symbols), np.inf)
-        for numbers in on_body.values():
-            own = places[numbers]
-            gaps = np.linalg.norm(own[:, None] - own, axis=-1)
-            gaps[gaps < SAME * extent] = np.inf
-            nearest[numbers] = np.minimum(nearest[numbers], gaps.min(axis=1))
-        return min(OF_EXTENT * extent, OF_BODY * float(np.median(nearest)))
+                on_body.setdefault(body, []).append(symbol.place)
+        sizes = [
+            np.linalg.norm(np.ptp(places, axis=0))
+            for places in on_body.values()
+            if len(places) > 1
+        ]
+        usual = float(np.median(sizes)) if sizes else np.inf
+        return min(OF_EXTENT * extent, OF_BODY * usual)
 
     @abstractmethod
     def are_joined(self, pair: Pair) -> bool:

@@ -64,6 +64,7 @@ from bifurc.figures.style import (
 from bifurc.tables import count_of
 from bifurc.torus import difference
 from linkages.labels import FormLabels
+from linkages.links.parts import Parts
 from linkages.links.traced_points import TracedPoint, traced_point
 from linkages.mechanisms.mechanism import Lock
 from linkages.readout.dead_points import driven_dead_points
@@ -99,7 +100,6 @@ def make_view_document(
     first = first_place(atlas).point
     view = parts.best_view(first)
     points = np.concatenate(configurations(atlas))
-    extent = parts.extent(first, parts.lines(points))
     return {
         "title": title_of(atlas),
         "verdict": verdict,
@@ -117,10 +117,15 @@ def make_view_document(
         "plane": choose_plane(atlas),
         "principal": _principal(atlas),
         "view": view._asdict(),
-        "joint_radius": parts.joint_radius(first, extent),
+        "joint_radius": _joint_radius(parts, first, points),
         "trace": [_traced(traced_point(parts, text)) for text in trace],
         "drawn": _drawn(atlas),
     }
+
+
+def _joint_radius(parts: Parts, first: np.ndarray, points: np.ndarray) -> float:
+    extent = parts.extent(first, parts.lines(points))
+    return parts.joint_radius(first, extent)
 
 
 def _places_on_forms(atlas: Atlas) -> Document:
