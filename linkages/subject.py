@@ -304,7 +304,8 @@ class MechanismSubject(Subject):
     def drivers(self) -> list[int]:
         """The unknowns, by index, of the joint that drives, else of those with motors or
         of the first that is free, and of those with limits, which every slide has."""
-        free = [one for one in self.mechanism.variables if one.label in self.labels]
+        unknown = set(self.labels)
+        free = [one for one in self.mechanism.variables if one.label in unknown]
         limited = [one for one in free if one.limits or not one.motion.is_turn]
         driver, motors = self.mechanism.driver, self.mechanism.motors
         drives = [one for one in free if one.label == driver]
