@@ -13,7 +13,6 @@ from functools import cached_property, partial
 from itertools import compress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -529,18 +528,25 @@ def _of_mechanism(mechanism: Mechanism) -> MechanismSubject:
     return SingleLoopSubject(readout, single)
 
 
-_KNOWN: WeakKeyDictionary[Atlas, Subject] = WeakKeyDictionary()
+_LATEST: dict[Atlas, Subject] = {}  # the last that were asked for
+MOST_KEPT = 8
 
 
 def subject_at(atlas: Atlas) -> Subject:
     """The subject of an atlas; raises `NoLinkageError` where it is no linkage."""
-    if atlas not in _KNOWN:
-        _KNOWN[atlas] = as_subject(mechanism_at(atlas) or loop_of(atlas))
-    return _KNOWN[atlas]
+    if atlas not in _LATEST:
+        _keep(atlas, as_subject(mechanism_at(atlas) or loop_of(atlas)))
+    return _LATEST[atlas]
 
 
 def keep_subject(atlas: Atlas, subject: Subject) -> None:
     """Let a mechanism be the subject of an atlas as it is, with its loops and equations:
     those of a large one take long."""
     if isinstance(subject, MechanismSubject):
-        _KNOWN[atlas] = subject
+        _keep(atlas, subject)
+
+
+def _keep(atlas: Atlas, subject: Subject) -> None:
+    _LATEST[atlas] = subject
+    if len(_LATEST) > MOST_KEPT:
+        del _LATEST[next(iter(_LATEST))]

@@ -50,7 +50,7 @@ const NAME_GAP = 17; // pixels between the middles of two names, one above the o
 const BESIDE_JOINT = 9; // pixels between the edge of a joint and the middle of its name
 const FARTHEST = 3; // of a name's place from where it belongs, in NAME_GAP beyond its own width
 const MANY_NAMES = 30; // more of them appear near the pointer only
-const NEAR = 70; // pixels
+const [NEAR, MOST_NEAR] = [70, 6]; // pixels; names that are shown there
 const MANY_RODS = 300; // more of them are drawn with fewer sides
 // symbols of joints, their axis along y, of the size of a joint's radius and of length 1
 const SHAPES = {
@@ -458,7 +458,8 @@ export class LinkageView {
       const edge = Math.max(half, 10);
       const spot = { x: Math.min(Math.max(x, edge), width - edge), y: Math.min(Math.max(y, 10), height - 10), half };
       const strayed = Math.hypot(spot.x - wanted[i].x, spot.y - wanted[i].y) > this.nameWidth + FARTHEST * NAME_GAP;
-      if (!strayed && [...shown.values()].every((other) => !cover(spot, other))) shown.set(i, spot);
+      const isFull = this.pointer && shown.size === MOST_NEAR;
+      if (!strayed && !isFull && [...shown.values()].every((other) => !cover(spot, other))) shown.set(i, spot);
     });
     this.numbers.forEach((number, i) => {
       const spot = shown.get(i);

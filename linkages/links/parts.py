@@ -37,7 +37,7 @@ from linkages.structure.structure import Structure
 STEP = 1e-5  # rad, along a branch: of the differences that are taken for speeds
 UPWARD = np.array([0.0, 0.0, 1.0])
 UPRIGHT = np.eye(3)
-OF_EXTENT, OF_BODY = 0.03, 0.12  # the radius of a joint, in what it is drawn in
+OF_EXTENT, OF_BODY = 0.03, 0.09  # the radius of a joint, in what it is drawn in
 FLAT = 1e-9  # sine of a twist of a planar loop
 
 Pair: TypeAlias = tuple[int, int]  # of bodies, by their numbers
