@@ -23,6 +23,7 @@ from .diagrams.make_diagram import diagram_of as diagram_of
 from .domain import Domain as Domain
 from .equations.symbolic import SymbolicProblem as SymbolicProblem
 from .errors import BifurcError as BifurcError
+from .errors import OutOfTimeError as OutOfTimeError
 from .errors import ProblemError as ProblemError
 from .errors import RouteError as RouteError
 from .figures.diagram_plot import plot_diagram as plot_diagram

@@ -43,6 +43,17 @@ class UnknownNameError(BifurcError, KeyError):
         super().__init__(name)
 
 
+class OutOfTimeError(BifurcError):
+    """The time was over, or Ctrl-C pressed (``is_interrupted``), at a ``stage`` before
+    which nothing is known."""
+
+    def __init__(self, stage: str, is_interrupted: bool):
+        self.stage = stage
+        self.is_interrupted = is_interrupted
+        end = "it was interrupted" if is_interrupted else "the time was over"
+        super().__init__(f"{end} {stage}; whether it moves is not known")
+
+
 class RouteError(BifurcError, LookupError):
     """There is no such form or surface, or no route from one to another."""
 

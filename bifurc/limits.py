@@ -27,6 +27,8 @@ from functools import cache, wraps
 from types import FrameType
 from typing import TYPE_CHECKING, Any, ClassVar, ParamSpec, TypeVar
 
+from bifurc.errors import OutOfTimeError
+
 if TYPE_CHECKING:
     from threadpoolctl import ThreadpoolController
 
@@ -36,6 +38,7 @@ Arguments = ParamSpec("Arguments")
 Value = TypeVar("Value")
 
 GRACE = 0.1  # s after a deadline in which what asks for the time ends by itself
+PATIENCE = 0.5  # s after it for what all else needs: of a small problem it is made
 AGAIN = 0.02  # s until it is tried again to cut off, or to raise
 LASTING = 500  # rows of a matrix whose decomposition takes a tenth of a second
 
@@ -294,6 +297,17 @@ def made_in_time(make: Callable[[], Value]) -> Value | None:
             return make()
     except CutOff:
         return None
+
+
+def made_before_the_end(stage: str, make: Callable[[], Value]) -> Value:
+    """The same of what nothing is known without: it has a little longer. Raises
+    `OutOfTimeError`, which names the ``stage``."""
+    deadline = current_deadline()
+    try:
+        with cut_off_after(replace(deadline, seconds=deadline.seconds + PATIENCE)):
+            return make()
+    except CutOff:
+        raise OutOfTimeError(stage, deadline.is_interrupted) from None
 
 
 _LEFT: set[threading.Thread] = set()  # calls that a cut has left behind, or may leave

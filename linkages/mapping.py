@@ -8,13 +8,20 @@ from functools import partial
 
 from bifurc.atlas import Atlas
 from bifurc.checks import check_type
-from bifurc.limits import HeldInterrupt, current_deadline, deadline_within, until
+from bifurc.limits import (
+    HeldInterrupt,
+    current_deadline,
+    deadline_within,
+    made_before_the_end,
+    made_in_time,
+    until,
+)
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
 from linkages.entry import Linkage
 from linkages.loop import Loop
 from linkages.mechanisms.mechanism import Mechanism
-from linkages.subject import as_subject
+from linkages.subject import as_subject, keep_subject
 
 DEFAULT_SEARCH = SearchSettings()
 WHOLE = 0.5  # of the time, for a whole sheet of which a simpler one is known to move
@@ -38,7 +45,8 @@ def map_linkage(
     of a mechanism, also of one that is a single loop. Every form has its
     ``certificate``, unless the settings say otherwise. Raises `ProblemError` for
     settings of another type, `GeometryError` for anything but a linkage or a mechanism,
-    and for a loop with lengths whose squares leave the range of doubles.
+    and for a loop with lengths whose squares leave the range of doubles, and
+    `OutOfTimeError` where the time is over before there are equations.
 
     >>> import linkages
     >>> atlas = linkages.map_linkage(linkages.load("rhombus"))
@@ -52,14 +60,22 @@ def map_linkage(
     """
     check_type("settings", settings, SearchSettings)
     deadline = deadline_within(settings.budget)
-    subject = as_subject(linkage)
     search = partial(explore, settings=settings, seed=seed, progress=progress)
     with HeldInterrupt() as interrupt, until(replace(deadline, interrupt=interrupt)):
-        simpler = subject.simpler()
+        parts = ""
+        if isinstance(linkage, Mechanism):
+            parts = f" of {len(linkage.bodies)} bodies"
+        stage = f"while the closed loops{parts} were looked for"
+        subject = made_before_the_end(stage, lambda: as_subject(linkage))
+        stage = f"while the equations{parts} were written"
+        traced = made_before_the_end(stage, lambda: subject.traced)
+        simpler = made_in_time(subject.simpler)
         with until(current_deadline().share(WHOLE if simpler else 1.0)):
-            atlas = subject.labelled(search(subject.traced))
+            atlas = subject.labelled(search(traced))
         is_open = not (atlas.forms or atlas.surfaces or interrupt.was_pressed)
-        if simpler and is_open:
+        if simpler and is_open and made_in_time(lambda: simpler.traced):
+            subject = simpler
             atlas = simpler.labelled(search(simpler.traced))
         interrupt.settle()
+    keep_subject(atlas, subject)
     return atlas

@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, partial
 from itertools import compress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -277,7 +277,7 @@ class MechanismSubject(Subject):
     def closure(self) -> Closure:
         from linkages.readout.rigidity import is_as_drawn
 
-        closure = Closure(self.mechanism, structure=self.readout.structure)
+        closure = self.readout.closure
         closure.as_drawn = partial(is_as_drawn, self.readout)
         return closure
 
@@ -303,7 +303,8 @@ class MechanismSubject(Subject):
     def drivers(self) -> list[int]:
         """The unknowns, by index, of the joint that drives, else of those with motors or
         of the first that is free, and of those with limits, which every slide has."""
-        free = [one for one in self.mechanism.variables if one.label in self.labels]
+        unknown = set(self.labels)
+        free = [one for one in self.mechanism.variables if one.label in unknown]
         limited = [one for one in free if one.limits or not one.motion.is_turn]
         driver, motors = self.mechanism.driver, self.mechanism.motors
         drives = [one for one in free if one.label == driver]
@@ -527,7 +528,25 @@ def _of_mechanism(mechanism: Mechanism) -> MechanismSubject:
     return SingleLoopSubject(readout, single)
 
 
-@lru_cache(maxsize=2)
+_LATEST: dict[Atlas, Subject] = {}  # the last that were asked for
+MOST_KEPT = 8
+
+
 def subject_at(atlas: Atlas) -> Subject:
     """The subject of an atlas; raises `NoLinkageError` where it is no linkage."""
-    return as_subject(mechanism_at(atlas) or loop_of(atlas))
+    if atlas not in _LATEST:
+        _keep(atlas, as_subject(mechanism_at(atlas) or loop_of(atlas)))
+    return _LATEST[atlas]
+
+
+def keep_subject(atlas: Atlas, subject: Subject) -> None:
+    """Let a mechanism be the subject of an atlas as it is, with its loops and equations:
+    those of a large one take long."""
+    if isinstance(subject, MechanismSubject):
+        _keep(atlas, subject)
+
+
+def _keep(atlas: Atlas, subject: Subject) -> None:
+    _LATEST[atlas] = subject
+    if len(_LATEST) > MOST_KEPT:
+        del _LATEST[next(iter(_LATEST))]

@@ -19,9 +19,7 @@ export function makeApi(viewer) {
     stop: () => viewer.stop(),
     route: (form) => viewer.routeTo(form),
     playRoute: (form, seconds) => viewer.playRoute(form, seconds),
-    get drawCalls() {
-      return viewer.view?.drawCalls ?? 0;
-    },
+    effort: () => viewer.view?.effort,
   };
 }
 

@@ -1,11 +1,12 @@
 // What to choose from: the forms, the branches that leave a singular point, and the goal of a route.
 
+import { arclengthText } from "./angles.js";
 import { leavingBranches } from "./crossings.js";
 import { drawing, element } from "./elements.js";
 import { isCurve } from "./tracks.js";
 
 const KEYS = 9; // forms that have a key of their own
-const MANY = 20; // forms up to which the list has no filter
+const MANY = 20; // forms up to which the table has no filter
 
 /** A short line as the map draws the curve of a track. */
 function swatch(track, color) {
@@ -14,60 +15,105 @@ function swatch(track, color) {
   return drawing("svg", { width: 26, height: 10, class: "bv-swatch", "aria-hidden": "true" }, line);
 }
 
-/** The list of all tracks, as buttons. */
-export class FormList {
-  constructor(tracks, goToTrack) {
-    this.tracks = tracks;
+/** The table of all tracks: a row each, sorted by a click on the head of a column. */
+export class FormTable {
+  /** `passes` tells the singular points that a track passes. */
+  constructor(scene, tracks, passes, goToTrack) {
     this.goToTrack = goToTrack;
-    this.list = element("div", { class: "bv-forms", role: "group", "aria-label": "forms" });
+    this.rows = tracks.map((track, k) => ({ track, key: k, ...factsOf(scene, track, passes(track)) }));
+    this.order = { column: "key", sign: 1 };
+    this.body = element("tbody");
+    this.columns = COLUMNS.filter(({ shown }) => !shown || this.rows.some((row) => shown(row)));
+    const heads = this.columns.map(({ name, title }) => {
+      const sort = element("button", { title: `sort by ${title}`, onclick: () => this.sortBy(name) }, title);
+      return element("th", { scope: "col", "data-column": name }, sort);
+    });
+    this.heads = heads;
+    const table = element("table", {}, element("thead", {}, element("tr", {}, ...heads)), this.body);
+    this.list = element("div", { class: "bv-forms" }, table);
     this.node = element("div", {}, ...(tracks.length > MANY ? [this.filter()] : []), this.list);
   }
 
   /** A field for words that names or facts of forms have to hold to be listed. */
   filter() {
-    const label = `filter ${this.tracks.length} forms`;
+    const label = `filter ${this.rows.length} forms`;
     return element("input", { type: "search", class: "bv-filter", placeholder: label, "aria-label": label, oninput: (event) => this.narrow(event.target.value) });
   }
 
   narrow(text) {
     const words = text.toLowerCase().split(/\s+/);
-    for (const button of this.buttons) {
-      const facts = button.title.toLowerCase();
-      button.hidden = !words.every((word) => facts.includes(word));
+    for (const { node, facts } of this.rows) node.hidden = !words.every((word) => facts.includes(word));
+  }
+
+  /** Sort by a column, the other way round where it is sorted by it already. */
+  sortBy(column) {
+    const isAgain = this.order.column === column;
+    this.order = { column, sign: isAgain ? -this.order.sign : 1 };
+    this.arrange();
+  }
+
+  arrange() {
+    const { column, sign } = this.order;
+    const order = column === "name" ? "key" : column; // names are in order as they come
+    const sorted = [...this.rows].sort((a, b) => sign * compare(a[order], b[order]) || a.key - b.key);
+    this.body.replaceChildren(...sorted.map(({ node }) => node));
+    for (const head of this.heads) {
+      const isSorted = head.dataset.column === column;
+      head.setAttribute("aria-sort", isSorted ? (sign > 0 ? "ascending" : "descending") : "none");
     }
   }
 
   setColors(colorOf) {
-    this.buttons = this.tracks.map((track, k) => {
-      const key = k < KEYS ? element("kbd", {}, String(k + 1)) : "";
-      const title = isCurve(track) ? `${track.name}: ${describe(track)}` : track.name;
-      const attributes = { title, "data-track": track.name, onclick: () => this.goToTrack(track) };
-      return element("button", attributes, key, swatch(track, colorOf(track)), element("span", {}, track.name));
-    });
-    this.list.replaceChildren(...this.buttons);
+    for (const row of this.rows) {
+      const { track, key, node } = row;
+      const number = element("kbd", {}, key < KEYS ? String(key + 1) : "");
+      const button = element("button", { "data-track": track.name }, number, swatch(track, colorOf(track)), element("span", {}, track.name));
+      const cells = this.columns.slice(1).map(({ shown }) => element("td", {}, shown(row)));
+      row.node = element("tr", { title: `${track.name}: ${row.kind}`, hidden: node?.hidden, onclick: () => this.goToTrack(track) }, element("th", { scope: "row" }, button), ...cells);
+    }
+    this.arrange();
     if (this.position) this.show(this.position);
   }
 
   show(position) {
     this.position = position;
-    this.buttons.forEach((button, k) => {
-      const isCurrent = this.tracks[k] === position.track;
-      if (isCurrent && button.getAttribute("aria-pressed") !== "true") reveal(this.list, button);
+    for (const { track, node } of this.rows) {
+      const isCurrent = track === position.track;
+      const button = node.querySelector("button");
+      if (isCurrent && button.getAttribute("aria-pressed") !== "true") reveal(this.list, node);
       button.setAttribute("aria-pressed", String(isCurrent));
-    });
+    }
   }
 }
 
-/** Scroll a list, and nothing around it, to one of its buttons. */
-function reveal(list, button) {
-  const top = button.offsetTop - list.offsetTop;
-  if (top < list.scrollTop || top + button.offsetHeight > list.scrollTop + list.clientHeight) list.scrollTop = top;
+const COLUMNS = [
+  { name: "name", title: "form" },
+  { name: "kind", title: "kind", shown: ({ kind }) => kind },
+  { name: "mobility", title: "mobility", shown: ({ mobility }) => String(mobility ?? "") },
+  { name: "size", title: "length", shown: ({ length }) => length },
+  { name: "points", title: "points", shown: ({ points }) => String(points || "") },
+];
+
+/** What the table says of a track, and all of it in the words that the filter looks at. */
+function factsOf(scene, track, passes) {
+  const missed = track.misclosure ? `, misses closure by ${track.misclosure.toExponential(1)}` : "";
+  const closure = track.closed ? "closed" : "open";
+  const kind = isCurve(track) ? `${track.kind === "form" ? "" : `${track.kind}, `}${closure}${missed}` : `${track.kind}${missed}`;
+  const length = isCurve(track) ? arclengthText(track.length, scene) : `${track.samples.length} place${track.samples.length === 1 ? "" : "s"}`;
+  const points = new Set(passes.map(({ point }) => point.name)).size;
+  const facts = [track.name, kind, length, `mobility ${track.mobility}`].join(" ").toLowerCase();
+  return { kind, length, points, facts, mobility: track.mobility, size: track.length };
 }
 
-function describe(track) {
-  const degrees = ((track.length * 180) / Math.PI).toFixed(1);
-  const missed = track.misclosure ? `, misses closure by ${track.misclosure.toExponential(1)}` : "";
-  return `${track.closed ? "closed" : "open"}, ${degrees} deg long${missed}`;
+function compare(a, b) {
+  if (a === b) return 0;
+  return a === undefined || a < b ? -1 : 1;
+}
+
+/** Scroll a list, and nothing around it, to one of its rows. */
+function reveal(list, row) {
+  const [box, own] = [list.getBoundingClientRect(), row.getBoundingClientRect()];
+  if (own.top < box.top + own.height || own.bottom > box.bottom) list.scrollTop += own.top - box.top - own.height; // below the head
 }
 
 /** The branches that leave the singular point at which the linkage is. */

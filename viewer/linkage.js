@@ -42,7 +42,6 @@ const ROUNDS_APART = 60; // in which names are pushed away from each other
 const LEAST_AWAY = 1; // in the radius of all positions: a linkage that is seen as a line is not blown up
 const JOINT_LENGTH = 1.7; // of half the cylinder of a joint, in its radius
 const JOINT_REACH = Math.hypot(JOINT_LENGTH, 1); // of its farthest corner from its seat
-const THICKNESS = 0.03; // of a joint, in the size of the linkage
 const PALE = 0.45; // how white panels are beside their outlines
 const LEVELS = 6; // of thickness, so that rods of several bodies are told apart that lie in each other
 const THICKER = 0.06; // a level than the one below: rods have 14 sides, which lie within 0.025 of their radius
@@ -50,6 +49,9 @@ const LETTER = 9; // pixels: the width of a letter of a name
 const NAME_GAP = 17; // pixels between the middles of two names, one above the other
 const BESIDE_JOINT = 9; // pixels between the edge of a joint and the middle of its name
 const FARTHEST = 3; // of a name's place from where it belongs, in NAME_GAP beyond its own width
+const MANY_NAMES = 30; // more of them appear near the pointer only
+const [NEAR, MOST_NEAR] = [70, 6]; // pixels; names that are shown there
+const MANY_RODS = 300; // more of them are drawn with fewer sides
 // symbols of joints, their axis along y, of the size of a joint's radius and of length 1
 const SHAPES = {
   cylinder: () => new CylinderGeometry(1, 1, 1, 24),
@@ -78,6 +80,7 @@ export class LinkageView {
     this.canvas.setAttribute("aria-label", "the linkage in space; drag to turn it");
     this.labels = element("div", { class: "bv-labels" });
     container.append(this.canvas, this.labels);
+    this.jointSize = scene.joint_radius / figure.size;
     this.makeScene();
     this.makeLabels();
     this.camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
@@ -94,10 +97,11 @@ export class LinkageView {
     this.scene.add(new HemisphereLight(0xffffff, 0xb0b0b0, 2.9));
     this.lamp = new DirectionalLight(0xffffff, 1.1);
     this.scene.add(this.lamp, this.lamp.target);
-    const rod = new CylinderGeometry(1, 1, 1, 14);
     const { mostRods, mostAxes, shapes } = this.figure;
+    const [around, upright] = mostRods > MANY_RODS ? [6, 4] : [14, 10];
+    const rod = new CylinderGeometry(1, 1, 1, around, 1, true); // elbows close its ends
     this.rods = instances(rod, mostRods);
-    this.elbows = instances(new SphereGeometry(1, 14, 10), 2 * mostRods);
+    this.elbows = instances(new SphereGeometry(1, around, upright), 2 * mostRods);
     this.symbols = Object.entries(shapes).map(([shape, count]) => ({ shape, mesh: instances(SHAPES[shape](), count) }));
     this.ghostRods = instances(rod, mostRods * MOST_GHOSTS);
     this.ghostRods.material.transparent = true;
@@ -136,6 +140,18 @@ export class LinkageView {
     }
     const longest = this.figure.names.reduce((most, name) => Math.max(most, name.length), 0);
     this.nameWidth = Math.max(LETTER * longest + 3, NAME_GAP);
+    if (this.numbers.length <= MANY_NAMES) return;
+    this.pointer = { x: Infinity, y: Infinity };
+    this.container.addEventListener("pointermove", (event) => this.pointAt(event));
+    this.container.addEventListener("pointerdown", (event) => this.pointAt(event)); // a finger does not hover
+    this.container.addEventListener("pointerleave", () => this.pointAt({ clientX: Infinity, clientY: Infinity }));
+  }
+
+  /** Show the names near the pointer. */
+  pointAt({ clientX, clientY }) {
+    const { left, top } = this.container.getBoundingClientRect();
+    this.pointer = { x: clientX - left, y: clientY - top };
+    this.placeLabels();
   }
 
   /** The colours of the picture: {link, fixed, joint, idle, axis, trace}. */
@@ -227,7 +243,8 @@ export class LinkageView {
     const ball = enclosingBall([...seats, ...points]);
     this.center = ball.center;
     this.unit = ball.radius || 1;
-    this.sizeParts();
+    this.jointRadius = this.jointSize / this.unit;
+    this.rodRadius = 0.42 * this.jointRadius;
     const reach = JOINT_REACH * this.jointRadius;
     this.spots = [
       ...seats.map((seat) => ({ place: this.scaled(seat), reach })),
@@ -259,17 +276,6 @@ export class LinkageView {
     this.orbit.minDistance = 0.2;
     this.orbit.maxDistance = 6 * away;
     this.orbit.update();
-  }
-
-  /** Thickness of joints and rods: in the size of the linkage, thinner where links are short. */
-  sizeParts() {
-    const { parts } = this.partsOf(this.tracks[0].samples[0].theta);
-    const radii = parts.seats.map((seat) => distance(seat, parts.seats[0]));
-    const size = Math.max(...radii, 1e-9) / this.unit;
-    const lengths = parts.rods.map((rod) => distance(rod.from, rod.to) / this.unit);
-    const shortest = Math.min(...lengths, 1);
-    this.jointRadius = Math.max(Math.min(THICKNESS * size, 0.3 * shortest), 0.5 * THICKNESS * size, 0.01);
-    this.rodRadius = 0.42 * this.jointRadius;
   }
 
   /** See the linkage from where it is clearest again. */
@@ -437,22 +443,28 @@ export class LinkageView {
   }
 
   /** The names at the ends of the axes and beside the joints, pushed apart where they would overlap. Where there is no
-   * room for all, some are left out. */
+   * room for all, some are left out; of many only those near the pointer are shown. */
   placeLabels() {
+    if (!this.labelPlaces) return;
     const { clientWidth: width, clientHeight: height } = this.container;
     const wanted = this.wantedSpots();
-    const spots = wanted.map((spot) => ({ ...spot }));
+    const chosen = this.pointer ? nearestFirst(wanted, this.pointer) : [...wanted.keys()];
+    const spots = chosen.map((i) => ({ ...wanted[i] }));
     if (!this.figure.panels.length) pushApart(spots, this.nameWidth, NAME_GAP); // creases are next to each other
-    const shown = [];
-    spots.forEach(({ x, y }, i) => {
+    const shown = new Map();
+    spots.forEach(({ x, y }, k) => {
+      const i = chosen[k];
       const half = (LETTER * this.numbers[i].textContent.length) / 2;
       const edge = Math.max(half, 10);
       const spot = { x: Math.min(Math.max(x, edge), width - edge), y: Math.min(Math.max(y, 10), height - 10), half };
       const strayed = Math.hypot(spot.x - wanted[i].x, spot.y - wanted[i].y) > this.nameWidth + FARTHEST * NAME_GAP;
-      const isLegible = !strayed && shown.every((other) => !cover(spot, other));
-      if (isLegible) shown.push(spot);
-      this.numbers[i].classList.toggle("bv-hidden", !isLegible);
-      this.numbers[i].style.transform = `translate(-50%, -50%) translate(${spot.x.toFixed(1)}px, ${spot.y.toFixed(1)}px)`;
+      const isFull = this.pointer && shown.size === MOST_NEAR;
+      if (!strayed && !isFull && [...shown.values()].every((other) => !cover(spot, other))) shown.set(i, spot);
+    });
+    this.numbers.forEach((number, i) => {
+      const spot = shown.get(i);
+      number.classList.toggle("bv-hidden", !spot);
+      if (spot) number.style.transform = `translate(-50%, -50%) translate(${spot.x.toFixed(1)}px, ${spot.y.toFixed(1)}px)`;
     });
   }
 
@@ -501,8 +513,10 @@ export class LinkageView {
     return this.pathsOfTrack().map((path, k) => ({ name: this.traced[k].name, place: inUnit(places[k]), path: path.map(inUnit) }));
   }
 
-  get drawCalls() {
-    return this.renderer.info.render.calls;
+  /** What the last frame took: draw calls, and triangles in all of them. */
+  get effort() {
+    const { calls, triangles } = this.renderer.info.render;
+    return { calls, triangles };
   }
 
   dispose() {
@@ -578,6 +592,12 @@ function spanOf(spots, side, look, tangent) {
 function usable(pixels) {
   const size = Math.max(pixels, 4 * NUMBER_ROOM);
   return 1 - (2 * NUMBER_ROOM) / size;
+}
+
+/** The numbers of the spots near a pointer, the nearest first. */
+function nearestFirst(spots, pointer) {
+  const away = spots.map(({ x, y }) => Math.hypot(x - pointer.x, y - pointer.y));
+  return [...spots.keys()].filter((i) => away[i] < NEAR).sort((i, j) => away[i] - away[j]);
 }
 
 function farthestFrom(center, points) {

@@ -127,7 +127,8 @@ export class MechanismFigure {
 /** The displacement of the moved body of a step with respect to its base. */
 function displacement({ factors, rotation }, u) {
   if (rotation) return embedded(rotation, u);
-  return factors.reduce((product, factor) => compose(product, elementary(factor, u)), identity());
+  if (!factors.length) return identity();
+  return factors.map((factor) => elementary(factor, u)).reduce((product, motion) => compose(product, motion));
 }
 
 /** A turn about an axis that advances along it, or a slide. */
@@ -135,7 +136,7 @@ function elementary({ is_turn: isTurn, direction, point, advance, column, rate, 
   const amount = column === null ? offset : rate * u[column] + offset;
   if (!isTurn) return translation(direction.map((x) => amount * x));
   const motion = about(turn(direction, amount), point);
-  return compose(translation(direction.map((x) => advance * amount * x)), motion);
+  return advance ? compose(translation(direction.map((x) => advance * amount * x)), motion) : motion;
 }
 
 /** A rotation whose first two columns are unknowns, and where it has them three numbers of a translation. */

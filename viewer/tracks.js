@@ -8,9 +8,9 @@ import { curveOf, drawingArclengths, evaluate } from "./pieces.js";
 export function tracksOf(scene) {
   const tracks = scene.forms.map((form) => curveTrack("form", form));
   for (const surface of scene.surfaces) {
-    tracks.push(listTrack("surface", surface.name, unpackRows(surface.samples)));
+    tracks.push({ ...listTrack("surface", surface.name, unpackRows(surface.samples)), mobility: surface.dimension });
   }
-  if (scene.assemblies.length) tracks.push(listTrack("assembly", "rigid assemblies", scene.assemblies));
+  if (scene.assemblies.length) tracks.push({ ...listTrack("assembly", "rigid assemblies", scene.assemblies), mobility: 0 });
   for (const { name, sample, misclosure, curve } of scene.near_motions) {
     const track = curve ? curveTrack("near motion", curve) : listTrack("near motion", name, [sample]);
     tracks.push({ ...track, misclosure });
@@ -34,6 +34,7 @@ function curveTrack(kind, form) {
   return {
     kind,
     name: form.name,
+    mobility: kind === "form" ? 1 : undefined,
     length: curve.length,
     closed: curve.closed,
     color: form.color,

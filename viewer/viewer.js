@@ -1,7 +1,7 @@
 // The viewer: the linkage beside its map, kept together by one position.
 
 import { arclengthText } from "./angles.js";
-import { BranchChoice, FormList, RouteBar } from "./choices.js";
+import { BranchChoice, FormTable, RouteBar } from "./choices.js";
 import { leavingBranches, nextPass, passAt, passesOf } from "./crossings.js";
 import { element } from "./elements.js";
 import { FormGraph } from "./graph.js";
@@ -67,7 +67,7 @@ export class Viewer {
     this.space = element("div", { class: "bv-space" });
     this.mapBox = element("div", { class: "bv-map-box" });
     this.graphBox = element("div", { class: "bv-graph-box" });
-    this.formList = new FormList(this.listed, actions.goToTrack);
+    this.formTable = new FormTable(scene, this.listed, (track) => (isCurve(track) ? this.passes(track) : []), actions.goToTrack);
     this.choice = new BranchChoice(tracks, this.unknowns, (branch) => this.leave(branch));
     this.routeBar = new RouteBar(this.listed, (name) => this.playRoute(name));
     this.numbers = new Numbers(this.unknowns, followersOf(scene, tracks), this.figure);
@@ -82,7 +82,7 @@ export class Viewer {
     this.mapTools = new MapTools(scene, this.unknowns, () => this.choosePlane());
     this.motionTools = new MotionTools(scene, this);
     const controls = [
-      this.formList.node,
+      this.formTable.node,
       this.strip.node,
       this.motionTools.node,
       this.distanceBar.node,
@@ -149,7 +149,7 @@ export class Viewer {
       axis: variable("--bv-axis"),
       trace: variable("--bv-trace"),
     };
-    for (const part of [this.formList, this.choice, this.strip, this.graph, this.map]) part.setColors(colorOf);
+    for (const part of [this.formTable, this.choice, this.strip, this.graph, this.map]) part.setColors(colorOf);
     this.view?.setColors({ ...this.surroundings, link: colorOf(this.position.track) });
     this.showPoint();
   }
@@ -169,7 +169,7 @@ export class Viewer {
     this.leaveGhost();
     this.map.show(position);
     this.graph.show(position);
-    this.formList.show(position);
+    this.formTable.show(position);
     this.strip.show(position);
     this.numbers.show(angles, this.figure.singularValues(angles));
     this.distanceBar.show(position);

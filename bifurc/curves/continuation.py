@@ -43,6 +43,7 @@ from bifurc.system import (
 # Pieces made before the end of the curve is looked for: beside a bend, at least, and at
 # most.
 AT_A_BEND, AT_ONCE, MOST_AT_ONCE = 14, 40, 1000
+UNKNOWNS_AT_ONCE = 10_000  # of all pieces of a march, between two looks at the time
 # Times the width of the last piece: that of the first one that is tried after it.
 GROWTH = 1.5
 CLEAR = 10.0  # times the radius of least caution: from there on a bend is passed
@@ -128,7 +129,7 @@ def _followed_both_ways(
     """The ways that a curve goes from ``start``; none backward where the one forward is
     the whole of it."""
     forward = follow_curve(problem, start, settings, closing, deadline)
-    if forward.outcome in WHOLE:
+    if forward.outcome in WHOLE or is_time_over():
         return _Ways(forward, None)
     back = Place(start.point, -start.tangent)
     return _Ways(forward, follow_curve(problem, back, settings, closing, deadline))
@@ -214,12 +215,13 @@ def _march(
     """Some pieces from the front of the track on."""
     domain = problem.domain
     count = min(max(AT_ONCE, len(track)), MOST_AT_ONCE)
+    count = min(count, max(UNKNOWNS_AT_ONCE // problem.n, 1))
     march_settings = MarchSettings(
         order=settings.order,
         tolerance=settings.tolerance,
         shortest=max(track.caution.shortest, settings.shortest) * problem.domain.scale,
         longest=settings.longest * domain.stride * domain.scale,
-        count=AT_A_BEND if track.is_at_a_bend else count,
+        count=min(AT_A_BEND, count) if track.is_at_a_bend else count,
         closing=closing,
         length=settings.max_length * domain.reach * domain.scale - track.reached,
         first=GROWTH * track.last_width,

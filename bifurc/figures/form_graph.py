@@ -129,6 +129,7 @@ ROW_REACH = 0.9  # between rows of components
 BOW = 0.34  # between neighbouring edges of the same two forms, in inches
 EDGE_POINTS = 41
 LAYOUT_STEPS = 1000  # at most; a step of the layout of twelve forms takes 40 us
+LAYOUT_STEPS_OF_ALL = 30_000  # places that all steps move
 LAYOUT_STILL = 1e-5  # of the length of an edge: a step that moves nothing farther
 TINY = 1e-12  # of the same: places that coincide
 LABEL_PLACES = (20, 16, 24, 13, 27)  # along the points of an edge, the best first
@@ -272,7 +273,7 @@ def _majorized(places: np.ndarray, lengths: np.ndarray) -> np.ndarray:
     k = len(places)
     weights = 1.0 / (lengths + np.eye(k)) ** 2 * (1 - np.eye(k))
     inverse = np.linalg.pinv(np.diag(weights.sum(axis=1)) - weights)
-    for _ in range(LAYOUT_STEPS):
+    for _ in range(min(LAYOUT_STEPS, LAYOUT_STEPS_OF_ALL // k)):
         gaps = places[:, None] - places
         distances = np.linalg.norm(gaps, axis=-1) + np.eye(k)
         pulls = weights * lengths / np.maximum(distances, TINY)

@@ -18,6 +18,7 @@ from bifurc.errors import ProblemError
 from bifurc.figures.quantities import shown_unit
 
 MOST_COMPARED = 24  # unknowns of which any two are a plane that may be chosen
+MOST_FORMS_COMPARED = 60  # forms of which any two are told apart
 SAMPLES = 72  # points on each form by which planes are compared
 PIECE_POINTS = 12  # points drawn on each piece of a branch, at least
 BRANCH_POINTS = 400  # points drawn on each branch, at least
@@ -260,13 +261,14 @@ def choose_plane(atlas: Atlas) -> tuple[int, int]:
     distance between the two forms that are closest, the extent of the smallest form
     (none should shrink to a dot), the opening of the narrowest form (none should be a
     line that goes there and back), the distance between the two bifurcations that are
-    closest, and how much of the frame the forms cover. Of many unknowns some are looked
-    at, from the first to the last, and the parameter of the diagram.
+    closest, and how much of the frame the forms cover. Of many forms and unknowns some
+    are looked at, from the first to the last, and the parameter of the diagram.
     """
     n = len(atlas.names)
     branches = shown_branches(atlas)
     if n < 2 or not branches:
         return 0, min(1, n - 1)
+    branches = branches[:: -(-len(branches) // MOST_FORMS_COMPARED)]
     samples = np.array([branch.sample(SAMPLES) for branch in branches])
     points = np.array([point.point.u for point in atlas.bifurcations]).reshape(-1, n)
     periodic = np.isfinite(atlas.periods)

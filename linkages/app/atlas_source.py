@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bifurc.atlas import Atlas
-from bifurc.limits import Deadline
+from bifurc.limits import Deadline, until
 from linkages.app.answer.verdict import judge
-from linkages.app.choice import choose_held, require_table
+from linkages.app.choice import choose_held, choose_in_time, require_table
 from linkages.app.exit_codes import CommandError, ExitCode
 from linkages.app.options import AtlasOptions, SearchOptions
 from linkages.app.output import StatusLine
@@ -40,12 +40,12 @@ def explore_linkage(linkage: Linkage | Mechanism, search: SearchOptions) -> Atla
 
 
 def explore_parts(
-    parts: Sequence[Linkage | Mechanism], search: SearchOptions
+    parts: Sequence[Linkage | Mechanism], search: SearchOptions, deadline: Deadline
 ) -> list[Atlas]:
-    """The maps of mechanisms, one after the other, that share one budget."""
+    """The maps of mechanisms, one after the other, until a deadline that they share."""
     if len(parts) == 1:
-        return [explore_linkage(parts[0], search)]
-    deadline = Deadline(search.budget)
+        with until(deadline):
+            return [explore_linkage(parts[0], search)]
     atlases = []
     for number, part in enumerate(parts):
         budget = deadline.left / (len(parts) - number)
@@ -105,8 +105,10 @@ def atlas_of(source: str, options: AtlasOptions) -> Atlas:
                 "saved atlas, which is not searched again"
             )
         return open_linkage_atlas(source)
-    linkage = choose_held(source, options.parameters, options.hold)
-    return _explored(linkage, options.search)
+    deadline = Deadline(options.search.budget)
+    linkage = choose_in_time(source, options, deadline)
+    with until(deadline):
+        return _explored(linkage, options.search)
 
 
 def route_between(atlas: Atlas, start: str, goal: str) -> Route:

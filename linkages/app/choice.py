@@ -13,8 +13,9 @@ import click
 import numpy as np
 
 from bifurc.files.text_file import read_text
+from bifurc.limits import Deadline, made_before_the_end, until
 from linkages.app.exit_codes import CommandError
-from linkages.app.options import HoldOptions
+from linkages.app.options import AtlasOptions, HoldOptions
 from linkages.catalogue import entry
 from linkages.entry import Entry, Linkage, Parameter, ParameterKind
 from linkages.file import read_linkage, read_precisely
@@ -180,6 +181,18 @@ class Inputs:
 
     mechanism: Linkage | Mechanism
     notes: tuple[str, ...] = ()
+
+
+def choose_in_time(
+    text: str, choice: AtlasOptions, deadline: Deadline
+) -> Linkage | Mechanism:
+    """What `choose_held` gives; raises `OutOfTimeError` where it is not read before a
+    deadline."""
+    with until(deadline):
+        return made_before_the_end(
+            f"while {text} was read",
+            lambda: choose_held(text, choice.parameters, choice.hold),
+        )
 
 
 def choose_held(

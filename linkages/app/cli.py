@@ -18,7 +18,7 @@ from typing import Any
 import click
 from click.exceptions import Exit
 
-from bifurc.errors import BifurcError
+from bifurc.errors import BifurcError, OutOfTimeError
 from linkages.app import commands
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 from linkages.app.output import library_messages, saying_progress
@@ -134,6 +134,10 @@ def _failure_of(error: BifurcError | click.UsageError | OSError) -> Failure:
     """An error as a message and an exit code."""
     if isinstance(error, CommandError):
         return Failure(str(error), error.code)
+    if isinstance(error, OutOfTimeError):
+        is_interrupted = error.is_interrupted
+        code = ExitCode.INTERRUPTED if is_interrupted else ExitCode.NOTHING_KNOWN
+        return Failure(str(error), code)
     if isinstance(error, click.UsageError):
         return Failure(_usage(error), ExitCode.BAD_INPUT)
     if isinstance(error, OSError) and error.filename is not None:

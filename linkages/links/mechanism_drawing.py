@@ -18,6 +18,8 @@ SAME = 1e-6  # characteristic lengths: places that are closer are drawn as one
 ASIDE = 0.7  # how far along its axis a joint is drawn that would cover another one
 RAIL_END = 0.15  # how far a rail goes on beyond the places that the slide comes to
 ENOUGH_OF_AN_AXIS = 0.35  # of its length: showing more of it makes no view better
+MOST_SPOTS = 60  # joints that are looked at for the best view
+OVER_A_SHEET = View(elevation=60.0, azimuth=-90.0)  # x is to the right
 TRIANGLE = 3  # joints of a body that is drawn as a polygon; one of more is a star
 
 Segment: TypeAlias = list[list[float]]
@@ -44,17 +46,24 @@ def draw_bodies(structure: Structure, points: np.ndarray) -> list[Drawing]:
     mechanism = structure.mechanism
     places = _places(structure)
     rails = _rails(structure, points, places)
+    panels: dict[str, list[Segment]] = {body: [] for body in mechanism.bodies}
+    for panel in mechanism.panels:
+        corners = np.array(panel.corners) / structure.unit
+        panels[panel.body].append(corners.tolist())
     drawings: list[Drawing] = []
-    for body in mechanism.bodies:
-        numbers = [k for k, one in enumerate(mechanism.joints) if body in one.bodies]
+    for body, numbers in joints_of_bodies(mechanism).items():
         lines = _lines(places[numbers]) + rails.get(body, [])
-        panels = [
-            (np.array(panel.corners) / structure.unit).tolist()
-            for panel in mechanism.panels
-            if panel.body == body
-        ]
-        drawings.append({"name": body, "lines": lines, "panels": panels})
+        drawings.append({"name": body, "lines": lines, "panels": panels[body]})
     return drawings
+
+
+def joints_of_bodies(mechanism: Mechanism) -> dict[str, list[int]]:
+    """The numbers of the joints of every body."""
+    numbers = {joint.name: number for number, joint in enumerate(mechanism.joints)}
+    return {
+        body: [numbers[joint.name] for joint in mechanism.joints_of[body]]
+        for body in mechanism.bodies
+    }
 
 
 def _lines(places: np.ndarray) -> list[Segment]:
@@ -202,7 +211,7 @@ def _places(structure: Structure) -> np.ndarray:
     short, and apart from the others of its bodies; between panels, in the middle of
     their hinge."""
     mechanism = structure.mechanism
-    places = structure.size.points / structure.unit
+    places = _shortest_places(structure)
     sheets = _sheets(mechanism)
     for number, joint in enumerate(mechanism.joints):
         if joint.kind.facets.place is Place.ALONG and sheets.keys() >= {*joint.bodies}:
@@ -215,14 +224,23 @@ def _places(structure: Structure) -> np.ndarray:
         elif mechanism.frame in joint.bodies:
             # the middle of the other joints of the body that slides in the frame
             slider = next(body for body in joint.bodies if body != mechanism.frame)
-            others = [
-                k
-                for k, one in enumerate(mechanism.joints)
-                if slider in one.bodies and k != number
-            ]
+            own = joints_of_bodies(mechanism)[slider]
+            others = [k for k in own if k != number]
             places[number] = places[others].mean(axis=0)
     apart: np.ndarray = places + _steps_aside(mechanism, places)
     return apart
+
+
+def _shortest_places(structure: Structure) -> np.ndarray:
+    """The points (k, 3) of joints between which bodies are short; a turn and a slide that
+    are one cylindrical joint have one."""
+    joints = structure.mechanism.joints
+    numbers = {joint.name: number for number, joint in enumerate(joints)}
+    size = structure.size
+    places = np.zeros((len(joints), 3))
+    for place, point in zip(size.places, size.points, strict=True):
+        places[[numbers[name] for name in place.joints]] = point / structure.unit
+    return places
 
 
 def _sheets(mechanism: Mechanism) -> dict[str, np.ndarray]:
@@ -254,11 +272,13 @@ def _steps_aside(mechanism: Mechanism, places: np.ndarray) -> np.ndarray:
     """By how much (k, 3) joints are drawn farther out on their axes, where two axes of
     a body meet and their joints would be in one place (k, 3)."""
     steps = np.zeros_like(places)
-    for first, second in combinations(range(len(places)), 2):
-        joints = mechanism.joints[first], mechanism.joints[second]
-        is_joined = set(joints[0].bodies) & set(joints[1].bodies)
-        if not is_joined or np.linalg.norm(places[first] - places[second]) > SAME:
+    joined: set[tuple[int, int]] = set()
+    for numbers in joints_of_bodies(mechanism).values():
+        joined.update(combinations(numbers, 2))
+    for first, second in sorted(joined):
+        if np.linalg.norm(places[first] - places[second]) > SAME:
             continue
+        joints = mechanism.joints[first], mechanism.joints[second]
         if any(joint.kind.facets.place is Place.ANYWHERE for joint in joints):
             continue
         for number, joint in zip((first, second), joints, strict=True):
@@ -284,49 +304,69 @@ def held_body(mechanism: Mechanism) -> str:
 def breadths_of_mechanism(structure: Structure, points: np.ndarray) -> np.ndarray:
     """The lesser extents (k,) of where joints are at configurations (k, n), in
     characteristic lengths: small where they are nearly on one line."""
+    seats = _Seats(structure)
     poses = Poses(structure).at(points)
-    places = _places(structure)
-    return np.array([breadth(_spots(structure, pose, places)) for pose in poses])
+    return np.array([breadth(seats.at(pose)) for pose in poses])
 
 
 def best_view_of_mechanism(structure: Structure, point: np.ndarray) -> View:
     """From where the joints of a configuration (n,) are seen farthest apart, the held
-    body at rest."""
+    body at rest; some of them where they are many. A sheet that lies flat is seen as it is
+    drawn, from above and in front."""
     mechanism = structure.mechanism
     poses = Poses(structure).at(point[None])[0]
     held = mechanism.bodies.index(held_body(mechanism))
     poses = np.linalg.inv(poses[held]) @ poses
-    spots = _spots(structure, poses, _places(structure))
+    seats = _Seats(structure)
+    spots = seats.at(poses)
+    if mechanism.panels and np.ptp(spots[:, 2]) < SAME:
+        return OVER_A_SHEET
     axes = []
-    for joint in mechanism.joints:
-        pose = poses[mechanism.bodies.index(joint.bodies[0])]
+    for joint, holder in zip(mechanism.joints, seats.holders, strict=True):
         if joint.kind.facets.place is Place.ALONG:
-            axes.append(pose[:3, :3] @ joint.motions[0].direction)
-    return clearest_view(lambda look: _clarity(spots, axes, look))
+            axes.append(poses[holder, :3, :3] @ joint.motions[0].direction)
+    every = -(-len(spots) // MOST_SPOTS)
+    clarity = _Clarity(spots[::every], np.array(axes[::every]).reshape(-1, 3))
+    return clearest_view(clarity)
 
 
-def _spots(structure: Structure, poses: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Where joints are (k, 3) that are at ``places`` (k, 3) in the reference
-    configuration, with bodies in these poses (b, 4, 4)."""
-    mechanism = structure.mechanism
-    spots = []
-    for place, joint in zip(places, mechanism.joints, strict=True):
-        pose = poses[mechanism.bodies.index(joint.bodies[0])]
-        spots.append(pose[:3, :3] @ place + pose[:3, 3] / structure.unit)
-    return np.array(spots)
+class _Seats:
+    """Where joints are drawn, each on the first of its bodies, of these numbers, the
+    ``holders``."""
+
+    def __init__(self, structure: Structure) -> None:
+        self._places = _places(structure)
+        self._unit = structure.unit
+        numbers = {body: k for k, body in enumerate(structure.mechanism.bodies)}
+        self.holders = [numbers[one.bodies[0]] for one in structure.mechanism.joints]
+
+    def at(self, poses: np.ndarray) -> np.ndarray:
+        """The places (k, 3) with bodies in these poses (b, 4, 4)."""
+        own = poses[self.holders]
+        turned = np.einsum("kij,kj->ki", own[:, :3, :3], self._places)
+        return np.asarray(turned + own[:, :3, 3] / self._unit)
 
 
-def _clarity(spots: np.ndarray, axes: list[np.ndarray], look: np.ndarray) -> float:
-    """How well the joints at ``spots`` (k, 3) are told apart, and how much is seen of
-    every one of their ``axes``, unit vectors."""
-    seen = spots - np.outer(spots @ look, look)
-    first, second = np.triu_indices(len(spots), 1)
-    real = np.linalg.norm(spots[first] - spots[second], axis=1)
-    shown = np.linalg.norm(seen[first] - seen[second], axis=1)
-    is_apart = real > SAME
-    size = float(real.max(initial=SAME))
-    closest = float(shown[is_apart].min(initial=size)) / size
-    end_on = max((abs(float(axis @ look)) for axis in axes), default=0.0)
-    visible = float(np.sqrt(max(1.0 - end_on**2, 0.0)))
-    spread = 4 * closest + 4 * breadth(seen) / size
-    return spread + min(visible, ENOUGH_OF_AN_AXIS)
+class _Clarity:
+    """How well joints at ``spots`` (k, 3) are told apart, and how much is seen of every
+    one of their ``axes`` (m, 3), unit vectors, along a look (3,)."""
+
+    def __init__(self, spots: np.ndarray, axes: np.ndarray) -> None:
+        self._spots, self._axes = spots, axes
+        self._first, self._second = np.triu_indices(len(spots), 1)
+        real = self._distances(spots)
+        self._is_apart = real > SAME
+        self._size = float(real.max(initial=SAME))
+
+    def __call__(self, look: np.ndarray) -> float:
+        seen = self._spots - np.outer(self._spots @ look, look)
+        shown = self._distances(seen)[self._is_apart]
+        closest = float(shown.min(initial=self._size)) / self._size
+        end_on = float(np.abs(self._axes @ look).max(initial=0.0))
+        visible = float(np.sqrt(max(1.0 - end_on**2, 0.0)))
+        spread = 4 * closest + 4 * breadth(seen) / self._size
+        return spread + min(visible, ENOUGH_OF_AN_AXIS)
+
+    def _distances(self, places: np.ndarray) -> np.ndarray:
+        gaps = places[self._first] - places[self._second]
+        return np.asarray(np.linalg.norm(gaps, axis=1))

@@ -37,6 +37,7 @@ from linkages.structure.structure import Structure
 STEP = 1e-5  # rad, along a branch: of the differences that are taken for speeds
 UPWARD = np.array([0.0, 0.0, 1.0])
 UPRIGHT = np.eye(3)
+OF_EXTENT, OF_BODY = 0.03, 0.09  # the radius of a joint, in what it is drawn in
 FLAT = 1e-9  # sine of a twist of a planar loop
 
 Pair: TypeAlias = tuple[int, int]  # of bodies, by their numbers
@@ -103,6 +104,47 @@ class Parts(ABC):
     @abstractmethod
     def symbols_on(self, body: int) -> list[Symbol]:
         """The symbols of joints that a body carries."""
+
+    def symbols_at(self, point: np.ndarray) -> list[Symbol]:
+        """The symbols of all joints, where they are at a configuration (n,), the held
+        body at rest."""
+        poses = self.poses(point[None])[0]
+        symbols = []
+        for body, pose in enumerate(np.linalg.inv(poses[self.held]) @ poses):
+            for symbol in self.symbols_on(body):
+                place = pose[:3, :3] @ symbol.place + pose[:3, 3]
+                direction = pose[:3, :3] @ symbol.direction
+                symbols.append(symbol._replace(place=place, direction=direction))
+        return symbols
+
+    def extent(self, point: np.ndarray, lines: list[np.ndarray]) -> float:
+        """How far what is drawn at a configuration (n,) reaches from the first joint:
+        the others, and the ends of the ``lines`` of every body."""
+        places = [symbol.place for symbol in self.symbols_at(point)]
+        poses = self.poses(point[None])[0]
+        for pose, own in zip(
+            np.linalg.inv(poses[self.held]) @ poses, lines, strict=True
+        ):
+            places.extend(own.reshape(-1, 3) @ pose[:3, :3].T + pose[:3, 3])
+        distances = np.linalg.norm(np.array(places) - places[0], axis=1)
+        return float(distances.max(initial=0.0)) or self.size
+
+    def joint_radius(self, point: np.ndarray, extent: float) -> float:
+        """How large a joint is drawn at a configuration (n,): in the ``extent`` of all,
+        and smaller where bodies, from joint to joint, are small beside that, as panels
+        of a sheet are."""
+        symbols = self.symbols_at(point)
+        on_body: dict[int, list[np.ndarray]] = {}
+        for symbol in symbols:
+            for body in symbol.bodies:
+                on_body.setdefault(body, []).append(symbol.place)
+        sizes = [
+            np.linalg.norm(np.ptp(places, axis=0))
+            for places in on_body.values()
+            if len(places) > 1
+        ]
+        usual = float(np.median(sizes)) if sizes else np.inf
+        return min(OF_EXTENT * extent, OF_BODY * usual)
 
     @abstractmethod
     def are_joined(self, pair: Pair) -> bool:
@@ -305,8 +347,12 @@ class Bodies(Parts):
     def symbols_on(self, body: int) -> list[Symbol]:
         """Those of its joints, in the middle of their pins; the second axis of a universal joint is on its other
         body, and a rigid joint has no symbol."""
-        symbols = []
-        for drawing in self._drawn_symbols:
+        return self._symbols.get(body, [])
+
+    @cached_property
+    def _symbols(self) -> dict[int, list[Symbol]]:
+        symbols: dict[int, list[Symbol]] = {}
+        for drawing in draw_symbols(self.structure):
             kind = JointKind(drawing["kind"])
             if kind is JointKind.RIGID:
                 continue
@@ -314,13 +360,13 @@ class Bodies(Parts):
             place = self.size * np.array(drawing["place"])
             directions = drawing["directions"] or [UPWARD.tolist()]
             holders = (drawing["holder"], drawing["other"])
-            for holder, direction in zip(holders, directions, strict=False):
-                if holder == body:
-                    along = np.array(direction)
-                    shape = kind.facets.shape
-                    joined = self._joined(drawing, body)
-                    seat = place + self._middle_of(joined)
-                    symbols.append(Symbol(name, shape, seat, along, joined))
+            for body, direction in zip(holders, directions, strict=False):
+                joined = self._joined(drawing, body)
+                seat = place + self._middle_of(joined)
+                symbol = Symbol(
+                    name, kind.facets.shape, seat, np.array(direction), joined
+                )
+                symbols.setdefault(body, []).append(symbol)
         return symbols
 
     def _middle_of(self, bodies: Sequence[int]) -> np.ndarray:
@@ -347,18 +393,17 @@ class Bodies(Parts):
         return normal_of_plane(self.structure.mechanism)
 
     def panels(self, body: int) -> list[np.ndarray]:
-        return [
-            np.array(panel.corners)
-            for panel in self.structure.mechanism.panels
-            if panel.body == self.names[body]
-        ]
+        return self._panels.get(self.names[body], [])
+
+    @cached_property
+    def _panels(self) -> dict[str, list[np.ndarray]]:
+        panels: dict[str, list[np.ndarray]] = {}
+        for panel in self.structure.mechanism.panels:
+            panels.setdefault(panel.body, []).append(np.array(panel.corners))
+        return panels
 
     def breadths(self, points: np.ndarray) -> np.ndarray:
         return breadths_of_mechanism(self.structure, points)
-
-    @cached_property
-    def _drawn_symbols(self) -> list[Drawing]:
-        return draw_symbols(self.structure)
 
     def are_joined(self, pair: Pair) -> bool:
         """Whether a joint is of both."""

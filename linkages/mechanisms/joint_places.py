@@ -22,9 +22,10 @@ TURNS = (JointKind.REVOLUTE, JointKind.HELICAL)
 
 @dataclass(frozen=True, eq=False)
 class JointPlace:
-    """A ``point`` (3,) that stands for joints between ``bodies``, which may move along
-    ``free`` unit vectors (k, 3)."""
+    """A ``point`` (3,) that stands for ``joints``, by their names, between ``bodies``,
+    which may move along ``free`` unit vectors (k, 3)."""
 
+    joints: tuple[str, ...]
     bodies: frozenset[str]
     point: np.ndarray
     free: np.ndarray
@@ -42,7 +43,12 @@ def joint_places(mechanism: Mechanism) -> list[JointPlace]:
     cylindrical = _cylindrical_chains(rest)
     used = in_planes | {joint.name for chain in cylindrical for joint in chain}
     places = [
-        JointPlace(frozenset(joint.bodies), joint.place, _free_directions(joint))
+        JointPlace(
+            (joint.name,),
+            frozenset(joint.bodies),
+            joint.place,
+            _free_directions(joint),
+        )
         for joint in mechanism.joints
         if joint.name not in used
     ]
@@ -58,7 +64,8 @@ def _place_of_chain(chain: list[Joint], free: np.ndarray) -> JointPlace:
     for joint in chain[1:]:
         ends ^= frozenset(joint.bodies)
     (turn,) = [joint for joint in chain if joint.kind in TURNS]
-    return JointPlace(ends, turn.place, free)
+    names = tuple(joint.name for joint in chain)
+    return JointPlace(names, ends, turn.place, free)
 
 
 def _neighbours(mechanism: Mechanism) -> list[list[Joint]]:

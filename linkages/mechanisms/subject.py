@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import asdict
+from dataclasses import asdict, fields, is_dataclass
 from enum import StrEnum
 from typing import Any
 
@@ -83,7 +83,8 @@ def joint_values(joint: Joint) -> dict[str, Any]:
     """A joint in values that JSON can hold: angles in rad, lengths in the user's unit;
     without the keys that say nothing."""
     values: dict[str, Any] = {}
-    for key, value in asdict(joint).items():
+    for key in (one.name for one in fields(joint)):
+        value = getattr(joint, key)
         is_list = isinstance(value, tuple)
         if value is None or (is_list and all(one is None for one in value)):
             continue
@@ -92,7 +93,9 @@ def joint_values(joint: Joint) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """A value as JSON reads it back: no enum and no tuple."""
+    """A value as JSON reads it back: no enum, no record and no tuple."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return asdict(value)
     if isinstance(value, StrEnum):
         return value.value
     return list(value) if isinstance(value, tuple) else value

@@ -20,7 +20,6 @@ from linkages.links.traced_points import TracedPoint, traced_path
 from linkages.mechanisms.joint import Shape
 from linkages.scene import View
 
-RADIUS = 0.03  # of a joint, in the size of the linkage
 REACH = 0.22  # of the axis of a joint beyond its seat, in the same
 LENGTH = 1.7  # of half the cylinder of a joint, in its radius
 # of what stands for a joint, in its radius: half of it along its axis, across it, and in
@@ -33,6 +32,7 @@ END_ON = 1e-6  # of an axis: less is seen of one that points at the eye
 NOTHING = 1e-9  # of the size of the linkage: a line that is none
 ROUND = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 13)  # half of a circle
 CIRCLE = np.stack([np.cos(2.0 * ROUND), np.sin(2.0 * ROUND)], axis=1)
+MOST_HINGES = 60  # of a sheet that are drawn
 DOT = 0.5  # of a traced point, in the radius of a joint
 
 
@@ -103,8 +103,9 @@ class Painter:
             self._camera = _camera_of(parts.best_view(first))
         else:
             self._camera = _camera_above(normal)
-        self.size = self._extent(first) or parts.size
-        self.radius = RADIUS * self.size
+        self.size = parts.extent(first, self._lines)
+        self.radius = parts.joint_radius(first, self.size)
+        self._has_many_joints = len(parts.symbols_at(first)) > MOST_HINGES
         self._traced = traced
         paths = [self._seen(traced_path(parts, one, points)) for one in traced]
         self._paths = [Stroke(Part.PATH, path[:, :2], -np.inf) for path in paths]
@@ -114,7 +115,7 @@ class Painter:
         strokes = []
         for body, pose in enumerate(self._poses(point)):
             strokes += self._strokes_of(body, pose)
-        symbols = self._seated(point)
+        symbols = self._parts.symbols_at(point)
         names = []
         for symbol in symbols:
             strokes += self._strokes_at(symbol)
@@ -142,26 +143,6 @@ class Painter:
         """The poses (b, 4, 4) of all bodies seen from the one that is drawn at rest."""
         poses = self._parts.poses(point[None])[0]
         return np.asarray(np.linalg.inv(poses[self._parts.held]) @ poses)
-
-    def _extent(self, point: np.ndarray) -> float:
-        """How far what is drawn at a configuration (n,) reaches from the first joint:
-        the others, and the ends of rods and rails."""
-        places = [symbol.place for symbol in self._seated(point)]
-        for body, pose in enumerate(self._poses(point)):
-            ends = self._lines[body].reshape(-1, 3)
-            places.extend(ends @ pose[:3, :3].T + pose[:3, 3])
-        distances = np.linalg.norm(np.array(places) - places[0], axis=1)
-        return float(distances.max(initial=0.0))
-
-    def _seated(self, point: np.ndarray) -> list[Symbol]:
-        """The symbols of all joints, where they are at a configuration (n,)."""
-        symbols = []
-        for body, pose in enumerate(self._poses(point)):
-            for symbol in self._parts.symbols_on(body):
-                place = pose[:3, :3] @ symbol.place + pose[:3, 3]
-                direction = pose[:3, :3] @ symbol.direction
-                symbols.append(symbol._replace(place=place, direction=direction))
-        return symbols
 
     def _seen(self, places: np.ndarray) -> np.ndarray:
         """Places (..., 3) to the right, upwards and towards the eye."""
@@ -195,7 +176,10 @@ class Painter:
         place, depth = seen[:2], float(seen[2])
         direction = self._seen(symbol.direction)
         outline = self.radius * _outline(symbol.shape, direction)
-        has_axis = symbol.shape is Shape.CYLINDER
+        is_crease = all(map(self._parts.panels, symbol.bodies))
+        if is_crease and self._has_many_joints:
+            return []  # they would cover the sheet, which shows them anyway
+        has_axis = symbol.shape is Shape.CYLINDER and not is_crease
         behind = 0.0 if has_axis else self.radius  # a pin on a slider is seen
         strokes = [Stroke(Part.JOINT, place + outline, depth - behind, closed=True)]
         if has_axis and np.linalg.norm(direction[:2]) > END_ON:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
 from functools import cached_property
 from typing import NamedTuple
@@ -77,19 +78,22 @@ class Poses:
     @cached_property
     def tree(self) -> list[TreeStep]:
         """Steps that reach every body but the idle ones, from one that is not."""
-        pairs = self.structure.tree_pairs
+        ways: dict[int, list[TreeStep]] = {}
+        for number, ends in self.structure.tree_pairs.items():
+            there, back = (ends.base, ends.moved), (ends.moved, ends.base)
+            ways.setdefault(ends.base, []).append(TreeStep(*there, number, 1))
+            ways.setdefault(ends.moved, []).append(TreeStep(*back, number, -1))
         idle = {body for rod in self.structure.rods for body in rod.bodies}
         steps = []
-        reached = [min(set(range(len(self.mechanism.bodies))) - idle)]
-        for body in reached:  # it grows on the way
-            for number, ends in pairs.items():
-                for here, there, sign in (
-                    (ends.base, ends.moved, 1),
-                    (ends.moved, ends.base, -1),
-                ):
-                    if here == body and there not in reached:
-                        steps.append(TreeStep(here, there, number, sign))
-                        reached.append(there)
+        first = min(set(range(len(self.mechanism.bodies))) - idle)
+        reached = {first}
+        queue = deque([first])
+        while queue:
+            for step in ways.get(queue.popleft(), []):
+                if step.goal not in reached:
+                    steps.append(step)
+                    reached.add(step.goal)
+                    queue.append(step.goal)
         return steps
 
     def _displacement(self, points: np.ndarray, number: int) -> np.ndarray:

@@ -14,7 +14,7 @@ from linkages.structure.single_loop import SingleLoop, as_single_loop
 from linkages.structure.structure import Structure
 
 if TYPE_CHECKING:
-    from linkages.closure.system import ClosureSystem
+    from linkages.closure.closure import Closure
 
 # A number for a joint of one variable, a list for another one: rad, the user's unit.
 JointVariables: TypeAlias = dict[str, float | list[float]]
@@ -31,12 +31,12 @@ class Readout:
         self.structure = Structure(mechanism)
 
     @cached_property
-    def closure(self) -> ClosureSystem:
+    def closure(self) -> Closure:
         """The closure equations of the mechanism, in the same unknowns."""
         # what writes equations is not imported where values are only read
-        from linkages.closure.system import ClosureSystem
+        from linkages.closure.closure import Closure
 
-        return ClosureSystem(self.mechanism, structure=self.structure)
+        return Closure(self.mechanism, structure=self.structure)
 
     @cached_property
     def single_loop(self) -> SingleLoop | None:

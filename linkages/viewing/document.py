@@ -32,6 +32,7 @@ principal        the plane in which (cos theta, sin theta), 2 n numbers, spread 
                  cosine, and 0 for its sine
 view             where to look from at first, elevation and azimuth in degrees, and what
                  is up then
+joint_radius     how large joints are drawn, in the user's unit
 trace            points whose paths are drawn: name, the number of the body, as in a
                  mechanism, or of the link from 0; place, on it, in the user's unit
 drawn            the configuration in which a file gives the linkage: angles, its name on
@@ -41,6 +42,7 @@ drawn            the configuration in which a file gives the linkage: angles, it
 from __future__ import annotations
 
 import base64
+import math
 from collections.abc import Sequence
 from math import degrees
 from typing import Any, TypeAlias
@@ -51,7 +53,7 @@ from bifurc.atlas import Atlas, Form, MeetingPoint, Surface
 from bifurc.branch import Branch
 from bifurc.checks import check_type
 from bifurc.figures.drawing import emptiness
-from bifurc.figures.form_graph import lay_out_graph
+from bifurc.figures.form_graph import REACH, lay_out_graph
 from bifurc.figures.planes import choose_plane, shown_branches
 from bifurc.figures.style import (
     Style,
@@ -62,6 +64,7 @@ from bifurc.figures.style import (
 from bifurc.tables import count_of
 from bifurc.torus import difference
 from linkages.labels import FormLabels
+from linkages.links.parts import Parts
 from linkages.links.traced_points import TracedPoint, traced_point
 from linkages.mechanisms.mechanism import Lock
 from linkages.readout.dead_points import driven_dead_points
@@ -73,6 +76,8 @@ Document: TypeAlias = dict[str, Any]  # values that JSON can hold
 
 MOST_SAMPLES = 600  # configurations shown of a surface
 MOST_LOCKS = 6  # that a title lists
+SIDE_BY_SIDE = 3.0  # forms, at least, in a row of the graph
+BREADTH = 2 * REACH  # of the graph for each form in a row, inches
 DIGITS = 6  # after the point, of places in the graph (inches)
 
 
@@ -92,14 +97,16 @@ def make_view_document(
         {**_form(form, number), **parts.form_on_page(form, start_of(atlas, number))}
         for number, form in enumerate(atlas.forms)
     ]
-    view = parts.best_view(first_place(atlas).point)
+    first = first_place(atlas).point
+    view = parts.best_view(first)
+    points = np.concatenate(configurations(atlas))
     return {
         "title": title_of(atlas),
         "verdict": verdict,
         "completeness": f"Completeness ({completeness.level}): "
         f"{completeness.statement}.",
         "note": _note(atlas),
-        **parts.page(np.concatenate(configurations(atlas))),
+        **parts.page(points),
         "forms": forms,
         "points": [_point(point) for point in atlas.points],
         **_places_on_forms(atlas),
@@ -110,9 +117,15 @@ def make_view_document(
         "plane": choose_plane(atlas),
         "principal": _principal(atlas),
         "view": view._asdict(),
+        "joint_radius": _joint_radius(parts, first, points),
         "trace": [_traced(traced_point(parts, text)) for text in trace],
         "drawn": _drawn(atlas),
     }
+
+
+def _joint_radius(parts: Parts, first: np.ndarray, points: np.ndarray) -> float:
+    extent = parts.extent(first, parts.lines(points))
+    return parts.joint_radius(first, extent)
 
 
 def _places_on_forms(atlas: Atlas) -> Document:
@@ -249,7 +262,8 @@ def _walk(points: np.ndarray, periods: np.ndarray) -> np.ndarray:
 
 
 def _graph(atlas: Atlas) -> Document:
-    layout = lay_out_graph(atlas)
+    count = len(atlas.forms) + len(atlas.surfaces)
+    layout = lay_out_graph(atlas, width=BREADTH * max(SIDE_BY_SIDE, math.sqrt(count)))
     edges: list[Document] = []
     for edge in layout.edges:
         label = np.round(edge.label, DIGITS).tolist()
@@ -268,7 +282,9 @@ def _principal(atlas: Atlas) -> Document:
     sines = np.where(is_periodic, np.sin(angles), 0.0)
     features = np.concatenate([cosines, sines], axis=1)
     mean = features.mean(axis=0)
-    _, _, directions = np.linalg.svd(features - mean, full_matrices=True)
+    # two rows more, so that there are two directions also of one configuration
+    rows = np.concatenate([features - mean, np.zeros((2, features.shape[1]))])
+    _, _, directions = np.linalg.svd(rows, full_matrices=False)
     axes = directions[:2]
     largest = np.abs(axes).argmax(axis=1)
     signs = np.sign(axes[[0, 1], largest])

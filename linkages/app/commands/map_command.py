@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from bifurc.limits import HeldInterrupt
+from bifurc.limits import Deadline, HeldInterrupt
 from linkages.app import options
 from linkages.app.exit_codes import CommandError, ExitCode, exit_code_table
 
@@ -112,21 +112,21 @@ def map_command(
     """
     from linkages.app.atlas_source import explore_parts
     from linkages.app.files import figure_axes
-    from linkages.app.output import require_folder, require_out
+    from linkages.app.output import require_out
 
     require_out(out)
     for option in [*proof.names, *["--digits"] * bool(digits)]:
         require_exact(option, as_json, nearest, choice.hold)
-    mechanism, exact = choose_mapped(linkage, choice, nearest)
+    deadline = Deadline(choice.search.budget)
+    mechanism, exact = choose_mapped(linkage, choice, nearest, deadline)
     require_proof(proof, linkage, mechanism)
     parts = mechanism.parts
-    folders = folders_of(out, len(parts))
     over = [figure_axes(part, axes, against, window, overlay, trace) for part in parts]
-    for folder in folders:
-        require_folder(folder)
+    folders = folders_of(out, len(parts))
     # Ctrl-C ends the search, but not before what was found is shown and written
     with HeldInterrupt():
-        atlases = explore_parts(parts, replace(choice.search, certify=not no_certify))
+        search = replace(choice.search, certify=not no_certify)
+        atlases = explore_parts(parts, search, deadline)
         paths = report_and_write(atlases, folders, as_json, choice.verbose, exact)
     if digits:
         confirm(atlases, linkage, choice.parameters, digits)
@@ -222,10 +222,15 @@ def confirm(
 
 def folders_of(out: Path | None, count: int) -> list[Path | None]:
     """The folder for each of the mechanisms of a file: ``out``, or one in it each where
-    they are several."""
-    if out is None or count == 1:
-        return [out] * count
-    return [out / f"part-{number}" for number in range(1, count + 1)]
+    they are several; files can be written to each."""
+    from linkages.app.output import require_folder
+
+    folders = [out] * count
+    if out is not None and count > 1:
+        folders = [out / f"part-{number}" for number in range(1, count + 1)]
+    for folder in folders:
+        require_folder(folder)
+    return folders
 
 
 def require_exact(
@@ -246,13 +251,13 @@ def require_exact(
 
 
 def choose_mapped(
-    linkage: str, choice: options.AtlasOptions, nearest: bool
+    linkage: str, choice: options.AtlasOptions, nearest: bool, deadline: Deadline
 ) -> tuple[Linkage | Mechanism, str]:
     """What is mapped, and the text of a file with its exact table where it is the
     ``nearest`` linkage to the one that was named."""
-    from linkages.app.choice import choose_held
+    from linkages.app.choice import choose_in_time
 
-    mechanism = choose_held(linkage, choice.parameters, choice.hold)
+    mechanism = choose_in_time(linkage, choice, deadline)
     if not nearest:
         return mechanism, ""
     from linkages.app.nearest import nearest_linkage

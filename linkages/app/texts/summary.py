@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,13 +30,10 @@ from linkages.labels import FormLabels, loop_of
 from linkages.readout.drawn import drawn_place
 from linkages.subject import MOST_SHOWN, subject_at
 
-if TYPE_CHECKING:
-    # it imports networkx, which a loop does not need
-    from linkages.readout.readout import Readout
-
 SHOWN = 12  # near misses and rigid assemblies beyond this number are only counted
 SCREEN = 25  # lines that the first screen has
 SCREEN_ROWS = 4  # rigid assemblies and near motions on it
+MOST_MOVING = 2 * SCREEN  # unknowns, each of which moves or stands still in a table
 # Columns of the tables that the first screen leaves out.
 DETAILS = ("smallest s.v.", "residual", "rank", "error", "mobility")
 NEAR_MOTIONS = "Near motions (the loop nearly closes)"
@@ -49,10 +45,9 @@ def make_screen(atlas: Atlas) -> str:
     """What `bifurc map` shows first: verdict, forms, points, what joints do where that
     has room, and one line on how sure it is."""
     points = [_point_records(atlas, title) for title in _titles()]
-    tables = _tables(atlas)
     parts = [
         _head_of(atlas),
-        tables.held,
+        _held(atlas),
         section_of("Forms", _shortened(_form_records(atlas))),
         _surfaces(atlas),
         *(
@@ -65,15 +60,18 @@ def make_screen(atlas: Atlas) -> str:
     ]
     shown = [part for part in parts if part]
     certainty = certainty_in_short(atlas.completeness)
-    for motion in filter(None, tables.motions):
+    for motion in _motions(atlas) if len(atlas.names) <= MOST_MOVING else []:
         text = "\n\n".join([*shown, motion, certainty])
         if len(text.splitlines()) <= SCREEN:
             shown.append(motion)
     return "\n\n".join([*shown, certainty])
 
 
-def _held(readout: Readout) -> str:
+def _held(atlas: Atlas) -> str:
     """How creases are assigned, and what is held as it lies in no closed loop."""
+    readout = subject_at(atlas).readout
+    if readout is None:
+        return ""
     structure = readout.structure
     lines = [describe_creases(structure)] if structure.mechanism.creases else []
     lines.append(describe_hanging(structure))
@@ -165,10 +163,9 @@ def make_summary(atlas: Atlas) -> str:
     singular points, completeness and time."""
     completeness = atlas.completeness
     provenance = atlas.provenance
-    tables = _tables(atlas)
     parts = [
         _head_of(atlas),
-        *tables.geometry,
+        *_geometry(atlas),
         section_of("Forms", _form_records(atlas)),
         _surfaces(atlas),
         *(section_of(title, _point_records(atlas, title)) for title in _titles()),
@@ -176,42 +173,40 @@ def make_summary(atlas: Atlas) -> str:
         section("Rigid assemblies", *_rigid_table(atlas), SHOWN),
         section_of(NEAR_MOTIONS, _near_motion_records(atlas), SHOWN),
         _certificates(atlas),
-        *tables.motions,
+        *_motions(atlas),
         f"Completeness ({completeness.level}): {completeness.statement}.",
         f"Explored in {provenance.seconds:.3f} s, seed {provenance.seed}.",
     ]
     return "\n\n".join(part for part in parts if part)
 
 
-class _Tables(NamedTuple):
-    """What is ``held`` of what was mapped, tables of its ``geometry``, and of what it does
-    along its forms."""
-
-    held: str
-    geometry: list[str]
-    motions: list[str]
-
-
-def _tables(atlas: Atlas) -> _Tables:
-    """The tables of a loop, or of a mechanism."""
+def _geometry(atlas: Atlas) -> list[str]:
+    """Tables of what is given of a loop, or of a mechanism."""
     readout = subject_at(atlas).readout
     if readout is None:
-        return _Tables("", [describe_geometry(loop_of(atlas))], [])
+        return [describe_geometry(loop_of(atlas))]
     from linkages.app.texts import mechanism_text
 
-    geometry = [
+    return [
         mechanism_text.describe_joints(readout),
         mechanism_text.describe_outer_joints(readout.mechanism),
         mechanism_text.describe_loops(atlas, readout),
     ]
-    if not atlas.forms:
-        return _Tables(_held(readout), geometry, [])
+
+
+def _motions(atlas: Atlas) -> list[str]:
+    """Tables of what the joints of a mechanism do along its forms."""
+    readout = subject_at(atlas).readout
+    if readout is None or not atlas.forms:
+        return []
+    from linkages.app.texts import mechanism_text
+
     motions = [
         mechanism_text.describe_motions(atlas, readout),
         mechanism_text.describe_dead_points(atlas, readout),
         mechanism_text.describe_outer_motions(atlas, readout),
     ]
-    return _Tables(_held(readout), geometry, motions)
+    return [motion for motion in motions if motion]
 
 
 def _form_records(atlas: Atlas) -> list[dict[str, str]]:

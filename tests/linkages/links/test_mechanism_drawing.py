@@ -7,6 +7,8 @@ import pytest
 
 import linkages
 from linkages.links.mechanism_drawing import (
+    OVER_A_SHEET,
+    best_view_of_mechanism,
     breadths_of_mechanism,
     draw_bodies,
     draw_symbols,
@@ -23,6 +25,7 @@ from linkages.structure.structure import Structure
 from linkages.values import GeometryError
 from linkages.viewing.document import make_view_document
 from studies.miura import miura
+from tests.linkages.mechanisms.test_size import spatial_four_bar, split
 from tests.linkages.viewing.conftest import mapped
 
 UP = (0, 0, 1)
@@ -184,3 +187,23 @@ def test_panels_that_are_none_are_refused(panels, tmp_path):
     values = mechanism_subject(linkages.load(path))["mechanism"]
     with pytest.raises(GeometryError, match="panel"):
         mechanism_from(values | {"panels": panels}, "damaged")
+
+
+def test_joints_that_make_one_cylindrical_joint_are_drawn_on_their_axis():
+    mechanism = split(spatial_four_bar(), slide_first=False)
+    unit = Structure(mechanism).unit
+    symbols = draw_symbols(Structure(mechanism))
+    assert len(symbols) == 7
+    for symbol in symbols:
+        joint = mechanism.joint(symbol["label"].replace("slide", "turn"))
+        aside = np.array(symbol["place"]) - np.array(joint.point) / unit
+        direction = np.array(joint.direction) / np.linalg.norm(joint.direction)
+        assert np.linalg.norm(np.cross(aside, direction)) < 1e-9
+
+
+def test_a_sheet_that_lies_flat_is_seen_as_it_is_drawn(tmp_path):
+    path = tmp_path / "miura.fold"
+    path.write_text(json.dumps(miura(2, 2)))
+    flat, folded = (Structure(linkages.load(name)) for name in (path, "miura-ori"))
+    assert best_view_of_mechanism(flat, flat.reference) == OVER_A_SHEET
+    assert best_view_of_mechanism(folded, folded.reference) != OVER_A_SHEET

@@ -125,6 +125,8 @@ def case(name):
 
 
 MECHANISMS = {
+    "sheet of 3": lambda: load("miura-ori", rows=2, columns=2),
+    "sheet of 12": lambda: load("miura-ori", rows=11, columns=11),
     "DSG of joints": lambda: catalogue_loop("special-double-subtractive-goldberg"),
     "slider-crank": slider_crank,
     "Watt": watt,

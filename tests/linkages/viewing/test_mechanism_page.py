@@ -8,7 +8,10 @@ from linkages.closure.closure import Closure
 from linkages.links import motion_document
 from linkages.mechanisms.joint import JointKind
 from linkages.mechanisms.subject import mechanism_of
+from linkages.pictures.plot_linkage import painter_of, place_of
 from linkages.readout.readout import Readout
+from linkages.subject import subject_at
+from linkages.viewing.document import make_view_document
 from tests.linkages.viewing.test_viewer import drawn_share, picture_of
 
 GO = "([name, places]) => places.map((s) => bifurc.go(name, s))"
@@ -72,7 +75,7 @@ def test_a_page_opens_from_disk_without_a_word_and_draws_the_mechanism(
     assert shown.messages == []
     assert len(shown.requests) == 1
     assert drawn_share(shown) > 0.001
-    assert 0 < shown.bifurc("drawCalls") < 100
+    assert 0 < shown.bifurc("effort().calls") < 100
 
 
 @pytest.mark.parametrize("width", [400, 1280])
@@ -278,3 +281,49 @@ def test_no_rod_of_a_platform_goes_beyond_the_ends_of_its_leg(show_shared):
             low, high = np.min(places, axis=0), np.max(places, axis=0)
             assert (ends >= low - 1e-9).all()
             assert (ends <= high + 1e-9).all()
+
+
+def effort_and_sheet(show, side):
+    shown = show(f"sheet of {side}", window={"width": 800, "height": 560})
+    picture_of(shown)
+    return shown, shown.bifurc("effort()")
+
+
+def test_a_large_sheet_takes_no_more_draw_calls_and_few_triangles_a_panel(show):
+    _, small = effort_and_sheet(show, 3)
+    shown, large = effort_and_sheet(show, 12)
+    panels = len(mechanism_of(shown.atlas).panels)
+    assert panels == 144
+    assert large["calls"] == small["calls"]
+    # at 1,000 panels half a million: a laptop draws ten millions 30 times a second
+    assert large["triangles"] < 550 * panels
+
+
+def test_of_many_joints_those_near_the_pointer_have_names(show):
+    shown, _ = effort_and_sheet(show, 12)
+    names = shown.page.locator(".bv-joint-number:not(.bv-hidden)")
+    assert names.count() == 0
+    box = shown.page.locator(".bv-space").bounding_box()
+    place = np.array([box["x"] + box["width"] / 2, box["y"] + box["height"] / 2])
+    shown.page.mouse.move(*place)
+    assert 1 <= names.count() <= 6
+    for name in names.all():
+        own = name.bounding_box()
+        middle = [own["x"] + own["width"] / 2, own["y"] + own["height"] / 2]
+        assert np.linalg.norm(place - middle) < 100
+    shown.page.mouse.move(1, 1)
+    assert names.count() == 0
+
+
+@pytest.mark.parametrize("name", ["slider-crank", "sheet of 12"])
+def test_joints_are_as_large_as_in_the_figures(show_shared, name):
+    atlas = show_shared(name).atlas
+    document = make_view_document(atlas)
+    place = place_of(atlas, None, None)
+    picture = painter_of(atlas, place)
+    assert document["joint_radius"] == pytest.approx(picture.radius, rel=1e-3)
+    hinges = [
+        symbol.place for symbol in subject_at(atlas).parts.symbols_at(place.point)
+    ]
+    gaps = np.linalg.norm(np.array(hinges)[:, None] - hinges, axis=-1)
+    assert picture.radius < 0.3 * gaps[gaps > 1e-6].min()

@@ -56,14 +56,14 @@ def notebook(browser, atlas_of):
     values = {"document": make_view_document(atlas), "form": "Form I (constructive 6R)"}
     values["position"] = 1.25
     page.evaluate(FAKE_NOTEBOOK, [viewer_script(), json.loads(json.dumps(values))])
-    page.wait_for_selector(".bv-forms button")
+    page.wait_for_selector(".bv-forms tbody button")
     yield page
     assert messages == []
     page.close()
 
 
 def test_the_traits_lead_the_linkage(notebook):
-    pressed = notebook.locator(".bv-forms button[aria-pressed=true]")
+    pressed = notebook.locator(".bv-forms tbody button[aria-pressed=true]")
     assert pressed.get_attribute("data-track") == "Form I (constructive 6R)"
     slider = notebook.locator(".bv-slider")
     at_first = slider.input_value()
@@ -74,7 +74,7 @@ def test_the_traits_lead_the_linkage(notebook):
 
 
 def test_the_traits_follow_the_reader(notebook):
-    notebook.locator(".bv-forms button").nth(2).click()
+    notebook.locator(".bv-forms tbody button").nth(2).click()
     notebook.wait_for_function("() => saved.length > 0")
     last = notebook.evaluate("() => saved.at(-1)")
     assert last["form"] == "Form III (non-constructive 6R)"
@@ -99,7 +99,7 @@ def test_two_widgets_on_a_page_move_by_themselves(notebook, atlas_of):
     values |= {"form": atlas_of("bennett").forms[0].name, "position": 0.5}
     notebook.evaluate(FAKE_NOTEBOOK, [viewer_script(), json.loads(json.dumps(values))])
     notebook.wait_for_function(
-        "() => document.querySelectorAll('.bv-forms button').length > 4"
+        "() => document.querySelectorAll('.bv-forms tbody button').length > 4"
     )
     sliders = notebook.locator(".bv-slider")
     first, second = (float(sliders.nth(k).input_value()) for k in range(2))

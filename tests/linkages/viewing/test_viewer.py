@@ -1,5 +1,7 @@
 """The page in a browser: what it draws is where Python says that the linkage is."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -52,7 +54,7 @@ def test_a_page_opens_from_disk_without_a_word_and_draws_the_linkage(show, name)
     assert all(url.startswith("file:") for url in shown.requests)
     assert len(shown.requests) == 1
     assert drawn_share(shown) > 0.002
-    assert 0 < shown.bifurc("drawCalls") < 100
+    assert 0 < shown.bifurc("effort().calls") < 100
 
 
 @pytest.mark.parametrize(
@@ -369,12 +371,12 @@ def test_keys_move_the_linkage(show_shared):
 
 def test_ghosts_and_the_fixed_link_change_the_picture(show):
     shown = show(DSG)
-    calls = shown.bifurc("drawCalls")
+    calls = shown.bifurc("effort().calls")
     shown.page.keyboard.press("g")
     for _ in range(12):
         shown.page.keyboard.press("ArrowRight")
     picture = picture_of(shown)
-    assert shown.bifurc("drawCalls") == calls + 1
+    assert shown.bifurc("effort().calls") == calls + 1
     axes = shown.bifurc("state().axes")
     shown.page.locator(".bv-space-tools select").select_option("3")
     assert picture_of(shown) != picture
@@ -518,12 +520,60 @@ def test_of_many_forms_those_are_listed_that_hold_the_words_of_the_filter(
     document["forms"] += [{**first, "name": f"Copy {k}"} for k in range(30)]
     page = browser.new_page()
     page.goto(write_page(document, tmp_path / "many.html").as_uri())
-    page.wait_for_selector(".bv-forms button")
-    seen = page.locator(".bv-forms button:visible")
+    page.wait_for_selector(".bv-forms tbody button")
+    seen = page.locator(".bv-forms tbody button:visible")
     total = seen.count()
     assert total > 30
     page.get_by_role("searchbox").fill("copy 27")
     assert seen.all_inner_texts() == ["Copy 27"]
     page.get_by_role("searchbox").fill("")
     assert seen.count() == total
+    for order in ("ascending", "descending"):
+        page.get_by_role("button", name="length").click()
+        head = page.locator(".bv-forms th[data-column=size]")
+        assert head.get_attribute("aria-sort") == order
+        lengths = page.locator(".bv-forms td:nth-child(4)").all_inner_texts()
+        degrees = [float(text.removesuffix("°")) for text in lengths]
+        assert degrees == sorted(degrees, reverse=order == "descending")
     page.close()
+
+
+def atlas_of_many_forms(atlas, count):
+    """Forms that meet in a tree, each one of the first ones with some later ones."""
+    (form, *_), (point, *_) = atlas.forms, atlas.points
+    forms = [replace(form, name=f"Form {k + 1}") for k in range(count)]
+    points = [
+        replace(point, name=f"B{k}", passes=((k, 1.0), ((k - 1) // 3, 2.0)))
+        for k in range(1, count)
+        if k % 11
+    ]
+    others = {"near_misses": (), "dead_points": ()}
+    return replace(atlas, forms=tuple(forms), points=tuple(points), **others)
+
+
+GRAPH = """() => {
+  const boxOf = (node) => { const { left, top, right, bottom } = node.getBoundingClientRect(); return [left, top, right, bottom]; };
+  const shapes = [...document.querySelectorAll('.bv-box > :is(rect, circle)')];
+  return { room: boxOf(document.querySelector('.bv-graph-box')), shapes: shapes.map(boxOf) };
+}"""
+
+
+@pytest.mark.parametrize("count", [1, 2, 30, 100])
+def test_the_graph_stays_in_its_box_and_no_two_forms_overlap(
+    browser, atlas_of, tmp_path, count
+):
+    atlas = atlas_of_many_forms(atlas_of(DSG), count)
+    page = browser.new_page(viewport={"width": 1280, "height": 800})
+    page.goto(write_page(make_view_document(atlas), tmp_path / "graph.html").as_uri())
+    page.wait_for_selector("body[data-ready=true]", timeout=20_000)
+    graph = page.evaluate(GRAPH)
+    page.close()
+    shapes, room = np.array(graph["shapes"]), graph["room"]
+    assert len(shapes) == count
+    assert (shapes[:, :2] >= room[:2]).all()
+    assert (shapes[:, 2:] <= room[2:]).all()
+    for k, one in enumerate(shapes):
+        others = shapes[:k]
+        width = np.minimum(one[2], others[:, 2]) - np.maximum(one[0], others[:, 0])
+        height = np.minimum(one[3], others[:, 3]) - np.maximum(one[1], others[:, 1])
+        assert not np.any((width > 0) & (height > 0))
