@@ -61,7 +61,6 @@ def describe_sheet(entry: SheetEntry) -> str:
     facts = [
         f"at the defaults: {len(mechanism.bodies)} panels, {len(mechanism.joints)} "
         f"creases, {mechanism.independent_loops} loops",
-        "mobility: 1",
     ]
     parts = [
         f"{entry.name}\n{entry.title}\nSource: {entry.source}",
