@@ -106,7 +106,7 @@ def _place_of_crease(name: str, side: int) -> tuple[int, int, int]:
     """Whether a crease runs up a column, and where it stands among those that do or
     do not, by the numbers of its vertices, "3-4"."""
     ends = [divmod(int(vertex), side + 2) for vertex in name.split("-")]
-    (i, j), (last_i, last_j) = sorted(ends)
+    (j, i), (last_j, last_i) = sorted(ends)
     return (1, i - 1, j) if i == last_i else (0, i, last_j - 1)
 
 

@@ -52,7 +52,7 @@ class Cell:
         ]
         shifts = {(i, j): i * first + j * second for i, j in cells}
         numbers: dict[Vertex, int] = {}
-        points = []
+        points: list[np.ndarray] = []
         for name, (i, j) in product(self.points, cells):
             numbers[name, i, j] = len(points)
             parity = 1.0 - 2.0 * ((i + j) % 2)

@@ -152,35 +152,49 @@ class QuadMesh:
 
     def fold_content(self, t: float, title: str) -> dict[str, Any]:
         """The content of a FOLD file of the sheet folded to the half tangent ``t``,
-        positive, its creases assigned as they are folded."""
-        numbers = np.arange(self.flat.shape[0] * self.flat.shape[1])
-        numbers = numbers.reshape(self.flat.shape[:2])
+        positive, its creases assigned as they are folded. Vertices and panels are counted
+        along the rows."""
+        return self._content(self.folded(t), "foldedForm", title)
+
+    def crease_pattern(self, t: float, title: str) -> dict[str, Any]:
+        """The same of the flat sheet, with the fold angles (degrees) at the half tangent
+        ``t``, 0 or more."""
+        content = self._content(self.flat, "creasePattern", title)
+        angles = np.degrees(self._of_edges(*self.folds(t)))
+        return {**content, "edges_foldAngle": angles.tolist()}
+
+    def _content(self, points: np.ndarray, kind: str, title: str) -> dict[str, Any]:
+        """The content of a FOLD file with vertices at ``points`` (c + 2, r + 2, k)."""
+        columns, rows = points.shape[:2]
+        numbers = np.arange(columns * rows).reshape(rows, columns).T
         corners = [
             numbers[:-1, :-1],
             numbers[1:, :-1],
             numbers[1:, 1:],
             numbers[:-1, 1:],
         ]
-        edges, signs = self._edges(numbers, t)
+        faces = np.stack(corners, axis=-1).swapaxes(0, 1)
+        across = np.stack([numbers[:-1], numbers[1:]], axis=-1).reshape(-1, 2)
+        upwards = np.stack([numbers[:, :-1], numbers[:, 1:]], axis=-1).reshape(-1, 2)
+        signs = np.sign(self._of_edges(*self.folds(1.0))).astype(int)
         return {
             "file_spec": 1.1,
             "file_title": title,
-            "frame_classes": ["foldedForm"],
-            "vertices_coords": self.folded(t).reshape(-1, 3).tolist(),
-            "edges_vertices": edges.tolist(),
+            "frame_classes": [kind],
+            "vertices_coords": points.swapaxes(0, 1)
+            .reshape(-1, points.shape[2])
+            .tolist(),
+            "edges_vertices": np.concatenate([across, upwards]).tolist(),
             "edges_assignment": [LETTERS[sign] for sign in signs.tolist()],
-            "faces_vertices": np.stack(corners, axis=-1).reshape(-1, 4).tolist(),
+            "faces_vertices": faces.reshape(-1, 4).tolist(),
         }
 
-    def _edges(self, numbers: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
-        """The ends (e, 2) of all edges by the ``numbers`` (c + 2, r + 2) of vertices, and
-        the signs (e,) of their folds, 0 on the rim."""
-        along, up = self.folds(t)
+    @staticmethod
+    def _of_edges(along: np.ndarray, up: np.ndarray) -> np.ndarray:
+        """Values of the creases along the rows (c + 1, r) and up the columns (c, r + 1)
+        for all edges (e,), 0 on the rim."""
         along, up = np.pad(along, ((0, 0), (1, 1))), np.pad(up, ((1, 1), (0, 0)))
-        across = np.stack([numbers[:-1], numbers[1:]], axis=-1).reshape(-1, 2)
-        upwards = np.stack([numbers[:, :-1], numbers[:, 1:]], axis=-1).reshape(-1, 2)
-        folds = np.concatenate([along.ravel(), up.ravel()])
-        return np.concatenate([across, upwards]), np.sign(folds).astype(int)
+        return np.concatenate([along.ravel(), up.ravel()])
 
 
 class _Pose(NamedTuple):
