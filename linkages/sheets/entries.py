@@ -92,7 +92,11 @@ class MeshEntry(SheetEntry):
         mesh = self.mesh(**values)
         fold = self.complete(values)["fold"]
         t = float(np.tan(0.5 * fold) / abs(mesh.columns[0]))
-        return mesh.fold_content(t, self.name)
+        step = self.complete(values).get("thickness")
+        if step is None:
+            return mesh.fold_content(t, self.name)
+        require(step > 0.0, "thickness", f"{step:g}", "greater than 0")
+        return mesh.thick_pattern(t, step, self.name)
 
 
 @dataclass(frozen=True)

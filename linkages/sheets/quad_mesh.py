@@ -163,6 +163,16 @@ class QuadMesh:
         angles = np.degrees(self._of_edges(*self.folds(t)))
         return {**content, "edges_foldAngle": angles.tolist()}
 
+    def thick_pattern(self, t: float, step: float, title: str) -> dict[str, Any]:
+        """The same of thick panels: hinges up the columns are in the middle, those along
+        the rows one ``step`` above or below, by the way they fold. Where all sectors have
+        one sine every vertex is a Bennett linkage, which folds as the flat vertex does
+        (Chen, Peng and You 2015)."""
+        along, up = self.folds(1.0)
+        heights = step * self._of_edges(np.sign(along), 0.0 * up)
+        pattern = self.crease_pattern(t, title)
+        return {**pattern, "bifurc:edges_height": heights.tolist()}
+
     def _content(self, points: np.ndarray, kind: str, title: str) -> dict[str, Any]:
         """The content of a FOLD file with vertices at ``points`` (c + 2, r + 2, k)."""
         columns, rows = points.shape[:2]
