@@ -32,9 +32,9 @@ from matplotlib.figure import Figure
 
 from bifurc import trace_branch
 from linkages import Closure, Mechanism
+from linkages.arrays.bennett_lattice import locked_lattice
 from linkages.files.fold import read_fold
 from linkages.sheets.entries import MESHES
-from studies.bennett_lattice import locked_lattice
 from studies.miura import miura
 from studies.study import Study
 

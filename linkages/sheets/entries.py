@@ -2,62 +2,35 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from linkages.entry import (
-    Parameter,
-    ParameterKind,
-    UnknownParameterError,
-    WithParameters,
-)
 from linkages.entry_table import read_records
+from linkages.mechanisms.entry import MechanismEntry
 from linkages.sheets.pattern import Cell, CellCrease
 from linkages.sheets.quad_mesh import QuadMesh, straight_mesh
-from linkages.values import check_number, require
+from linkages.values import require
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
-MOST = 400  # rows and columns
 PERIOD = 20  # rows after which their ratios come again: neighbours differ little
 TURN = 1.3  # rad from column to column
 
 
-@dataclass(frozen=True)
-class SheetEntry(WithParameters, ABC):
-    """One sheet: its ``name``, ``title``, ``source`` and free ``parameters``."""
-
-    name: str
-    title: str
-    source: str
-    parameters: tuple[Parameter, ...]
-
-    def complete(self, values: Mapping[str, float]) -> dict[str, float]:
-        """All parameters, those that are not given at their defaults. Raises
-        `UnknownParameterError`, and `GeometryError` for what makes no sheet."""
-        for name, value in values.items():
-            if name not in self.defaults:
-                raise UnknownParameterError(self.name, name, tuple(self.defaults))
-            check_number(f"parameter {name} of {self.name}", value)
-        complete = {**self.defaults, **values}
-        for name in ("rows", "columns"):
-            value = complete[name]
-            is_count = float(value).is_integer() and 1 <= value <= MOST
-            require(is_count, name, value, f"a whole number from 1 to {MOST}")
-        return complete
+class SheetEntry(MechanismEntry):
+    """One sheet."""
 
     @abstractmethod
     def fold_content(self, **values: float) -> dict[str, Any]:
         """The content of a FOLD file of the sheet. Raises as `complete`."""
 
     def build(self, **values: float) -> Mechanism:
-        """The member with the given parameters (angles in rad), the others at their
-        defaults. Raises as `fold_content`."""
+        """What this content describes. Raises as `fold_content`."""
         # it imports networkx, which a loop does not need
         from linkages.files.fold import mechanism_of_fold
 
@@ -112,22 +85,11 @@ class PatternEntry(SheetEntry):
         `complete`, and for angles and sizes out of their ranges."""
         complete = self.complete(values)
         for one in self.parameters:
-            if one.name not in ("rows", "columns"):
-                require_within_range(one, complete[one.name])
+            one.require_in_range(complete[one.name])
         creases = [CellCrease(*crease) for crease in self.creases]
         cell = Cell(self.lattice, self.points, creases, complete)
         rows, columns = int(complete["rows"]), int(complete["columns"])
         return cell.fold_content(columns, rows, self.name)
-
-
-def require_within_range(parameter: Parameter, value: float) -> None:
-    """Raise `GeometryError` for a value of a parameter out of its range, in degrees."""
-    is_angle = parameter.kind is ParameterKind.ANGLE
-    unit, word = (np.radians(1.0), " degrees") if is_angle else (1.0, "")
-    low, high = parameter.low / unit, parameter.high / unit
-    allowed = f"from {low:g} to {high:g}{word}"
-    is_within = parameter.low <= value <= parameter.high
-    require(is_within, parameter.name, f"{value / unit:g}", allowed)
 
 
 MESHES = {

@@ -50,19 +50,15 @@ class Cell:
             for j in range(-RIM, rows + RIM)
             for i in range(-RIM, columns + RIM)
         ]
-        shifts = {(i, j): i * first + j * second for i, j in cells}
         numbers: dict[Vertex, int] = {}
         points: list[np.ndarray] = []
+        inner = set()
         for name, (i, j) in product(self.points, cells):
+            if 0 <= j < rows and 0 <= i + round(j * slope) < columns:
+                inner.add(len(points))
             numbers[name, i, j] = len(points)
-            parity = 1.0 - 2.0 * ((i + j) % 2)
-            points.append(shifts[i, j] + self._place(self.points[name], parity))
-        inner = {
-            numbers[name, i - round(j * slope), j]
-            for name in self.points
-            for j in range(rows)
-            for i in range(columns)
-        }
+            place = self._place(self.points[name], 1.0 - 2.0 * ((i + j) % 2))
+            points.append(i * first + j * second + place)
         return _about(np.array(points), self._edges(cells, numbers), inner, title)
 
     def _place(self, formulas: Sequence[str], parity: float) -> np.ndarray:

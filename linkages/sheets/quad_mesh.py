@@ -177,26 +177,15 @@ class QuadMesh:
         """The content of a FOLD file with vertices at ``points`` (c + 2, r + 2, k)."""
         columns, rows = points.shape[:2]
         numbers = np.arange(columns * rows).reshape(rows, columns).T
-        corners = [
-            numbers[:-1, :-1],
-            numbers[1:, :-1],
-            numbers[1:, 1:],
-            numbers[:-1, 1:],
-        ]
-        faces = np.stack(corners, axis=-1).swapaxes(0, 1)
-        across = np.stack([numbers[:-1], numbers[1:]], axis=-1).reshape(-1, 2)
-        upwards = np.stack([numbers[:, :-1], numbers[:, 1:]], axis=-1).reshape(-1, 2)
         signs = np.sign(self._of_edges(*self.folds(1.0))).astype(int)
         return {
             "file_spec": 1.1,
             "file_title": title,
             "frame_classes": [kind],
-            "vertices_coords": points.swapaxes(0, 1)
-            .reshape(-1, points.shape[2])
-            .tolist(),
-            "edges_vertices": np.concatenate([across, upwards]).tolist(),
+            "vertices_coords": np.concatenate(points.swapaxes(0, 1)).tolist(),
+            "edges_vertices": _ends(numbers).tolist(),
             "edges_assignment": [LETTERS[sign] for sign in signs.tolist()],
-            "faces_vertices": faces.reshape(-1, 4).tolist(),
+            "faces_vertices": _panels(numbers).tolist(),
         }
 
     @staticmethod
@@ -220,6 +209,19 @@ class _Pose(NamedTuple):
         turn = _turn(end - start, angle)
         offset = self.offset + self.turn @ (start - turn @ start)
         return _Pose(self.turn @ turn, offset)
+
+
+def _ends(numbers: np.ndarray) -> np.ndarray:
+    """The ends (e, 2) of all edges between vertices of these numbers (k, l)."""
+    across = np.stack([numbers[:-1], numbers[1:]], axis=-1)
+    upwards = np.stack([numbers[:, :-1], numbers[:, 1:]], axis=-1)
+    return np.concatenate([across.reshape(-1, 2), upwards.reshape(-1, 2)])
+
+
+def _panels(numbers: np.ndarray) -> np.ndarray:
+    """The corners (p, 4) of all panels between vertices of these numbers (k, l)."""
+    corners = [numbers[:-1, :-1], numbers[1:, :-1], numbers[1:, 1:], numbers[:-1, 1:]]
+    return np.stack(corners, axis=-1).swapaxes(0, 1).reshape(-1, 4)
 
 
 def straight_mesh(rows: np.ndarray, columns: np.ndarray) -> QuadMesh:
