@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from bifurc.tables import table
+from bifurc.tables import count_of, table
 from linkages.app.texts.numbers import known_to
 from linkages.entry import Entry, Parameter, ParameterKind
 from linkages.geometry_table import geometry_rows, geometry_text
@@ -58,10 +58,12 @@ def list_below(title: str, lines: Sequence[str]) -> str:
 def describe_mechanism(entry: MechanismEntry) -> str:
     """Everything that is kept of a sheet or an array."""
     mechanism = entry.build()
-    facts = [
-        f"at the defaults: {len(mechanism.bodies)} bodies, {len(mechanism.joints)} "
-        f"joints, {mechanism.independent_loops} loops",
-    ]
+    counts = (
+        count_of(len(mechanism.bodies), "body"),
+        count_of(len(mechanism.joints), "joint"),
+        count_of(mechanism.independent_loops, "loop"),
+    )
+    facts = ["at the defaults: " + ", ".join(counts)]
     parts = [
         f"{entry.name}\n{entry.title}\nSource: {entry.source}",
         parameter_table(entry.parameters),
