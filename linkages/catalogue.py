@@ -18,9 +18,9 @@ from types import ModuleType
 
 import linkages.families
 from bifurc.errors import UnknownNameError
+from linkages.arrays.entries import MECHANISMS
 from linkages.entry import Entry
 from linkages.networks.entries import NETWORKS
-from linkages.sheets.entries import SHEETS
 
 NEAREST = 5  # names that are shown where there is none of that name
 
@@ -37,9 +37,9 @@ class UnknownLinkageError(UnknownNameError):
                 f"{self.name}: it is a network of several loops, and this takes a single "
                 f"loop; `bifurc show {self.name}` shows it"
             )
-        if self.name in SHEETS:
+        if self.name in MECHANISMS:
             return (
-                f"{self.name}: it is a sheet of many loops, and this takes a single "
+                f"{self.name}: it is a mechanism of many loops, and this takes a single "
                 f"loop; `bifurc show {self.name}` shows it"
             )
         hint = "no name is like it"
@@ -86,12 +86,12 @@ def distinct_entries() -> tuple[Entry, ...]:
 
 def entry(name: str) -> Entry:
     """The entry called ``name``; raises `UnknownLinkageError`, which lists the nearest
-    names, also of networks."""
+    names, also of networks, sheets and arrays."""
     entries = _entries()
     if name in entries:
         return entries[name]
     plain = name.strip().lower().replace("_", "-").replace(" ", "-")
-    known = [*entries, *NETWORKS, *SHEETS]
+    known = [*entries, *NETWORKS, *MECHANISMS]
     nearest = difflib.get_close_matches(plain, known, n=3, cutoff=0.5)
     for other in known:
         is_part = bool(plain) and (plain in other or other in plain)

@@ -19,8 +19,11 @@ from linkages.construction.equations import equation_gaps
 from linkages.construction.numbers import Number
 from linkages.geometry_table import geometry_html, geometry_rows
 from linkages.loop import Loop
+from linkages.values import require
 
 Guesses: TypeAlias = Callable[[np.ndarray], Iterable[Mapping[str, float]]]
+COUNTS = ("rows", "columns", "units")
+MOST = 400  # of each of them
 BY_IDENTIFICATION = "found by identification"  # the source of a relation without one
 
 
@@ -60,6 +63,24 @@ class Parameter:
     meaning: str
     low: float
     high: float
+
+    @property
+    def is_count(self) -> bool:
+        """Whether it is a whole number of units."""
+        return self.name in COUNTS
+
+    def require_in_range(self, value: float) -> None:
+        """Raise `GeometryError` for a value out of the range, angles in degrees; a count
+        may be larger than those that are drawn."""
+        is_angle = self.kind is ParameterKind.ANGLE
+        unit, word = (np.radians(1.0), " degrees") if is_angle else (1.0, "")
+        low, high = self.low / unit, (MOST if self.is_count else self.high / unit)
+        allowed = f"from {low:g} to {high:g}{word}"
+        is_whole = not self.is_count or float(value).is_integer()
+        if self.is_count:
+            allowed = f"a whole number {allowed}"
+        is_within = low * unit <= value <= high * unit
+        require(is_whole and is_within, self.name, f"{value / unit:g}", allowed)
 
 
 @dataclass(frozen=True)

@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bifurc.files.text_file import missing_file
+from linkages.arrays.entries import MECHANISMS
 from linkages.catalogue import UnknownLinkageError, entry
 from linkages.entry import Linkage
 from linkages.file import ATLAS_ENDING, LinkageFileError, read_file
 from linkages.formats.table import ENDINGS
 from linkages.loop import Loop
 from linkages.networks.entries import NETWORKS
-from linkages.sheets.entries import SHEETS
 from linkages.values import GeometryError, check_number, quoted
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def load(
     source: str | Path, *, closures: str | Path | None = None, **parameters: float
 ) -> Linkage | Mechanism:
-    """The linkage, the network or the sheet called ``source`` in the catalogue, or the linkage or
+    """The linkage, the network, the sheet or the array called ``source`` in the catalogue, or the linkage or
     the mechanism read from a file: TOML, FOLD, CP, SVG, MJCF, SDF, URDF or a CUIK
     world.
 
@@ -51,8 +51,8 @@ def load(
         raise GeometryError("closures", quoted(str(closures)), allowed)
     if str(source) in NETWORKS:
         return _load_network(str(source), parameters)
-    if str(source) in SHEETS:
-        return SHEETS[str(source)].build(**parameters)
+    if str(source) in MECHANISMS:
+        return MECHANISMS[str(source)].build(**parameters)
     return _load_entry(str(source), parameters)
 
 

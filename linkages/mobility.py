@@ -37,11 +37,9 @@ class Survey:
 
     @property
     def mobility(self) -> int:
-        """0 for a rigid loop or one without real configurations, 1 for motion curves, 2
-        for surfaces (2 or more)."""
-        if self.atlas.surfaces:
-            return 2
-        return 1 if self.atlas.forms else 0
+        """The largest dimension of a component; 0 for a rigid loop and for one without
+        real configurations."""
+        return self.atlas.mobility
 
 
 def survey(loop: Loop, starts: int = 40, seed: int = 0) -> Survey:

@@ -32,9 +32,9 @@ from matplotlib.figure import Figure
 
 from bifurc import trace_branch
 from linkages import Closure, Mechanism
+from linkages.arrays.bennett_lattice import locked_lattice
 from linkages.files.fold import read_fold
-from linkages.sheets.entries import SHEETS
-from studies.bennett_lattice import locked_lattice
+from linkages.sheets.entries import MESHES
 from studies.miura import miura
 from studies.study import Study
 
@@ -80,14 +80,14 @@ def square_lattice(side: int) -> Mechanism:
 
 def mesh(side: int) -> Mechanism:
     """The mesh of Lang and Howell with so many inner vertices a side."""
-    content = SHEETS[MESH].fold_content(rows=side, columns=side)
+    content = MESHES[MESH].fold_content(rows=side, columns=side)
     return read_fold(json.dumps(content), "mesh")
 
 
 def off_closed_form(mechanism: Mechanism, side: int, points: np.ndarray) -> float:
     """The largest difference (rad) of fold angles at configurations (k, n) of a mesh from
     those of its closed form, at the half tangent that the first column has."""
-    sheet = SHEETS[MESH].mesh(rows=side, columns=side)
+    sheet = MESHES[MESH].mesh(rows=side, columns=side)
     angles = {crease.joint: crease.angle for crease in mechanism.creases}
     creases = [_place_of_crease(name, side) for name in angles]
     reference = np.array(list(angles.values()))
@@ -106,7 +106,7 @@ def _place_of_crease(name: str, side: int) -> tuple[int, int, int]:
     """Whether a crease runs up a column, and where it stands among those that do or
     do not, by the numbers of its vertices, "3-4"."""
     ends = [divmod(int(vertex), side + 2) for vertex in name.split("-")]
-    (i, j), (last_i, last_j) = sorted(ends)
+    (j, i), (last_j, last_i) = sorted(ends)
     return (1, i - 1, j) if i == last_i else (0, i, last_j - 1)
 
 

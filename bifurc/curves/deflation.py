@@ -43,6 +43,7 @@ from bifurc.numerics.corrector import compiled_equations
 from bifurc.numerics.null_spaces import null_spaces
 from bifurc.numerics.singular_values import factors_of, singular_values, values_of
 from bifurc.problem import Problem
+from bifurc.singular.prestress import positive_combination
 from bifurc.singular.sphere import section
 from bifurc.system import March, MarchSettings, MarchStatus, Piece, Shortcuts
 
@@ -318,3 +319,16 @@ class RankDeflated(NumericalProblem):
         return solutions, closes_to_rounding(gaps) & (
             offsets < NEXT * self.domain.scale
         )
+
+    def is_curve_alone(self, point: np.ndarray) -> bool:
+        """Whether second order shows that a curve alone runs through a solution (n,), and
+        no surface on which the rank is lower along a curve: one stress has a form that is
+        positive for every flex across the curve."""
+        tangent = factors_of(self.jacobians(point[None])[0]).right[-1]
+        factors = factors_of(self._problem.jacobians(point[None])[0] / self.magnitude)
+        flexes, stresses = factors.right[self._rank :], factors.left[:, self._rank :].T
+        beside = flexes - np.outer(flexes @ tangent, tangent)
+        across = factors_of(beside).right[: len(flexes) - 1]
+        hessian = self._problem.hessians(point[None])[0] / self.magnitude
+        forms = np.tensordot(stresses, across @ (hessian @ across.T), axes=1)
+        return positive_combination(forms)[0] is not None

@@ -37,7 +37,7 @@ log = logging.getLogger(__name__)
 # Singular values are over the problem's magnitude, lengths over its scale.
 BLURRED = 1e-4  # accuracy of a seed where the rank is low: half the digits, at worst
 TINY = 1e-300  # keeps a singular value of zero from being divided by
-NULLITY_OF_SHAKY = 3  # all along a curve that one deflation of the rank makes regular
+NULLITY_OF_SHAKY = 3  # or more: of a curve that one deflation of the rank makes regular
 MOST_MOVES = 3  # of a solution to the curve that is listed for its own
 SAMPLES = 256  # of a curve, by which it is told how far it is moved
 
@@ -64,8 +64,8 @@ class Seed:
         return is_weakly_isolated(float(self.values[self.problem.n - 1]))
 
     def may_be_shaky(self) -> bool:
-        """Whether F' may have rank n - 3 all along a curve."""
-        return self.nullity == NULLITY_OF_SHAKY and not self.problem.domain.is_large
+        """Whether F' may have rank n - 3 or less all along a curve."""
+        return self.nullity >= NULLITY_OF_SHAKY and not self.problem.domain.is_large
 
     def may_be_singular(self) -> bool:
         """Whether it may be a singular point: a singular value is small there, and not
@@ -114,7 +114,7 @@ class SeedJudge:
             _Rule(Seed.is_weak, self._known_point, "a known point, to rounding"),
             _Rule(Seed.cannot_move, self._assembly, "F' has full rank"),
             _Rule(Seed.is_any, self._near_motion, "a known near motion"),
-            _Rule(Seed.may_be_shaky, self._shaky_curve, "rank n - 3 all along"),
+            _Rule(Seed.may_be_shaky, self._shaky_curve, "rank n - 3 or less"),
             _Rule(Seed.may_be_singular, self._known_about, "known, as near as it is"),
             _Rule(Seed.may_be_singular, self._curve_of_lower_rank, "rank n - 2"),
             _Rule(Seed.may_be_singular, self._singular_point, "a singular point"),
@@ -149,15 +149,18 @@ class SeedJudge:
         return self.findings.near_motion_through(seed.point)
 
     def _shaky_curve(self, seed: Seed) -> SeedFate | None:
-        """The curve on which it lies where F' has rank n - 3 all along it."""
+        """The curve on which it lies where F' has rank n - 3 or less all along it."""
         fate = self.findings.branch_through(seed.point, seed.blur)
         if fate is not None:
             return fate
         n = self.problem.n
-        deflated = RankDeflated(self.problem, n - NULLITY_OF_SHAKY)
+        deflated = RankDeflated(self.problem, n - seed.nullity)
         solutions, are_solved = deflated.next_to(seed.point[None])
         last = singular_values(deflated, solutions)[0, n - 2]
         if not are_solved[0] or may_be_singular(float(last)):
+            return None
+        is_lower = seed.nullity > NULLITY_OF_SHAKY
+        if is_lower and not deflated.is_curve_alone(solutions[0]):
             return None
         branch = self.tracer.follow_deflated(deflated, Start(solutions[0]))
         if branch is None:

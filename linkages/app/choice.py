@@ -16,14 +16,15 @@ from bifurc.files.text_file import read_text
 from bifurc.limits import Deadline, made_before_the_end, until
 from linkages.app.exit_codes import CommandError
 from linkages.app.options import AtlasOptions, HoldOptions
+from linkages.arrays.entries import MECHANISMS
 from linkages.catalogue import entry
 from linkages.entry import Entry, Linkage, Parameter, ParameterKind
 from linkages.file import read_linkage, read_precisely
 from linkages.files.csv_table import from_modified, says_modified
 from linkages.linkage import is_linkage_file, load
 from linkages.loop import LARGEST, SMALLEST, Loop
+from linkages.mechanisms.entry import MechanismEntry
 from linkages.networks.entries import NETWORKS, NetworkEntry
-from linkages.sheets.entries import SHEETS, SheetEntry
 from linkages.values import GeometryError, check_angle, require, told_apart
 
 if TYPE_CHECKING:
@@ -86,8 +87,8 @@ def _loaded(
         of_file = family_of_file(text)
         member = of_file.build(**read_parameters(of_file.parameters, parameters))
         return Linkage(member) if isinstance(member, Loop) else member
-    family: Entry | NetworkEntry | SheetEntry
-    family = NETWORKS.get(text) or SHEETS.get(text) or entry(text)
+    family: Entry | NetworkEntry | MechanismEntry
+    family = NETWORKS.get(text) or MECHANISMS.get(text) or entry(text)
     values = read_parameters(family.parameters, parameters)
     return load(text, closures=None, **values)
 

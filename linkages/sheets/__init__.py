@@ -1,5 +1,5 @@
 """Sheets of rigid panels of any size, by name.
 
-Numbers of a sheet go in; a folded state of it comes out as the content of a FOLD file, with
-its folds in closed form.
+Numbers of a sheet go in; the content of a FOLD file comes out: of a mesh folded by its
+closed form, or of a flat pattern that repeats.
 """

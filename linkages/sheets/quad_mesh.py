@@ -152,35 +152,48 @@ class QuadMesh:
 
     def fold_content(self, t: float, title: str) -> dict[str, Any]:
         """The content of a FOLD file of the sheet folded to the half tangent ``t``,
-        positive, its creases assigned as they are folded."""
-        numbers = np.arange(self.flat.shape[0] * self.flat.shape[1])
-        numbers = numbers.reshape(self.flat.shape[:2])
-        corners = [
-            numbers[:-1, :-1],
-            numbers[1:, :-1],
-            numbers[1:, 1:],
-            numbers[:-1, 1:],
-        ]
-        edges, signs = self._edges(numbers, t)
+        positive, its creases assigned as they are folded. Vertices and panels are counted
+        along the rows."""
+        return self._content(self.folded(t), "foldedForm", title)
+
+    def crease_pattern(self, t: float, title: str) -> dict[str, Any]:
+        """The same of the flat sheet, with the fold angles (degrees) at the half tangent
+        ``t``, 0 or more."""
+        content = self._content(self.flat, "creasePattern", title)
+        angles = np.degrees(self._of_edges(*self.folds(t)))
+        return {**content, "edges_foldAngle": angles.tolist()}
+
+    def thick_pattern(self, t: float, step: float, title: str) -> dict[str, Any]:
+        """The same of thick panels: hinges up the columns are in the middle, those along
+        the rows one ``step`` above or below, by the way they fold. Where all sectors have
+        one sine every vertex is a Bennett linkage, which folds as the flat vertex does
+        (Chen, Peng and You 2015)."""
+        along, up = self.folds(1.0)
+        heights = step * self._of_edges(np.sign(along), 0.0 * up)
+        pattern = self.crease_pattern(t, title)
+        return {**pattern, "bifurc:edges_height": heights.tolist()}
+
+    def _content(self, points: np.ndarray, kind: str, title: str) -> dict[str, Any]:
+        """The content of a FOLD file with vertices at ``points`` (c + 2, r + 2, k)."""
+        columns, rows = points.shape[:2]
+        numbers = np.arange(columns * rows).reshape(rows, columns).T
+        signs = np.sign(self._of_edges(*self.folds(1.0))).astype(int)
         return {
             "file_spec": 1.1,
             "file_title": title,
-            "frame_classes": ["foldedForm"],
-            "vertices_coords": self.folded(t).reshape(-1, 3).tolist(),
-            "edges_vertices": edges.tolist(),
+            "frame_classes": [kind],
+            "vertices_coords": np.concatenate(points.swapaxes(0, 1)).tolist(),
+            "edges_vertices": _ends(numbers).tolist(),
             "edges_assignment": [LETTERS[sign] for sign in signs.tolist()],
-            "faces_vertices": np.stack(corners, axis=-1).reshape(-1, 4).tolist(),
+            "faces_vertices": _panels(numbers).tolist(),
         }
 
-    def _edges(self, numbers: np.ndarray, t: float) -> tuple[np.ndarray, np.ndarray]:
-        """The ends (e, 2) of all edges by the ``numbers`` (c + 2, r + 2) of vertices, and
-        the signs (e,) of their folds, 0 on the rim."""
-        along, up = self.folds(t)
+    @staticmethod
+    def _of_edges(along: np.ndarray, up: np.ndarray) -> np.ndarray:
+        """Values of the creases along the rows (c + 1, r) and up the columns (c, r + 1)
+        for all edges (e,), 0 on the rim."""
         along, up = np.pad(along, ((0, 0), (1, 1))), np.pad(up, ((1, 1), (0, 0)))
-        across = np.stack([numbers[:-1], numbers[1:]], axis=-1).reshape(-1, 2)
-        upwards = np.stack([numbers[:, :-1], numbers[:, 1:]], axis=-1).reshape(-1, 2)
-        folds = np.concatenate([along.ravel(), up.ravel()])
-        return np.concatenate([across, upwards]), np.sign(folds).astype(int)
+        return np.concatenate([along.ravel(), up.ravel()])
 
 
 class _Pose(NamedTuple):
@@ -196,6 +209,19 @@ class _Pose(NamedTuple):
         turn = _turn(end - start, angle)
         offset = self.offset + self.turn @ (start - turn @ start)
         return _Pose(self.turn @ turn, offset)
+
+
+def _ends(numbers: np.ndarray) -> np.ndarray:
+    """The ends (e, 2) of all edges between vertices of these numbers (k, l)."""
+    across = np.stack([numbers[:-1], numbers[1:]], axis=-1)
+    upwards = np.stack([numbers[:, :-1], numbers[:, 1:]], axis=-1)
+    return np.concatenate([across.reshape(-1, 2), upwards.reshape(-1, 2)])
+
+
+def _panels(numbers: np.ndarray) -> np.ndarray:
+    """The corners (p, 4) of all panels between vertices of these numbers (k, l)."""
+    corners = [numbers[:-1, :-1], numbers[1:, :-1], numbers[1:, 1:], numbers[:-1, 1:]]
+    return np.stack(corners, axis=-1).swapaxes(0, 1).reshape(-1, 4)
 
 
 def straight_mesh(rows: np.ndarray, columns: np.ndarray) -> QuadMesh:

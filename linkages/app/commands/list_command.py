@@ -15,9 +15,9 @@ def list_command() -> None:
     """
     from bifurc.tables import table
     from linkages.app.output import say
+    from linkages.arrays.entries import MECHANISMS
     from linkages.catalogue import catalogue
     from linkages.networks.entries import NETWORKS
-    from linkages.sheets.entries import SHEETS
 
     rows = []
     for entry in catalogue().values():
@@ -25,7 +25,7 @@ def list_command() -> None:
         rows.append((entry.name, str(joints), entry.title))
     for network in NETWORKS.values():
         rows.append((network.name, str(len(network.plan.axes)), network.title))
-    for sheet in SHEETS.values():
-        creases = len(sheet.build().joints)
-        rows.append((sheet.name, str(creases), sheet.title))
+    for one in MECHANISMS.values():
+        joints = len(one.build().joints)
+        rows.append((one.name, str(joints), one.title))
     say(table(("name", "joints", "title"), rows))

@@ -15,15 +15,15 @@ def show_command(name: str) -> None:
       bifurc show bennett
     """
     from linkages.app.output import say
-    from linkages.app.texts.entry_text import describe_entry, describe_sheet
+    from linkages.app.texts.entry_text import describe_entry, describe_mechanism
     from linkages.app.texts.network_text import describe_network
+    from linkages.arrays.entries import MECHANISMS
     from linkages.catalogue import entry
     from linkages.networks.entries import NETWORKS
-    from linkages.sheets.entries import SHEETS
 
     if name in NETWORKS:
         say(describe_network(NETWORKS[name]))
-    elif name in SHEETS:
-        say(describe_sheet(SHEETS[name]))
+    elif name in MECHANISMS:
+        say(describe_mechanism(MECHANISMS[name]))
     else:
         say(describe_entry(entry(name)))

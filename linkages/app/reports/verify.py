@@ -11,6 +11,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from bifurc.atlas import Surface
 from bifurc.branch import Branch
 from bifurc.curves.continuation import trace_branch
 from bifurc.numerics.singular_values import singular_values
@@ -58,8 +59,8 @@ class MemberCheck:
     what tracing found.
 
     ``corank`` is n less the rank at the start, ``closure`` the largest residual along
-    the traced forms, ``distance`` that of the closed form (rad; nan without one),
-    ``certain`` the same away from singular points.
+    the traced forms and at samples of surfaces, ``distance`` that of the closed form
+    (rad; nan without one), ``certain`` the same away from singular points.
     """
 
     parameters: Mapping[str, float]
@@ -74,7 +75,7 @@ class MemberCheck:
     @property
     def real(self) -> bool:
         """Whether the member has real configurations."""
-        return not self.refused and bool(self.outcomes)
+        return not self.refused and bool(self.outcomes or self.mobility)
 
 
 @dataclass(frozen=True)
@@ -174,27 +175,35 @@ def check_member(family: Entry, values: Mapping[str, float], seed: int) -> Membe
         loop = family.build(**values)
     except GeometryError as refusal:
         return MemberCheck(values, refused=str(refusal))
-    forms = family.closed_forms
-    starts = _starts_on(forms, values, seed)
-    has_surfaces = False
-    if not len(starts):
-        starts, has_surfaces = _surveyed_starts(loop, seed)
-    if not len(starts):
-        return MemberCheck(values, mobility=2 if has_surfaces else 0)
+    return _check_loop(loop, family.closed_forms, values, seed)
+
+
+def _check_loop(
+    loop: Loop, forms: Sequence[ClosedForm], values: Mapping[str, float], seed: int
+) -> MemberCheck:
+    """What tracing finds of the member with these ``values``, and the closed ``forms``
+    of its family beside it."""
     problem = Closure(loop)
+    starts = _starts_on(forms, values, seed)
     branches = [trace_branch(problem, start) for start in starts]
-    # how many singular values vanish
-    is_zero = singular_values(problem, starts) < SINGULAR
-    corank = int(is_zero.sum(axis=1).min())
-    distances = []
-    if forms:
-        distances = [compare(forms, values, problem, branch) for branch in branches]
+    surfaces: Sequence[Surface] = ()
+    if not branches:
+        atlas = survey(loop, seed=seed).atlas
+        branches = [form.branch for form in atlas.forms]
+        surfaces = atlas.surfaces
+    seen = [branch.sample(SAMPLES) for branch in branches]
+    seen += [surface.samples for surface in surfaces]
+    if not seen:
+        return MemberCheck(values)
+    compared = branches if forms else []
+    distances = [compare(forms, values, problem, branch) for branch in compared]
+    corank = _corank(problem, np.array([points[0] for points in seen]))
     return MemberCheck(
         values,
         corank=corank,
-        mobility=2 if has_surfaces else _mobility(branches, corank),
+        mobility=_mobility(branches, surfaces, corank),
         outcomes=tuple(branch.outcome.name for branch in branches),
-        closure=max(_closure_error(problem, branch) for branch in branches),
+        closure=_closure_error(problem, np.concatenate(seen)),
         distance=max((d.everywhere for d in distances), default=NAN),
         certain=max((d.certain for d in distances), default=NAN),
     )
@@ -214,23 +223,26 @@ def _starts_on(
     return np.concatenate(starts) if starts else np.empty((0, 0))
 
 
-def _surveyed_starts(loop: Loop, seed: int) -> tuple[Floats, bool]:
-    """A configuration (k, n) of each form that a survey finds, and whether it finds
-    surfaces."""
-    atlas = survey(loop, seed=seed).atlas
-    starts = np.array([form.branch(0.0) for form in atlas.forms])
-    return starts.reshape(-1, loop.n), bool(atlas.surfaces)
+def _corank(problem: Closure, points: Floats) -> int:
+    """How many singular values vanish at least at points (k, n)."""
+    is_zero = singular_values(problem, points) < SINGULAR
+    return int(is_zero.sum(axis=1).min())
 
 
-def _mobility(branches: Sequence[Branch], corank: int) -> int:
-    """1 where every branch is a motion and the rank allows for one."""
+def _mobility(
+    branches: Sequence[Branch], surfaces: Sequence[Surface], corank: int
+) -> int:
+    """The largest dimension of the surfaces; without any, 1 where every branch is a
+    motion and the rank allows for one."""
+    if surfaces:
+        return max(surface.dimension for surface in surfaces)
     shortest = min(branch.length for branch in branches)
     return min(corank, 1) if shortest > TRACED else 0
 
 
-def _closure_error(problem: Closure, branch: Branch) -> float:
-    """The largest residual along a branch."""
-    residuals = problem.residuals(branch.sample(SAMPLES))
+def _closure_error(problem: Closure, points: Floats) -> float:
+    """The largest residual at points (k, n)."""
+    residuals = problem.residuals(points)
     return float(np.linalg.norm(residuals, axis=1).max())
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from bifurc.tables import table
+from bifurc.tables import count_of, table
 from linkages.app.texts.numbers import known_to
 from linkages.entry import Entry, Parameter, ParameterKind
 from linkages.geometry_table import geometry_rows, geometry_text
 from linkages.loop import Loop
-from linkages.sheets.entries import SheetEntry
+from linkages.mechanisms.entry import MechanismEntry
 
 
 def describe_entry(entry: Entry) -> str:
@@ -55,14 +55,15 @@ def list_below(title: str, lines: Sequence[str]) -> str:
     return "\n".join([title, *(f"  {line}" for line in lines)])
 
 
-def describe_sheet(entry: SheetEntry) -> str:
-    """Everything that is kept of a sheet."""
+def describe_mechanism(entry: MechanismEntry) -> str:
+    """Everything that is kept of a sheet or an array."""
     mechanism = entry.build()
-    facts = [
-        f"at the defaults: {len(mechanism.bodies)} panels, {len(mechanism.joints)} "
-        f"creases, {mechanism.independent_loops} loops",
-        "mobility: 1",
-    ]
+    counts = (
+        count_of(len(mechanism.bodies), "body"),
+        count_of(len(mechanism.joints), "joint"),
+        count_of(mechanism.independent_loops, "loop"),
+    )
+    facts = ["at the defaults: " + ", ".join(counts)]
     parts = [
         f"{entry.name}\n{entry.title}\nSource: {entry.source}",
         parameter_table(entry.parameters),

@@ -15,12 +15,12 @@ import linkages.app
 from linkages.app import start
 from linkages.app.cli import main
 from linkages.app.exit_codes import ExitCode
+from linkages.arrays.entries import MECHANISMS
 from linkages.catalogue import catalogue
 from linkages.closure.closure import Closure
 from linkages.linkage import load
 from linkages.loop import Loop
 from linkages.networks.entries import NETWORKS
-from linkages.sheets.entries import SHEETS
 from tests.linkages.app.slider_cranks import slider_crank_text
 
 MINE = """
@@ -87,11 +87,11 @@ def write(tmp_path):
 # --- list and show ------------------------------------------------------------------------------------
 
 
-def test_list_names_every_linkage_network_and_sheet():
+def test_list_names_every_linkage_network_sheet_and_array():
     result = bifurc("list")
     assert result.exit_code == 0
     listed = [line.split()[:2] for line in result.stdout.splitlines()[1:]]
-    assert [name for name, _ in listed] == [*catalogue(), *NETWORKS, *SHEETS]
+    assert [name for name, _ in listed] == [*catalogue(), *NETWORKS, *MECHANISMS]
     assert ["special-double-subtractive-goldberg", "6"] in listed
 
 

@@ -23,6 +23,8 @@ from linkages.values import GeometryError
 from tests.samples import one_in
 
 ENTRIES = [entry for entry in catalogue().values() if entry.facts.get("mobility") == 1]
+# but those of which the screws have a lower rank all along
+ENTRIES = [entry for entry in ENTRIES if "moebius" not in entry.name]
 MEMBERS = 6
 STARTS = 40
 ROUNDING = 1e-14  # rad; no step after a smaller one changes more than last bits

@@ -5,10 +5,10 @@ import pytest
 
 from bifurc.branch import Outcome
 from bifurc.curves.continuation import trace_branch
+from linkages.arrays.bennett_lattice import STATE, lattice, lattice_kinks
 from linkages.closure.closure import Closure
 from linkages.networks.assembly import assemble, motion_at
 from linkages.networks.placement import PlacedNetwork
-from studies.bennett_lattice import STATE, lattice, lattice_kinks
 
 
 def placed(columns, rows, kinks):

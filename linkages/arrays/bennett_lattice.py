@@ -12,15 +12,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkages import Mechanism
 from linkages.construction.link import Link
+from linkages.mechanisms.mechanism import Mechanism
 from linkages.networks.assembly import assemble
 from linkages.networks.network import Network
 from linkages.networks.placement import PlacedNetwork
 from linkages.networks.plan import Cell, Plan
 
-# twists (degrees) of columns and rows, the first one and the spread of the others
-COLUMN_TWISTS, ROW_TWISTS = (35.0, 10.0), (70.0, 10.0)
+# twists (rad) of the first column and the first row, and the spread of the others
+ALPHA, BETA, SPREAD = np.radians([35.0, 70.0, 10.0]).tolist()
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)  # its multiples, modulo 1, are spread
 # Joints are locked nearly folded, to one side and to the other: where they are straight a
 # cell turns some three times as fast as the one before it, the last of 100 1.6e6 times.
@@ -28,17 +28,29 @@ KINK = np.radians(170.0)
 STATE = 3  # number of the state, of those round the motion, that is the reference
 
 
-def locked_lattice(columns: int, rows: int) -> Mechanism:
+def locked_lattice(
+    columns: int,
+    rows: int,
+    alpha: float = ALPHA,
+    beta: float = BETA,
+    spread: float = SPREAD,
+) -> Mechanism:
     """The lattice of so many cells with one freedom left, in a configuration of its
-    closed form."""
-    network = lattice(columns, rows)
+    closed form; twists in rad."""
+    network = lattice(columns, rows, alpha, beta, spread)
     kinks = lattice_kinks(columns, rows)
     states = assemble(network, kinks)
     return PlacedNetwork(network, states[STATE], kinks).mechanism
 
 
-def lattice(columns: int, rows: int) -> Network:
-    """The network of so many Bennett loops, all of a different shape."""
+def lattice(
+    columns: int,
+    rows: int,
+    alpha: float = ALPHA,
+    beta: float = BETA,
+    spread: float = SPREAD,
+) -> Network:
+    """The network of so many Bennett loops, all of a different shape; twists in rad."""
     cells = []
     for j in range(rows):
         for i in range(columns):
@@ -49,14 +61,14 @@ def lattice(columns: int, rows: int) -> Network:
             cells.append(Cell(name, axes, (f"h{i}", f"v{j}")))
     inside = [_axis(i, j) for j in range(1, rows) for i in range(1, columns)]
     plan = Plan(
-        f"bennett-lattice-{columns}x{rows}",
+        "bennett-array",
         f"{columns} x {rows} Bennett loops",
         _ring(columns, rows),
         tuple(cells),
         tuple(inside),
     )
-    links = {f"h{i}": _link(COLUMN_TWISTS, i) for i in range(columns)}
-    links |= {f"v{j}": _link(ROW_TWISTS, j) for j in range(rows)}
+    links = {f"h{i}": _link(alpha, spread, i) for i in range(columns)}
+    links |= {f"v{j}": _link(beta, spread, j) for j in range(rows)}
     return Network(plan, links)
 
 
@@ -79,8 +91,7 @@ def _ring(columns: int, rows: int) -> tuple[str, ...]:
     return tuple(_axis(*corner) for corner in corners)
 
 
-def _link(twists: tuple[float, float], number: int) -> Link:
+def _link(first: float, spread: float, number: int) -> Link:
     """A link of Bennett ratio 1: its length is the sine of its twist."""
-    first, spread = twists
-    twist = float(np.radians(first + spread * (number * GOLDEN % 1.0)))
+    twist = first + spread * float(number * GOLDEN % 1.0)
     return Link(float(np.sin(twist)), twist)
