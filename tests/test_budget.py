@@ -29,6 +29,7 @@ LONGER = {
         "bifurc.surfaces.crossing_sheets.sign_changes",
         "bifurc.surfaces.walk._step",
         "linkages.networks.lock_routes.run",
+        "linkages.rigorous.check._is_on_map",
         "linkages.rigorous.check.augmented",
         "linkages.structure.rods._leg",
     ],

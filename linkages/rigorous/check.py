@@ -23,6 +23,7 @@ import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise, product
 from typing import Any, TypeAlias
 
@@ -47,6 +48,14 @@ WIDEST_POINT = (
     1e-25  # rad: a near miss that is smaller is not told from a singular point
 )
 UNPROVED = "that these are all motions"
+SLACK = 64  # the part of its reach within which a tube is known to hold what is near
+SHORTEST, LONGEST = 4, 6  # loops of which all motions may be known
+CIRCLE = (0.0, 3.1875)  # middle and half of an interval that holds a whole turn, in rad
+NARROWEST = 2.0**-32  # rad: in cells of this half nothing is looked for
+NARROW = 0.1  # rad: in a cell of this half two configurations are told apart by one joint more
+VAGUE = 32  # so much wider than its cell is what two held joints hardly determine
+WIDE = 0.5  # rad: no box is that wide
+PASSED = 3  # boxes of a tube that a cell passes at most
 DEEPEST = 14  # bisections of a direction, after which it counts as not excluded
 Vector: TypeAlias = list[Any]  # of balls
 Json: TypeAlias = Any
@@ -154,6 +163,7 @@ class Loop:
         table = [list(row) for row in zip(*map(numbers, columns), strict=True)]
         self.scale = number(geometry["scale"])
         self._require_sizes(table)
+        self.table = table
         self.links = [self._link(*row) for row in table]
         self.n = len(self.links)
 
@@ -181,6 +191,13 @@ class Loop:
                 [0, 0, 0, 1],
             ]
         )
+
+    def dual_quaternion(self, i: int) -> Vector:
+        """The unit dual quaternion (8,) of link i, translations over ``scale``."""
+        length, twist, offset = self.table[i]
+        s, c = (twist / 2).sin_cos()
+        a, r = length / self.scale / 2, offset / self.scale / 2
+        return [c, s, arb(0), arb(0), -a * s, a * c, r * s, r * c]
 
     def _joint(self, i: int, angle: arb) -> arb_mat:
         s, c = angle.sin_cos()
@@ -359,6 +376,7 @@ class Box:
     contraction: arb = field(default_factory=arb)
     radius: arb = field(default_factory=arb)
     misses: arb = field(default_factory=arb)
+    misfit: arb = field(default_factory=arb)  # largest F(c(x))
 
     def point(self, x: arb) -> Vector:
         """c(x)."""
@@ -366,7 +384,7 @@ class Box:
 
     def along(self, step: Vector) -> arb:
         """t.step."""
-        return sum((t * x for t, x in zip(self.normal, step, strict=True)), arb(0))
+        return _dot(self.normal, step)
 
     def holds_inside(self, u: Vector) -> bool:
         """Whether all points of a ball u (n,) lie in the interior of Q (the lemma)."""
@@ -374,7 +392,7 @@ class Box:
         ends = [self.along(_minus(u, self.point(x))) for x in (-self.half, self.half)]
         if not (ends[0] > 0 and ends[1] < 0):
             return False
-        x = self._section_of(u)
+        x = self.section_at(self.normal, self.along(u).mid())
         step = _minus(u, self.point(x))
         shift = self.along(step) / speed  # from x to the section that u lies on
         across = [d - v * shift for d, v in zip(step, self.velocity, strict=True)]
@@ -385,17 +403,53 @@ class Box:
         """An upper bound of how far, in any joint, these are from the curve."""
         return (norm(self.frame.matrix) * self.radius).abs_upper()
 
-    def end(self, side: int) -> Vector:
-        """What holds all closed configurations on the first (-1) or last (1) section."""
-        return _plus(self.point(side * self.half), self.frame.balls(self.radius))
+    @property
+    def slack(self) -> arb:
+        """What is so near to the curve is in the tube, as it is beyond the ends."""
+        return self.reach / SLACK
 
-    def _section_of(self, u: Vector) -> arb:
-        """Some x of the box, at about the section of u."""
-        middle = [angle.mid() for angle in u]
+    @cached_property
+    def skewness(self) -> arb:
+        """An upper bound of how many times as far from the curve a point is on its section
+        as it is at least."""
+        longest = norm(column(self.velocity)) * norm(arb_mat([self.normal]))
+        return (1 + longest / self.along(self.velocity)).abs_upper()
+
+    @cached_property
+    def _about(self) -> list[tuple[float, float]]:
+        """The middle and half of what the curve passes in every joint, in floats."""
+        curve = self.point(ball(self.half))
+        return [(float(x), float(x.rad()) + float(self.reach)) for x in curve]
+
+    def may_meet(self, held: Sequence[Held]) -> bool:
+        """Whether the box is near a cell; nothing is proved here."""
+        for interval, (middle, half) in zip(held, self._about, strict=True):
+            if interval is not None:
+                away = abs(math.remainder(interval[0] - middle, 2 * math.pi))
+                if away > 2 * interval[1] + 4 * half:
+                    return False
+        return True
+
+    def remoteness(self, u: Vector) -> float:
+        """How far a point is from what the curve passes, less than 0 inside; nothing is
+        proved here."""
+        pairs = zip(u, self._about, strict=True)
+        return max(
+            abs(math.remainder(float(x) - m, 2 * math.pi)) - h for x, (m, h) in pairs
+        )
+
+    def end(self, side: int) -> Vector:
+        """What holds all closed configurations on the first (-1) or last (1) section, and
+        more by the slack."""
+        ends = _plus(self.point(side * self.half), self.frame.balls(self.radius))
+        return thickened(ends, self.slack)
+
+    def section_at(self, normal: Vector, height: arb) -> arb:
+        """Some x of the box, with about normal.c(x) = height."""
         x = arb(0)
         for _ in range(4):
-            slope = [angle.derivative()(x) for angle in self.curve]
-            x = x + self.along(_minus(middle, self.point(x))) / self.along(slope)
+            slope = _dot(normal, [angle.derivative()(x) for angle in self.curve])
+            x = x + (height - _dot(normal, self.point(x))) / slope
             x = max(-self.half, min(self.half, x.mid()))
         return x
 
@@ -408,10 +462,15 @@ def _plus(u: Vector, v: Vector) -> Vector:
     return [x + y for x, y in zip(u, v, strict=True)]
 
 
+def _turns(u: Vector, place: Vector) -> Vector:
+    """The whole turns after which a place is nearest to u, in rad."""
+    away = [float(x) / (2 * math.pi) for x in _minus(u, place)]
+    return whole_turns([round(turns) for turns in away])
+
+
 def _near(u: Vector, place: Vector) -> Vector:
     """The point that is whole turns from u and nearest to a place."""
-    away = [float(x) / (2 * math.pi) for x in _minus(u, place)]
-    return _minus(u, whole_turns([round(turns) for turns in away]))
+    return _minus(u, _turns(u, place))
 
 
 def thickened(u: Vector, radius: arb) -> Vector:
@@ -445,6 +504,7 @@ def make_box(loop: Loop, piece: Piece) -> Box:
     everywhere = [x + ball(piece.reach) for x in box.point(ball(half))]
     over = loop.at(everywhere)
     values = _values_along(loop, curve, ball(half), piece.order)
+    box.misfit = norm(values)
     _prove_unique(box, loop, piece.rows, over, values)
     _bound_misses(box, piece.rows, over, values)
     return box
@@ -867,6 +927,397 @@ def _length(u: Vector) -> arb:
     return sum((x * x for x in u), arb(0)).nonnegative_part().sqrt()
 
 
+# --- statement 4: nothing missing -----------------------------------------------------
+
+
+def _quaternion_product(p: Vector, q: Vector) -> Vector:
+    """The product of two quaternions, the real part first."""
+    a, b, c, d = p
+    e, f, g, h = q
+    return [
+        a * e - b * f - c * g - d * h,
+        a * f + b * e + c * h - d * g,
+        a * g - b * h + c * e + d * f,
+        a * h + b * g - c * f + d * e,
+    ]
+
+
+def _product(p: Vector, q: Vector) -> Vector:
+    """The product of two dual quaternions (8,), the dual part last."""
+    real = _quaternion_product(p[:4], q[:4])
+    one, other = _quaternion_product(p[:4], q[4:]), _quaternion_product(p[4:], q[:4])
+    return [*real, *_plus(one, other)]
+
+
+def _unit(i: int) -> Vector:
+    return [arb(int(j == i)) for j in range(8)]
+
+
+ONE, AXIS = _unit(0), _unit(3)  # 1, and k of the axis of a joint
+Held: TypeAlias = tuple[float, float] | None  # middle and half of an interval, in rad
+
+
+class Chain:
+    """The product Z_i G_i ... Z_j G_j of some joints in unit dual quaternions, or of the
+    rest of the loop turned round: linear in a tensor of (cos u/2, sin u/2), one factor a
+    joint."""
+
+    def __init__(self, loop: Loop, joints: Sequence[int], is_rest: bool):
+        self.joints = joints
+        self.terms: dict[tuple[int, ...], Vector] = {}
+        self._columns: dict[Any, list[Vector]] = {}
+        links = [loop.dual_quaternion(joint) for joint in joints]
+        for powers in product((0, 1), repeat=len(joints)):
+            total = ONE
+            for power, link in zip(powers, links, strict=True):
+                turn = AXIS if power else ONE
+                total = _product(_product(total, turn), link)
+            if is_rest:  # minus its conjugate
+                total = [x if i % 4 else -x for i, x in enumerate(total)]
+            self.terms[powers] = total
+
+    def columns(self, held: Sequence[Held], changed: int | None = None) -> list[Vector]:
+        """What the tensor of the joints that are not held is multiplied with (8, m), or its
+        derivative by the joint ``changed``."""
+        key = (tuple(held), changed)
+        if key not in self._columns:
+            self._columns[key] = self._contracted(*key)
+        return self._columns[key]
+
+    def _contracted(self, held: Sequence[Held], changed: int | None) -> list[Vector]:
+        factors: list[tuple[arb, arb] | None] = []
+        for i, interval in enumerate(held):
+            if interval is None:
+                factors.append(None)
+                continue
+            s, c = (arb(*interval) / 2).sin_cos()
+            factors.append((-s / 2, c / 2) if i == changed else (c, s))
+        sums: dict[tuple[int, ...], Vector] = {}
+        for powers, term in self.terms.items():
+            weight = arb(1)
+            free = []
+            for power, factor in zip(powers, factors, strict=True):
+                if factor is None:
+                    free.append(power)
+                else:
+                    weight = weight * factor[power]
+            weighted = [weight * x for x in term]
+            former = sums.get(tuple(free))
+            sums[tuple(free)] = _plus(former, weighted) if former else weighted
+        return [sums[free] for free in sorted(sums)]
+
+
+def chains_of(loop: Loop, first: int) -> list[Chain]:
+    """The halves of a loop, from one joint on."""
+    joints = [(first + i) % loop.n for i in range(loop.n)]
+    half = (loop.n + 1) // 2
+    return [Chain(loop, joints[:half], False), Chain(loop, joints[half:], True)]
+
+
+def left_inverse(matrix: arb_mat) -> arb_mat:
+    """Some exact matrix, which is close to a left inverse if all is well."""
+    transposed = matrix.mid().transpose()
+    return (approximate_inverse(transposed * matrix) * transposed).mid()
+
+
+def weighted_norm(matrix: arb_mat) -> tuple[arb, Vector]:
+    """An upper bound of the norm of a matrix (n, n) of vectors whose entries are divided by
+    weights, and these; raises `DoesNotHold` where an entry is not bounded."""
+    sizes = arb_mat([[x.abs_upper() for x in row] for row in matrix.tolist()])
+    weights = [arb(1)] * sizes.nrows()
+    for _ in range(3):
+        sums = (sizes * column(weights)).entries()
+        least = largest(sums) / 64 + arb(2) ** -64
+        weights = [(x + least).mid() for x in sums]
+    sums = (sizes * column(weights)).entries()
+    ratios = [(x / y).abs_upper() for x, y in zip(sums, weights, strict=True)]
+    return largest(ratios), weights
+
+
+def null_direction(matrix: arb_mat) -> Vector:
+    """About the vector, of length 1, that a matrix of exact numbers makes shortest."""
+    square = matrix.transpose() * matrix
+    shifted = square + identity(matrix.ncols()) * arb(2) ** -30
+    inverse = approximate_inverse(shifted)
+    vector = column(arb_vector(math.sin(1 + 3 * i) for i in range(matrix.ncols())))
+    for _ in range(2):
+        vector = (inverse * vector).mid()
+        vector = (vector / _length(vector.entries())).mid()
+    entries: Vector = vector.entries()
+    return entries
+
+
+@dataclass(frozen=True)
+class Family:
+    """All M = M_0 + sum d_i M_i, with the d_i in the balls ``steps``, and M_0 and M_i
+    ``middle`` and ``slopes``."""
+
+    middle: arb_mat
+    slopes: list[arb_mat]
+    steps: Vector
+
+    def multiplied(self, left: arb_mat) -> Family:
+        """The products with a matrix of exact numbers."""
+        slopes = [left * slope for slope in self.slopes]
+        return Family(left * self.middle, slopes, self.steps)
+
+    @property
+    def change(self) -> arb_mat:
+        """What holds all sum d_i M_i."""
+        total = arb_mat(self.middle.nrows(), self.middle.ncols())
+        for slope, step in zip(self.slopes, self.steps, strict=True):
+            total = total + slope * step
+        return total
+
+    def changed(self, z: arb_mat) -> arb_mat:
+        """What holds all sum d_i M_i z, closer than the product does."""
+        total = arb_mat(self.middle.nrows(), 1)
+        for slope, step in zip(self.slopes, self.steps, strict=True):
+            total = total + (slope * z) * step
+        return total
+
+
+def kernel_of(family: Family) -> Vector | None:
+    """Theorem 6, 1: what holds the vector z that some M makes zero, up to a factor; None
+    where no M does. Raises `DoesNotHold` where one M may make two vectors zero."""
+    bordered = stacked(family.middle, null_direction(family.middle))
+    inverse = left_inverse(bordered)
+    of_rows = arb_mat([row[:-1] for row in inverse.tolist()])
+    rest = identity(bordered.ncols()) - inverse * bordered
+    bent = family.multiplied(of_rows)
+    constant = column([row[-1] for row in inverse.tolist()])
+    z = _fixed(rest - bent.change, constant)
+    for _ in range(3):
+        z = constant + rest * z - bent.changed(z)
+    across = family.multiplied((identity(8) - family.middle * of_rows).mid())
+    values = across.middle * z + across.changed(z)
+    entries: Vector = z.entries()
+    return entries if all(x.contains(0) for x in values.entries()) else None
+
+
+def _fixed(defect: arb_mat, constant: arb_mat) -> arb_mat:
+    """What holds all z = constant + defect z; raises `DoesNotHold` where there may be
+    several."""
+    contraction, weights = weighted_norm(defect)
+    require(contraction < 1, "two configurations may be in one cell")
+    ratios = zip(constant.entries(), weights, strict=True)
+    size = largest([(x / w).abs_upper() for x, w in ratios]) / (1 - contraction)
+    return column([ball(size * w) for w in weights])
+
+
+def angles_of(tensor: Vector) -> Vector | None:
+    """The angles u of one or two joints whose (cos u/2, sin u/2) a tensor is the product of,
+    up to a factor; None where it is no product. Raises `DoesNotHold` where it may be
+    zero."""
+    if len(tensor) < 2:
+        return []
+    if len(tensor) == 2:
+        return [_angle(*tensor)]
+    a, b, c, d = tensor
+    if not (a * d - b * c).contains(0):
+        return None
+    ratios = [[[a, c], [b, d]], [[a, b], [c, d]]]
+    return [_angle(*max(equal, key=_middle_size)) for equal in ratios]
+
+
+def _middle_size(vector: Vector) -> float:
+    return math.hypot(*(float(x) for x in vector))
+
+
+def _angle(c: arb, s: arb) -> arb:
+    """The angle u with (cos u/2, sin u/2) : (c, s), or any angle where both may be zero."""
+    is_cosine_larger = abs(float(c)) > abs(float(s))
+    if (c if is_cosine_larger else s).contains(0):
+        return ball(arb(CIRCLE[1]))
+    if is_cosine_larger:
+        return 2 * (s / c).atan()
+    return arb.pi() - 2 * (c / s).atan()
+
+
+@dataclass(frozen=True)
+class Cell:
+    """All configurations in which some joints are ``held`` in intervals, and the boxes of
+    tubes that may pass there."""
+
+    held: tuple[Held, ...]
+    boxes: list[Box]
+
+    @property
+    def widest(self) -> tuple[int, float]:
+        """The joint that is held in the widest interval, and half of that."""
+        halves = [interval[1] if interval else 0.0 for interval in self.held]
+        joint = max(range(len(halves)), key=halves.__getitem__)
+        return joint, halves[joint]
+
+    def __str__(self) -> str:
+        places = [
+            f"joint {i} = {interval[0]:.6f}"
+            for i, interval in enumerate(self.held, 1)
+            if interval
+        ]
+        return ", ".join(places)
+
+    def halves(self, joint: int) -> Iterator[Cell]:
+        """Two cells that hold all of this one."""
+        middle, half = self.held[joint] or CIRCLE
+        for side in (-half / 2, half / 2):
+            interval = (middle + side, half / 2)
+            held = (*self.held[:joint], interval, *self.held[joint + 1 :])
+            yield Cell(held, [box for box in self.boxes if box.may_meet(held)])
+
+
+class Motions:
+    """All motions of a loop of four to six joints (theorem 6), beside the boxes of tubes
+    and spheres, their centres and radii, that are known."""
+
+    def __init__(
+        self,
+        loop: Loop,
+        first: int,
+        boxes: list[Box],
+        spheres: list[tuple[Vector, arb]],
+    ):
+        require(SHORTEST <= loop.n <= LONGEST, f"of {loop.n} joints nothing is known")
+        self.loop, self.boxes, self.spheres = loop, boxes, spheres
+        self.chains = chains_of(loop, first)
+
+    def cells(self, joints: Sequence[int]) -> Iterator[Cell]:
+        """The cells that are looked at until all closed configurations that are not in
+        tubes or spheres are isolated; raises `DoesNotHold` where that is not reached. Of
+        each chain some joint is among those that are held at first."""
+        for chain in self.chains:
+            is_held = any(joint in joints for joint in chain.joints)
+            require(is_held, "a chain is not held")
+        held = [CIRCLE if joint in joints else None for joint in range(self.loop.n)]
+        open_cells = [Cell(tuple(held), self.boxes)]
+        while open_cells:
+            cell = open_cells.pop()
+            yield cell
+            joint, half = cell.widest
+            try:
+                u = self.configuration(cell)
+                if u is None or self._is_known(u, cell.boxes):
+                    continue
+                is_vague = not largest([x.rad() for x in u]) < VAGUE * half
+            except DoesNotHold:
+                is_vague = True
+            if is_vague and half < NARROW and None in cell.held:
+                joint = cell.held.index(None)
+            wide = (cell.held[joint] or CIRCLE)[1]
+            require(wide > NARROWEST, f"configurations may be left about {cell}")
+            open_cells += cell.halves(joint)
+
+    def _is_known(self, u: Vector, boxes: list[Box]) -> bool:
+        """Whether a ball holds no closed configuration but one, or known ones."""
+        if largest([x.rad() for x in u]) > WIDE:
+            return False
+        for centre, radius in self.spheres:
+            if _length(_minus(_near(u, centre), centre)) < radius:
+                return True
+        return _holds(self._is_on_map, u, boxes) or _holds(self._is_single, u)
+
+    def configuration(self, cell: Cell) -> Vector | None:
+        """What holds all closed configurations of a cell; None if there are none. Raises
+        `DoesNotHold` where two are not told from each other."""
+        z = kernel_of(self._family(cell))
+        if z is None:
+            return None
+        u = [arb(*(interval or CIRCLE)) for interval in cell.held]
+        for chain in self.chains:
+            free = [joint for joint in chain.joints if cell.held[joint] is None]
+            tensor, z = z[: 2 ** len(free)], z[2 ** len(free) :]
+            angles = angles_of(tensor)
+            if angles is None:
+                return None
+            for joint, angle in zip(free, angles, strict=True):
+                u[joint] = angle
+        return u
+
+    def _family(self, cell: Cell) -> Family:
+        """The matrices (8, m) that make the tensors of the free joints of both chains zero
+        where the loop is closed."""
+        held = [[cell.held[joint] for joint in chain.joints] for chain in self.chains]
+        middles = [[one and (one[0], 0.0) for one in intervals] for intervals in held]
+        pairs = zip(self.chains, middles, strict=True)
+        parts = [chain.columns(intervals) for chain, intervals in pairs]
+        slopes, steps = [], []
+        for side, intervals in enumerate(held):
+            for place, interval in enumerate(intervals):
+                if interval:
+                    columns = [[[arb(0)] * 8] * len(part) for part in parts]
+                    columns[side] = self.chains[side].columns(intervals, place)
+                    slopes.append(_matrix_of(columns))
+                    steps.append(ball(arb(interval[1])))
+        return Family(_matrix_of(parts), slopes, steps)
+
+    def _is_on_map(self, u: Vector, boxes: list[Box]) -> bool:
+        """Whether a closed configuration in a ball u lies within the slack of a curve."""
+        nearest = sorted(boxes, key=lambda box: box.remoteness(u))[:PASSED]
+        require(nearest, "no curve is near")
+        normal = nearest[0].normal
+        height = _dot(normal, u)
+        wider = height + ball(height.rad() / 64)
+        ends = wider.lower(), wider.upper()
+        hull, heights, rates = u, [], []
+        for box in nearest:
+            turns = _turns(u, box.point(arb(0)))
+            shift = _dot(normal, turns)
+            low, high = (box.section_at(normal, (end - shift).mid()) for end in ends)
+            if low < high:
+                heights.append(
+                    [_dot(normal, box.point(x)) + shift for x in (low, high)]
+                )
+                curve = _plus(box.point(low.union(high)), turns)
+                hull = [x.union(y) for x, y in zip(hull, curve, strict=True)]
+                rates.append(box.misfit * box.skewness / box.slack)
+        if not _are_covered(height, heights):
+            return False
+        return self._gain(hull, [normal]) * largest(rates) < 1
+
+    def _is_single(self, u: Vector) -> bool:
+        """Whether there is one closed configuration at most in a ball."""
+        return self._gain(u, []).is_finite()
+
+    def _gain(self, hull: Vector, rows: list[Vector]) -> arb:
+        """How many times as far from each other as their F are two points of a ball on one
+        section, in more ``rows``, at most: |Y| / (1 - q) in some weights, |I - Y A| < q for
+        all A whose rows are means of those of F' in the ball. Raises `DoesNotHold` unless
+        q < 1."""
+        middle = [x.mid() for x in hull]
+        matrix = arb_mat([*self.loop.at(middle).jacobian.tolist(), *rows])
+        inverse = left_inverse(matrix)
+        of_rows = arb_mat([row[:EQUATIONS] for row in inverse.tolist()])
+        bend = self.loop.at(hull).second(_minus(hull, middle))
+        defect = identity(self.loop.n) - inverse * matrix - of_rows * bend
+        contraction, weights = weighted_norm(defect)
+        require(contraction < 1, "the left inverse does not contract")
+        gain: arb = norm(of_rows) * largest(weights) / min(weights) / (1 - contraction)
+        return gain
+
+
+def _matrix_of(columns: list[list[Vector]]) -> arb_mat:
+    """The columns of both chains beside each other."""
+    one, other = columns
+    return arb_mat(one + other).transpose()
+
+
+def _holds(condition: Callable[..., bool], *values: Any) -> bool:
+    """Whether a condition is certain; not where it raises `DoesNotHold`."""
+    try:
+        return condition(*values)
+    except DoesNotHold:
+        return False
+
+
+def _are_covered(height: arb, parts: Sequence[Vector]) -> bool:
+    """Whether intervals, each from one ball to another, cover a ball."""
+    reached = height.lower()
+    for low, high in sorted(parts, key=lambda part: float(part[0])):
+        if low <= reached:
+            reached = max(reached, high.lower())
+    return bool(reached >= height.upper())
+
+
 # --- a certificate --------------------------------------------------------------------
 
 
@@ -925,7 +1376,15 @@ class Check:
             statements.append(statement())
             yield statements[-1]
         if self.tubes and not self._open_ends:
-            yield self._joined(statements)
+            statements.append(self._joined(statements))
+            yield statements[-1]
+        if self.has_all_motions:
+            yield self._all_motions(statements)
+
+    @property
+    def has_all_motions(self) -> bool:
+        """Whether theorem 6 is claimed."""
+        return isinstance(self.certificate["motions"], dict)
 
     def _no_jump(self) -> Statement:
         """Theorem 1, with the lemma on tubes."""
@@ -1133,6 +1592,36 @@ class Check:
                 statement.failures.append("a half-branch is not in its tube")
         return statement
 
+    def _all_motions(self, others: Sequence[Statement]) -> Statement:
+        """Theorem 6: besides, closed configurations elsewhere are isolated."""
+        statement = Statement("all motions")
+        if self._open_ends or not all(other.holds for other in others):
+            statement.failures.append("it rests on the others")
+            return statement
+        began = time.process_time()
+        spheres = [
+            (numbers(point["centre"]), number(point["sphere"]))
+            for point in self.certificate["points"]
+        ]
+        choice = self.certificate["motions"]
+        try:
+            motions = Motions(self.loop, choice["first"], self._boxes, spheres)
+            count = sum(1 for _ in motions.cells(choice["held"]))
+            words = self._where_motions_are(spheres)
+            statement.numbers = f"{words}; {count} cells"
+        except DoesNotHold as reason:
+            statement.failures.append(str(reason))
+        statement.seconds = time.process_time() - began
+        return statement
+
+    def _where_motions_are(self, spheres: Sequence[tuple[Vector, arb]]) -> str:
+        if not self.tubes and not spheres:
+            return "there is no motion"
+        if not spheres:
+            return "every motion is on the map"
+        radius = float(largest([radius for _, radius in spheres]))
+        return f"every motion is on the map, or stays within {radius:.1e} of a singular point"
+
     def _tube(self, number: int) -> Tube:
         tube = self.tubes[number]
         if tube is None:
@@ -1151,7 +1640,9 @@ class Check:
         """What the certificate says nothing of: what its maker left open, where motions
         may leave what it covers, and what no certificate of this format holds."""
         beyond = [f"where motions go beyond {place}" for place in self._open_ends]
-        return [*self.certificate["open"], *beyond, UNPROVED]
+        if not self.has_all_motions:
+            beyond.append(f"{UNPROVED} ({self.certificate['motions']})")
+        return [*self.certificate["open"], *beyond]
 
 
 def _kind(half_branches: int) -> str | None:
@@ -1192,7 +1683,8 @@ def check_certificate(certificate: Json, say: Callable[[str], object]) -> bool:
             holds = holds and statement.holds
         for words in check.unclaimed:
             say(f"not claimed: {words}")
-        require(check.tubes or check.certificate["points"], "nothing is proved")
+        claims = [check.tubes, certificate["points"], check.has_all_motions]
+        require(any(claims), "nothing is proved")
     except DoesNotHold as reason:
         say(f"does not hold: {reason}")
         return False

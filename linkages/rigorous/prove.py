@@ -20,6 +20,7 @@ from linkages.loop import Loop
 from linkages.rigorous import check
 from linkages.rigorous.check import DoesNotHold
 from linkages.rigorous.courses import Pass, course_of
+from linkages.rigorous.motions import NOT_LOOKED_FOR, proved_motions
 from linkages.rigorous.spheres import claim, counted_half_branches, enclosed_point
 from linkages.rigorous.tubes import Cover, cover
 
@@ -41,8 +42,9 @@ def exact_text(value: Any) -> str:
     return float(value).hex()
 
 
-def make_certificate(loop: Loop, atlas: Atlas) -> check.Json:
-    """The certificate of the map of a loop, in which "open" says what is not proved.
+def make_certificate(loop: Loop, atlas: Atlas, with_motions: bool = True) -> check.Json:
+    """The certificate of the map of a loop, in which "open" says what is not proved;
+    ``with_motions``, also that these are all motions, if that is so.
 
     ``loop`` is the table in numbers of any kind, of which ``atlas`` is the map. What is
     left when the time is over counts as open.
@@ -64,6 +66,7 @@ def make_certificate(loop: Loop, atlas: Atlas) -> check.Json:
             "curves": prover.curves,
             "tubes": prover.tubes,
             "points": prover.points,
+            "motions": prover.motions if with_motions else NOT_LOOKED_FOR,
             "open": prover.open,
         }
 
@@ -118,6 +121,18 @@ class _Prover:
         radius = check.largest([box.distance for box in boxes])
         misses = check.largest([box.misses for box in boxes])
         return {"radius": claim(radius), "misses": claim(misses)}
+
+    @property
+    def motions(self) -> check.Json:
+        """What is proved of all motions, or why nothing is."""
+        if self.open:
+            return "it rests on what is open"
+        boxes = [box for made in self.covers for box in made.boxes]
+        spheres = [
+            (check.numbers(point["centre"]), check.number(point["sphere"]))
+            for point in self.points
+        ]
+        return proved_motions(self.loop, boxes, spheres)
 
     def _prove_point(self, number: int) -> None:
         """Put a singular point of the atlas into the certificate, with its sphere, if both

@@ -18,7 +18,7 @@ def test_a_certificate_is_written_and_checked(tmp_path):
     result = bifurc("map", "bennett", "--certificate", file)
     assert result.exit_code == 0, result.output
     assert "  joined: holds" in result.stdout
-    assert "  not claimed: that these are all motions" in result.stdout
+    assert "  all motions: holds; every motion is on the map" in result.stdout
     checked = bifurc("check", file)
     assert checked.exit_code == 0
     assert "no jump: holds" in checked.stdout

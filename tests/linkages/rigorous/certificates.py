@@ -14,22 +14,23 @@ from tests.maps import map_of
 DIGITS = 60
 
 
-def certificate_of(loop, atlas):
+def certificate_of(loop, atlas, with_motions=False):
     """The certificate as it is read from a file."""
-    return json.loads(certificate_bytes(make_certificate(loop, atlas)))
+    content = make_certificate(loop, atlas, with_motions)
+    return json.loads(certificate_bytes(content))
 
 
 @cache
-def named_certificate(name):
+def named_certificate(name, with_motions=False):
     """That of a linkage of the catalogue, as text: whoever changes it reads it anew."""
     with mpmath.workdps(DIGITS):
         loop = choose_precisely(name)
-    return json.dumps(certificate_of(loop, map_of(name)))
+    return json.dumps(certificate_of(loop, map_of(name), with_motions))
 
 
-def certificate_of_loop(loop):
+def certificate_of_loop(loop, with_motions=False):
     """That of a table in doubles, which are exact."""
-    return certificate_of(loop, map_of(Linkage(loop)))
+    return certificate_of(loop, map_of(Linkage(loop)), with_motions)
 
 
 def failures(certificate):
