@@ -11,7 +11,7 @@ from linkages.families.kaleidocycle import LEAST_HALF_TANGENTS, twisted_ring
 from linkages.mapping import map_linkage
 from tests.samples import one_in
 
-QUICK = SearchSettings(prove=False, near_motions=False)
+QUICK = SearchSettings(count=False, near_motions=False)
 DIGITS = 50
 # in the cosine of the twist, highest power first; other rings have longer polynomials
 POLYNOMIALS = {
