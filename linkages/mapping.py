@@ -18,6 +18,7 @@ from bifurc.limits import (
 )
 from bifurc.search.explore import explore
 from bifurc.settings import SearchSettings
+from bifurc.tables import count_of
 from linkages.entry import Linkage
 from linkages.loop import Loop
 from linkages.mechanisms.mechanism import Mechanism
@@ -64,7 +65,7 @@ def map_linkage(
     with HeldInterrupt() as interrupt, until(replace(deadline, interrupt=interrupt)):
         parts = ""
         if isinstance(linkage, Mechanism):
-            parts = f" of {len(linkage.bodies)} bodies"
+            parts = f" of {count_of(len(linkage.bodies), 'body')}"
         stage = f"while the closed loops{parts} were looked for"
         subject = made_before_the_end(stage, lambda: as_subject(linkage))
         stage = f"while the equations{parts} were written"

@@ -70,7 +70,8 @@ def classify_singular_point(
         dimension=dimension,
         order=order,
         radius=cut.radius,
-        is_clear=germ is not None or (cut.agree and cut.are_clear),
+        is_clear=germ is not None
+        or (cut.agree and cut.are_clear and sections.are_counted(cut.outer)),
         is_confirmed=located.is_confirmed,
         is_through=None if germ is None else germ.is_through,
     )

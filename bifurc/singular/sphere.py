@@ -112,6 +112,12 @@ class Sections:
         forms = forms_on_null_space(self.problem, self.point, self.null_space)
         return tangent_cone(forms, _spread_directions(self.null_space.shape[1]))
 
+    def are_counted(self, cut: Section) -> bool:
+        """Whether the half-branches of a section are all: of those found from starts on a
+        sphere, where curves alone are open, if second order tells all."""
+        is_circle = self.null_space.shape[1] == 2
+        return is_circle or cut.dimension > 1 or self.cone.is_whole
+
     @cached_property
     def _factors(self) -> Factors:
         """Those of F' at the point."""
@@ -350,17 +356,16 @@ def _dips(samples: np.ndarray) -> np.ndarray:
 def _sphere_section(sections: Sections, radius: float) -> Section:
     """What Gauss-Newton reaches from starts spread over the sphere."""
     problem, point = sections.problem, sections.point
-    cone = sections.cone
     ends = _reached(sections, radius)
     if not len(ends):
-        return Section(ends, 0, not cone.is_whole)
+        return Section(ends, 0)
     if not problem.domain.are_inside(ends).any():
         inside = _led_inside(problem, ends, point, radius)
         ends = np.concatenate([ends, inside])
     cut = _separate_surfaces(problem, ends)
     points = without_duplicates(cut.points, radius)
-    are_all = cone.is_whole and len(points) == len(cone.lone)
-    is_doubtful = cut.dimension == 1 and not are_all
+    cone = sections.cone
+    is_doubtful = cone.is_whole and len(points) != len(cone.lone)
     return replace(cut, points=points, doubtful=is_doubtful)
 
 

@@ -135,6 +135,11 @@ def mechanism_of_fold(content: Frame, name: str) -> Mechanism:
         points, moved = _exact(points, faces, bodies, creases)
     hinges = _hinges(creases, faces, points, bodies, is_folded)
     joints = [hinge.joint for hinge in hinges]
+    if not joints:
+        counts = Counter(edge.letter for edge in edges.values())
+        drawn = ", ".join(f"{count} {letter}" for letter, count in counts.items())
+        allowed = "lines that fold between two faces: M, V or U"
+        raise GeometryError("creases", f"none, of lines {drawn},", allowed)
     mechanism = Mechanism(
         tuple(joints),
         title or name,
