@@ -27,7 +27,12 @@ from bifurc.numerics.singular_values import Factors, factors_of, singular_values
 from bifurc.problem import Problem
 from bifurc.singular.dimension import local_dimensions
 from bifurc.singular.second_order import forms_on_null_space
-from bifurc.singular.tangent_cone import TangentCone, tangent_cone, without_duplicates
+from bifurc.singular.tangent_cone import (
+    TangentCone,
+    spread_directions,
+    tangent_cone,
+    without_duplicates,
+)
 from bifurc.system import relative_jacobians, relative_residuals
 
 UNSEEN = -1  # dimension of a section that could not be made
@@ -106,11 +111,17 @@ class Sections:
         return _sphere_section(self, radius)
 
     @cached_property
+    def directions(self) -> np.ndarray:
+        """Unit vectors (d, k) of the null space, in all directions."""
+        k = self.null_space.shape[1]
+        return spread_directions(k, np.random.default_rng(k))
+
+    @cached_property
     def cone(self) -> TangentCone:
         """Unit vectors of the null space to which second order leads, and others, from
         which solutions on spheres are looked for."""
         forms = forms_on_null_space(self.problem, self.point, self.null_space)
-        return tangent_cone(forms, _spread_directions(self.null_space.shape[1]))
+        return tangent_cone(forms, self.directions)
 
     def are_counted(self, cut: Section) -> bool:
         """Whether the half-branches of a section are all: of those found from starts on a
@@ -381,7 +392,7 @@ def _reached(sections: Sections, radius: float) -> np.ndarray:
     lone, others, is_whole = sections.cone
     ends = from_directions(lone)
     if len(ends) < len(lone):  # so far away they are not what second order says
-        others = _spread_directions(sections.null_space.shape[1])
+        others = sections.directions
     elif is_whole:
         return ends
     stride = max(1, len(others) // MOST_ALIKE)
@@ -424,15 +435,6 @@ def _led_inside(
         if len(inside):
             break
     return inside
-
-
-def _spread_directions(k: int) -> np.ndarray:
-    """Unit vectors (200 (k - 1), k) at random, half of them the opposites of the
-    others."""
-    rng = np.random.default_rng(k)
-    half = rng.normal(size=(100 * (k - 1), k))
-    half /= np.linalg.norm(half, axis=1)[:, None]
-    return np.concatenate([half, -half])
 
 
 def _separate_surfaces(problem: Problem, points: np.ndarray) -> Section:

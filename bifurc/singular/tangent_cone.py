@@ -24,7 +24,8 @@ STEPS_OF_FORMS, LEAST_DAMPING, ZERO_OF_FORMS = 15, 1e-14, 1e-9
 # Of a zero that is isolated: the least singular value of the rates of the forms, and what
 # these may be over its square, which is a quarter next to a double zero.
 LONE, CLOSE = 1e-5, 1e-3
-MOST_PATHS = 1024  # to complex lines, which take a second
+MORE_STARTS = 10  # times as many, where half of the lines are known to be real
+MOST_PATHS = 128  # to complex lines, which take a second
 SOLVES = 1e-6  # what forms of length 1 may be at the end of a path that is double
 SEED = 10  # of the coordinates, the combinations of forms and the paths
 # Times the gap of points that are one: those are looked at as well.
@@ -55,11 +56,27 @@ def tangent_cone(forms: np.ndarray, starts: np.ndarray) -> TangentCone:
     cone, are_alone = _from_starts(forms, starts)
     needed = size - 1
     lines = 2**needed
-    if not are_alone or len(forms) < max(needed, 1) or lines > MOST_PATHS:
+    if not are_alone or len(forms) < max(needed, 1):
         return cone
-    if len(forms) == needed and len(cone.lone) == 2 * lines:
-        return cone._replace(is_whole=True)
-    return _along_paths(forms, cone)
+    if len(forms) == needed:
+        rng = np.random.default_rng(SEED)
+        for _ in range(MORE_STARTS):
+            if len(cone.lone) == 2 * lines:
+                return cone._replace(is_whole=True)
+            if len(cone.lone) < lines:
+                break  # many lines are not real
+            more, _ = _from_starts(forms, spread_directions(size, rng))
+            both = without_duplicates(np.concatenate([cone.lone, more.lone]), 1.0)
+            cone = cone._replace(lone=both)
+    return _along_paths(forms, cone) if lines <= MOST_PATHS else cone
+
+
+def spread_directions(k: int, rng: np.random.Generator) -> np.ndarray:
+    """Unit vectors (200 (k - 1), k) at random, half of them the opposites of the
+    others."""
+    half = rng.normal(size=(100 * (k - 1), k))
+    half /= np.linalg.norm(half, axis=1)[:, None]
+    return np.concatenate([half, -half])
 
 
 def _from_starts(forms: np.ndarray, starts: np.ndarray) -> tuple[TangentCone, bool]:
@@ -70,15 +87,24 @@ def _from_starts(forms: np.ndarray, starts: np.ndarray) -> tuple[TangentCone, bo
     """
     if not len(forms):
         return TangentCone(starts[:0], starts), False
-    x = starts
+    x, is_zero, is_lone = _led_to_zeros(forms, starts)
+    is_late = is_zero & ~is_lone  # beside another one, or not isolated
+    x[is_late], is_zero[is_late], is_lone[is_late] = _led_to_zeros(forms, x[is_late])
+    others = np.where(is_zero[:, None], x, starts)[~is_lone]
+    lone = without_duplicates(x[is_lone], 1.0)
+    return TangentCone(lone, others), bool(np.array_equal(is_lone, is_zero))
+
+
+def _led_to_zeros(
+    forms: np.ndarray, x: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where unit vectors (d, k) are led, and whether each of these is a zero (d,), and one
+    that is isolated to first order (d,)."""
     for _ in range(STEPS_OF_FORMS):
         x, gaps, normal = _nearer_to_zeros(forms, x)
     is_zero = gaps < ZERO_OF_FORMS
     least = np.linalg.eigvalsh(normal)[:, 0]
-    is_lone = is_zero & (least > LONE**2) & (gaps < CLOSE * least)
-    others = np.where(is_zero[:, None], x, starts)[~is_lone]
-    lone = without_duplicates(x[is_lone], 1.0)
-    return TangentCone(lone, others), bool(np.array_equal(is_lone, is_zero))
+    return x, is_zero, is_zero & (least > LONE**2) & (gaps < CLOSE * least)
 
 
 def _nearer_to_zeros(
