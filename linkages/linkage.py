@@ -34,8 +34,8 @@ def load(
     ``parameters`` are those of a family, angles in rad, the others at their defaults; a
     file takes none. ``closures`` is a YAML file that closes the loops of a robot in
     URDF. Panels of a crease pattern bend along diagonals where they are
-    ``triangulated``. Raises `UnknownLinkageError` with the nearest names, `LinkageFileError` for a
-    file that cannot be used, `UnknownParameterError` for a parameter that the family
+    ``triangulated``. Raises `UnknownLinkageError` with the nearest names,
+    `LinkageFileError` for a file that cannot be used, `UnknownParameterError` for a parameter that the family
     does not have, and `GeometryError` for values that make no linkage.
 
     >>> import linkages

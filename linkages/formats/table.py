@@ -26,8 +26,8 @@ class FileFormat(NamedTuple):
     ``read`` takes the path of a file, and raises `GeometryError`, `OSError` or
     `bifurc.files.text_file.TextFileError`; by these ``options`` it takes besides the path
     of a file of ``closures``, or whether panels are ``triangulated``. Without it files are
-    TOML of this project, read by `linkages.file`. An XML file is told by its first element, the ``root``, whatever
-    its ending. ``write`` and ``read_root`` name functions: the text of a
+    TOML of this project, read by `linkages.file`. An XML file is told by its first
+    element, the ``root``, whatever its ending. ``write`` and ``read_root`` name functions: the text of a
     mechanism, and the assembly of a root and a name.
     """
 
