@@ -62,6 +62,11 @@ OF_MECHANISMS = ("joints", "bars", "arcs", "loops")
 KEYS = ("name", "angles", *TABLE, *AXES)
 ATLAS_ENDING = ".nc"  # how the name of a saved atlas ends
 FULL_TURN = 2 * math.pi
+# what is said of a file whose reader does not take an option
+NOT_TAKEN = {
+    "closures": "takes no closures; a URDF takes them",
+    "triangulated": "has no panels to triangulate; FOLD, CP and SVG files have",
+}
 
 
 class AngleUnit(StrEnum):
@@ -90,20 +95,25 @@ def _errors_about(path: Path) -> Iterator[None]:
         raise LinkageFileError(path, f"cannot be read: {error.strerror}") from None
 
 
-def read_file(path: Path | str, closures: Path | str | None = None) -> Loop | Mechanism:
+def read_file(
+    path: Path | str, closures: Path | str | None = None, triangulated: bool = False
+) -> Loop | Mechanism:
     """The loop or the mechanism that a file describes; without a name it is called
-    after the file. A file of ``closures`` closes the loops of a robot. Raises
+    after the file. A file of ``closures`` closes the loops of a robot; panels of a crease
+    pattern bend along diagonals where they are ``triangulated``. Raises
     `LinkageFileError`."""
     path = Path(path)
     if path.suffix == ATLAS_ENDING:
         reason = "is a map that is made already; bifurc view and bifurc route take it"
         raise LinkageFileError(path, reason)
     known = format_of(path)
-    if closures is not None:
-        return _read_closed(path, Path(closures))
+    options = _options(closures, triangulated)
+    for option in options:
+        if known is None or option not in known.options:
+            raise LinkageFileError(path, NOT_TAKEN[option])
     with _errors_about(path):
         if known is not None and known.read is not None:
-            return known.read(path)
+            return known.read(path, **options)
         content = read_content(path)
         if not _is_of_mechanism(content):
             return _read_loop(content, path.stem)[0]
@@ -112,16 +122,16 @@ def read_file(path: Path | str, closures: Path | str | None = None) -> Loop | Me
         return read_mechanism(content, path.stem)
 
 
-def _read_closed(path: Path, closures: Path) -> Mechanism:
-    """The mechanism in a file whose loops are closed by another one."""
-    known = format_of(path)
-    if known is None or known.read_closed is None:
-        reason = f"takes no closures, and {closures} is given; a URDF takes them"
-        raise LinkageFileError(path, reason)
-    with _errors_about(closures):
-        require(closures.is_file(), "closures", quoted(str(closures)), "a file")
-    with _errors_about(path):
-        return known.read_closed(path, closures)
+def _options(closures: Path | str | None, triangulated: bool) -> dict[str, Any]:
+    """Those options of readers that are given; raises `LinkageFileError`."""
+    options: dict[str, Any] = {}
+    if closures is not None:
+        options["closures"] = file = Path(closures)
+        with _errors_about(file):
+            require(file.is_file(), "closures", quoted(str(file)), "a file")
+    if triangulated:
+        options["triangulated"] = True
+    return options
 
 
 def read_content(path: Path) -> Content:

@@ -13,14 +13,19 @@ from linkages.file import ATLAS_ENDING, LinkageFileError, read_file
 from linkages.formats.table import ENDINGS
 from linkages.loop import Loop
 from linkages.networks.entries import NETWORKS
-from linkages.values import GeometryError, check_number, quoted
+from linkages.sheets.entries import SHEETS
+from linkages.values import GeometryError, check_number, quoted, require
 
 if TYPE_CHECKING:
     from linkages.mechanisms.mechanism import Mechanism
 
 
 def load(
-    source: str | Path, *, closures: str | Path | None = None, **parameters: float
+    source: str | Path,
+    *,
+    closures: str | Path | None = None,
+    triangulated: bool = False,
+    **parameters: float,
 ) -> Linkage | Mechanism:
     """The linkage, the network, the sheet or the array called ``source`` in the catalogue, or the linkage or
     the mechanism read from a file: TOML, FOLD, CP, SVG, MJCF, SDF, URDF or a CUIK
@@ -28,8 +33,9 @@ def load(
 
     ``parameters`` are those of a family, angles in rad, the others at their defaults; a
     file takes none. ``closures`` is a YAML file that closes the loops of a robot in
-    URDF. Raises `UnknownLinkageError` with the nearest names, `LinkageFileError` for a
-    file that cannot be used, `UnknownParameterError` for a parameter that the family
+    URDF. Panels of a crease pattern bend along diagonals where they are
+    ``triangulated``. Raises `UnknownLinkageError` with the nearest names,
+    `LinkageFileError` for a file that cannot be used, `UnknownParameterError` for a parameter that the family
     does not have, and `GeometryError` for values that make no linkage.
 
     >>> import linkages
@@ -44,11 +50,15 @@ def load(
             names = ", ".join(parameters)
             allowed = "left out with a file, which holds the whole geometry"
             raise GeometryError(f"parameters of {source}", names, allowed)
-        content = read_file(source, closures)
+        content = read_file(source, closures, triangulated)
         return Linkage(content) if isinstance(content, Loop) else content
     if closures is not None:
         allowed = "left out with a name of the catalogue"
         raise GeometryError("closures", quoted(str(closures)), allowed)
+    if triangulated:
+        allowed = "a crease pattern: a sheet by name, or a FOLD, CP or SVG file"
+        require(str(source) in SHEETS, "triangulated", quoted(str(source)), allowed)
+        return SHEETS[str(source)].build(True, **parameters)
     if str(source) in NETWORKS:
         return _load_network(str(source), parameters)
     if str(source) in MECHANISMS:
@@ -64,7 +74,7 @@ def load_linkage(source: str | Path, **parameters: float) -> Linkage:
     >>> linkages.load_linkage("four-bar", d=3.4).loop.arrays.lengths.tolist()
     [1.0, 2.4, 2.0, 3.4]
     """
-    linkage = load(source, closures=None, **parameters)
+    linkage = load(source, closures=None, triangulated=False, **parameters)
     if not isinstance(linkage, Linkage):
         allowed = "a single loop of revolute joints, given as a table or as axes"
         raise GeometryError(str(source), "a mechanism", allowed)

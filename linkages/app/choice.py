@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 
 Kind = TypeVar("Kind")
+NOTHING_HELD = HoldOptions()
 
 
 def require_kind(value: object, kind: type[Kind], refusal: str) -> Kind:
@@ -55,17 +56,17 @@ def require_table(text: str, table: Loop | None) -> Loop:
 
 
 def choose_linkage(
-    text: str, parameters: Sequence[str] = (), closures: Path | None = None
+    text: str, parameters: Sequence[str] = (), hold: HoldOptions = NOTHING_HELD
 ) -> Linkage | Mechanism:
     """The linkage called ``text``, or the linkage or mechanism read from the file
     ``text`` if that is one (or ends with .toml).
 
     ``parameters`` are "key=value", angles in degrees; those of a file are its numbers.
-    ``closures`` is a file that closes the loops of a robot. Raises `CommandError`,
+    Of ``hold`` counts how files and sheets are read. Raises `CommandError`,
     `GeometryError`, `UnknownLinkageError` and `LinkageFileError`.
     """
     try:
-        linkage = _loaded(text, parameters, closures)
+        linkage = _loaded(text, parameters, hold)
     except OverflowError:
         raise CommandError(f"{text}: it holds a number that is too large") from None
     _require_size(text, linkage)
@@ -73,15 +74,17 @@ def choose_linkage(
 
 
 def _loaded(
-    text: str, parameters: Sequence[str], closures: Path | None
+    text: str, parameters: Sequence[str], hold: HoldOptions
 ) -> Linkage | Mechanism:
     """What is called ``text``, with parameters "key=value", those of a file among its
-    numbers, or with a file that closes its loops."""
-    if closures is not None and parameters:
-        raise GeometryError("--param", parameters[0], "left out with --closures")
+    numbers, or as it is read by options."""
+    closures, triangulated = hold.closures, hold.triangulated
     if not parameters:
-        return load(text, closures=closures)
+        return load(text, closures=closures, triangulated=triangulated)
     if is_linkage_file(text):
+        reading = {"--closures": closures, "--triangulated": triangulated}
+        for option, value in reading.items():
+            require(not value, "--param", parameters[0], f"left out with {option}")
         from linkages.parameters.file_family import family_of_file
 
         of_file = family_of_file(text)
@@ -90,7 +93,7 @@ def _loaded(
     family: Entry | NetworkEntry | MechanismEntry
     family = NETWORKS.get(text) or MECHANISMS.get(text) or entry(text)
     values = read_parameters(family.parameters, parameters)
-    return load(text, closures=None, **values)
+    return load(text, closures=closures, triangulated=triangulated, **values)
 
 
 def _require_size(text: str, linkage: Linkage | Mechanism) -> None:
@@ -201,7 +204,7 @@ def choose_held(
 ) -> Linkage | Mechanism:
     """What `choose_linkage` finds, with joints held; what nobody asked for is said on
     standard error. Raises as `choose_linkage` and `hold_joints`."""
-    linkage = choose_linkage(text, parameters, hold.closures)
+    linkage = choose_linkage(text, parameters, hold)
     inputs = hold_joints(text, linkage, hold)
     for note in inputs.notes:
         click.echo(note, err=True)
@@ -216,7 +219,7 @@ def hold_joints(text: str, linkage: Linkage | Mechanism, hold: HoldOptions) -> I
     Raises `CommandError` for a linkage that takes none, `GeometryError` for a joint
     that it does not have.
     """
-    if hold == HoldOptions():
+    if hold == NOTHING_HELD:
         return Inputs(linkage)
     if hold.is_modified:
         table = _require_usual_table(text, linkage)

@@ -235,7 +235,7 @@ class HoldOptions:
     ``with_flaps``: what hangs on joints in no closed loop is free; ``with_flat_creases``:
     so are creases that stay flat about the flat state of a sheet. ``part`` is the number
     of one of several mechanisms of a file. ``free_creases``: those of a pattern fold
-    either way, however they are assigned.
+    either way, however they are assigned; its panels are ``triangulated``.
     ``closures`` is a file that closes the loops of a robot.
     ``is_modified``: in the rows of a table stand the links before the joints.
     """
@@ -247,6 +247,7 @@ class HoldOptions:
     with_flat_creases: bool = False
     part: int | None = None
     free_creases: bool = False
+    triangulated: bool = False
     closures: Path | None = None
     is_modified: bool = False
 
@@ -258,6 +259,7 @@ class HoldOptions:
             "--with-flaps": self.with_flaps,
             "--with-flat-creases": self.with_flat_creases,
             "--free-creases": self.free_creases,
+            "--triangulated": self.triangulated,
             "--modified-dh": self.is_modified,
         }
         given: list[tuple[str, ...]] = [("--lock", lock) for lock in self.locks]
@@ -329,6 +331,12 @@ HOLD_OPTIONS: dict[str, Option] = {
         "free_creases",
         is_flag=True,
         help="Let mountains and valleys of a crease pattern fold either way.",
+    ),
+    "triangulated": click.option(
+        "--triangulated",
+        "triangulated",
+        is_flag=True,
+        help="Let panels of a crease pattern bend along their shortest diagonals.",
     ),
     "closures": click.option(
         "--closures",

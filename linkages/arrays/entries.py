@@ -19,6 +19,7 @@ MODULES = {
     "scissors": ("scissors", "scissors"),
     "angulated-scissors": ("scissors", "angulated_ring"),
     "bennett-array": ("bennett_lattice", "locked_lattice"),
+    "bricard-array": ("bricard_tiling", "bricard_tiling"),
 }
 
 

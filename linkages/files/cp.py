@@ -16,9 +16,9 @@ WORDS = (
 )
 
 
-def read_cp(text: str, name: str) -> Mechanism:
-    """The mechanism of a crease pattern, called by ``name``. Auxiliary lines are left
-    out. Raises `GeometryError` with the line."""
+def read_cp(text: str, name: str, triangulated: bool = False) -> Mechanism:
+    """The mechanism of a crease pattern, called by ``name``, its panels ``triangulated``
+    or not. Auxiliary lines are left out. Raises `GeometryError` with the line."""
     lines = []
     for number, row in enumerate(text.splitlines(), start=1):
         words = row.split()
@@ -31,7 +31,7 @@ def read_cp(text: str, name: str) -> Mechanism:
         if words[0] in LETTERS:
             letter = LETTERS[words[0]]
             lines.append(CreaseLine((x1, -y1), (x2, -y2), letter, place))
-    return mechanism_of_fold(fold_content(lines), name)
+    return mechanism_of_fold(fold_content(lines), name, triangulated)
 
 
 def _number(place: str, word: str) -> float:

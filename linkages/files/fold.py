@@ -86,21 +86,22 @@ class _Crease(NamedTuple):
     edge: _Edge
 
 
-def read_fold(text: str, name: str) -> Mechanism:
-    """The mechanism of a crease pattern or of a folded state; without a title it gets
-    this name. Raises `GeometryError` for what is no JSON, and as
-    `mechanism_of_fold`."""
+def read_fold(text: str, name: str, triangulated: bool = False) -> Mechanism:
+    """What `mechanism_of_fold` makes of a file; raises `GeometryError` for what is no JSON
+    as well."""
     try:
         content = json.loads(text, parse_float=WrittenNumber)
     except (json.JSONDecodeError, RecursionError) as error:
         raise GeometryError("content", f"no JSON, {error},", "a FOLD file") from None
     content = checked_table("content", content, "a table, as of a FOLD file")
-    return mechanism_of_fold(content, name)
+    return mechanism_of_fold(content, name, triangulated)
 
 
-def mechanism_of_fold(content: Frame, name: str) -> Mechanism:
+def mechanism_of_fold(
+    content: Frame, name: str, triangulated: bool = False
+) -> Mechanism:
     """The mechanism that the content of a FOLD file describes; without a title it gets
-    this name.
+    this name. Panels bend along diagonals where it says so, or ``triangulated`` does.
 
     Every crease is called after its vertices, ``3-7``, every face ``f2``; a variable is
     the change of the fold angle, positive where a valley is folded further. Flat edges
@@ -120,7 +121,7 @@ def mechanism_of_fold(content: Frame, name: str) -> Mechanism:
         edges = _on_faces(edges, faces)
         folded = [side for side, edge in edges.items() if edge.letter in HINGES]
         check_joined(points, edges.keys(), folded, faces)
-    if _is_triangulated(frame):
+    if _is_triangulated(frame) or triangulated:
         faces = [part for face in faces for part in triangles_of(points, face)]
     creases = _creases(faces, edges)
     is_folded = FOLDED in frame.get("frame_classes", [])

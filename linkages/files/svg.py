@@ -54,8 +54,9 @@ class _Pen(NamedTuple):
     rules: Mapping[str, Style]
 
 
-def read_svg(root: Element, name: str) -> Mechanism:
-    """The mechanism of a crease pattern, called by ``name``.
+def read_svg(root: Element, name: str, triangulated: bool = False) -> Mechanism:
+    """The mechanism of a crease pattern, called by ``name``, its panels ``triangulated``
+    or not.
 
     Where lines are not all opaque, their opacity is their fold angle over 180 degrees;
     angles that do not close are left out, with a warning, and so are lines of other
@@ -71,13 +72,13 @@ def read_svg(root: Element, name: str) -> Mechanism:
         lines = [line._replace(angle=None) for line in lines]
     content = fold_content(lines)
     try:
-        return mechanism_of_fold(content, name)
+        return mechanism_of_fold(content, name, triangulated)
     except GeometryError as error:
         if error.name != ANGLES:
             raise
         log.warning("the flat state is the reference: %s", error)
     del content[ANGLES]
-    return mechanism_of_fold(content, name)
+    return mechanism_of_fold(content, name, triangulated)
 
 
 def _lines(element: Element, pen: _Pen, others: Counter[str]) -> Iterator[CreaseLine]:

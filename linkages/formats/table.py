@@ -24,17 +24,17 @@ class FileFormat(NamedTuple):
     the help of commands says of it, if anything.
 
     ``read`` takes the path of a file, and raises `GeometryError`, `OSError` or
-    `bifurc.files.text_file.TextFileError`; ``read_closed`` takes the path of a file of
-    closures besides. Without it files are TOML of this project, read by
-    `linkages.file`. An XML file is told by its first element, the ``root``, whatever
-    its ending. ``write`` and ``read_root`` name functions: the text of a
+    `bifurc.files.text_file.TextFileError`; by these ``options`` it takes besides the path
+    of a file of ``closures``, or whether panels are ``triangulated``. Without it files are
+    TOML of this project, read by `linkages.file`. An XML file is told by its first
+    element, the ``root``, whatever its ending. ``write`` and ``read_root`` name functions: the text of a
     mechanism, and the assembly of a root and a name.
     """
 
     endings: tuple[str, ...]
     words: str = ""
-    read: Callable[[Path], Loop | Mechanism] | None = None
-    read_closed: Callable[[Path, Path], Mechanism] | None = None
+    read: Callable[..., Loop | Mechanism] | None = None
+    options: tuple[str, ...] = ()
     write: str = ""
     root: str = ""
     read_root: str = ""
@@ -97,24 +97,24 @@ def _content(path: Path) -> bytes:
     return content
 
 
-def _read_robot(path: Path) -> Mechanism:
-    """A robot in URDF, with the loops that a YAML file or an SRDF closes: one of the same
-    name beside it, `BESIDE`, or an SRDF in the folder ``srdf`` beside its own."""
+def _closures_beside(path: Path) -> Path | None:
+    """The file that closes the loops of a robot, if there is one: a YAML file or an SRDF of
+    the same name beside it, `BESIDE`, or an SRDF in the folder ``srdf`` beside its own."""
     from linkages.formats.urdf_reading import BESIDE
 
     semantic = path.with_suffix(SRDF)
     in_folder = path.parent.parent / "srdf" / semantic.name
     beside = (path.with_suffix(".yaml"), path.with_name(BESIDE), semantic, in_folder)
-    file = next((one for one in beside if one.is_file()), None)
-    return _read_closed_robot(path, file)
+    return next((one for one in beside if one.is_file()), None)
 
 
-def _read_closed_robot(path: Path, closures: Path | None) -> Mechanism:
+def _read_robot(path: Path, closures: Path | None = None) -> Mechanism:
     """A robot in URDF, with the loops that a YAML file or an SRDF closes, if there is one."""
     from linkages.formats.mechanism_of import mechanism_of_assembly
     from linkages.formats.urdf_reading import closures_of_srdf, read_urdf
     from linkages.formats.xml_tree import parse_xml
 
+    closures = closures or _closures_beside(path)
     root = parse_xml(_content(path))
     require(root.tag == "robot", f"line {root.line}", f"<{root.tag}>", "<robot>")
     content: object = None
@@ -136,26 +136,26 @@ def _read_yaml(path: Path) -> object:
         raise GeometryError(path.name, reason, "a YAML file") from None
 
 
-def _read_fold(path: Path) -> Mechanism:
+def _read_fold(path: Path, triangulated: bool = False) -> Mechanism:
     from linkages.files.fold import read_fold
 
-    return read_fold(read_text(path), path.stem)
+    return read_fold(read_text(path), path.stem, triangulated)
 
 
-def _read_cp(path: Path) -> Mechanism:
+def _read_cp(path: Path, triangulated: bool = False) -> Mechanism:
     from linkages.files.cp import read_cp
 
-    return read_cp(read_text(path), path.stem)
+    return read_cp(read_text(path), path.stem, triangulated)
 
 
-def _read_svg(path: Path) -> Mechanism:
+def _read_svg(path: Path, triangulated: bool = False) -> Mechanism:
     from linkages.files.svg import read_svg
     from linkages.formats.xml_tree import parse_xml
 
     root = parse_xml(_content(path))
     is_svg = root.tag.removeprefix("svg:") == "svg"
     require(is_svg, f"first element, line {root.line}", f"<{root.tag}>", "<svg>")
-    return read_svg(root, path.stem)
+    return read_svg(root, path.stem, triangulated)
 
 
 def _read_csv(path: Path) -> Loop:
@@ -189,14 +189,14 @@ FORMATS = (
         (".urdf",),
         ".urdf",
         read=_read_robot,
-        read_closed=_read_closed_robot,
+        options=("closures",),
         root="robot",
         read_root="linkages.formats.urdf_reading:read_urdf",
     ),
     FileFormat((".world",), ".world (CUIK)", read=_read_world),
-    FileFormat((".fold",), read=_read_fold),
-    FileFormat((".cp",), read=_read_cp),
-    FileFormat((".svg",), read=_read_svg),
+    FileFormat((".fold",), read=_read_fold, options=("triangulated",)),
+    FileFormat((".cp",), read=_read_cp, options=("triangulated",)),
+    FileFormat((".svg",), read=_read_svg, options=("triangulated",)),
     FileFormat((".csv",), read=_read_csv),
 )
 ENDINGS = tuple(ending for one in FORMATS for ending in one.endings)

@@ -29,12 +29,13 @@ class SheetEntry(MechanismEntry):
     def fold_content(self, **values: float) -> dict[str, Any]:
         """The content of a FOLD file of the sheet. Raises as `complete`."""
 
-    def build(self, **values: float) -> Mechanism:
-        """What this content describes. Raises as `fold_content`."""
+    def build(self, triangulated: bool = False, /, **values: float) -> Mechanism:
+        """What this content describes, panels bent along diagonals or not. Raises as
+        `fold_content`."""
         # it imports networkx, which a loop does not need
         from linkages.files.fold import mechanism_of_fold
 
-        return mechanism_of_fold(self.fold_content(**values), self.name)
+        return mechanism_of_fold(self.fold_content(**values), self.name, triangulated)
 
 
 class MeshEntry(SheetEntry):

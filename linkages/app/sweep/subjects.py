@@ -198,7 +198,9 @@ class Family(MemberSource):
 
     def member(self, values: Mapping[str, float]) -> Member:
         """The member with the forms that its source names."""
-        return LinkageMember(load(self.name, closures=None, **values))
+        return LinkageMember(
+            load(self.name, closures=None, triangulated=False, **values)
+        )
 
 
 @dataclass(frozen=True)

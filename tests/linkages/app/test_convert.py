@@ -76,3 +76,16 @@ def test_a_rounding_that_a_file_cannot_hold_is_said(ending, is_said, tmp_path):
     result = bifurc("convert", source, tmp_path / f"other.{ending}")
     assert result.exit_code == 0, result.output
     assert ("known to 2e-12 only" in result.output) == is_said
+
+
+def test_panels_of_sheets_and_files_bend_by_an_option(tmp_path):
+    pattern, bent = tmp_path / "pattern.cp", tmp_path / "bent.toml"
+    pattern.write_text("1 0 0 4 0\n1 4 0 4 4\n1 4 4 0 4\n1 0 4 0 0\n2 2 0 2 4\n")
+    # two squares with a crease between them; three rows and columns of inner vertices
+    for source, creases in ((pattern, 3), ("miura-ori", 24 + 16)):
+        result = bifurc("convert", source, bent, "--triangulated")
+        assert result.exit_code == 0, result.output
+        assert len(load(bent).joints) == creases
+    result = bifurc("map", pattern, "--triangulated", "--param", "f0-f1.x=1")
+    assert "it must be left out with --triangulated" in result.output
+    assert bifurc("map", "bennett", "--triangulated").exit_code == 2

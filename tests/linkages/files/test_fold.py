@@ -21,6 +21,7 @@ from linkages.readout.poses import Poses
 from linkages.structure.single_loop import loop_geometry
 from linkages.structure.structure import Structure
 from linkages.subject import as_subject
+from linkages.values import GeometryError
 from linkages.viewing.start import start_of
 from studies.miura import SECTOR, miura
 from tests.linkages.mechanisms.test_maps import counts
@@ -644,6 +645,62 @@ def test_panels_bend_along_their_shortest_diagonals(tmp_path):
     assert area == pytest.approx(2.0 + 1.4)  # by the shoelace formula
     with pytest.raises(LinkageFileError, match="bifurc:triangulated: 1 is not allowed"):
         read(tmp_path, content | {"bifurc:triangulated": 1})
+
+
+@pytest.mark.parametrize("name", ["pattern.fold", "pattern.cp", "pattern.svg"])
+def test_panels_bend_by_an_option_as_by_the_key(name, tmp_path):
+    """Whatever the format: a square sheet with one crease across it."""
+    texts = {
+        "fold": json.dumps(
+            {
+                "vertices_coords": [[0, 0], [2, 0], [4, 0], [4, -4], [2, -4], [0, -4]],
+                "edges_vertices": [
+                    [0, 1],
+                    [1, 2],
+                    [2, 3],
+                    [3, 4],
+                    [4, 5],
+                    [5, 0],
+                    [1, 4],
+                ],
+                "edges_assignment": list("BBBBBBM"),
+            }
+        ),
+        "cp": "1 0 0 4 0\n1 4 0 4 4\n1 4 4 0 4\n1 0 4 0 0\n2 2 0 2 4\n",
+        "svg": '<svg><rect width="4" height="4" stroke="black"/>'
+        '<line x1="2" x2="2" y2="4" stroke="red"/></svg>',
+    }
+    text = texts[name.partition(".")[2]]
+    bodies = [2, 4]
+    for triangulated, count in zip((False, True), bodies, strict=True):
+        path = tmp_path / name
+        path.write_text(text, encoding="utf-8")
+        sheet = linkages.load(path, triangulated=triangulated)
+        assert len(sheet.panels) == count and len(sheet.joints) == count - 1
+    if name.endswith("fold"):
+        keyed = read(tmp_path, json.loads(text) | {"bifurc:triangulated": True})
+        assert keyed == sheet
+
+
+def test_an_option_bends_the_panels_of_a_frame_inside_of_a_file(tmp_path):
+    frame = {**miura(2, 2, 0.8), "frame_inherit": False}
+    path = tmp_path / "frames.fold"
+    path.write_text(json.dumps({"file_frames": [frame]}), encoding="utf-8")
+    assert len(linkages.load(path, triangulated=True).panels) == 8
+
+
+@pytest.mark.parametrize(
+    ("source", "words"),
+    [
+        ("bennett", "a crease pattern: a sheet by name, or a FOLD, CP or SVG file"),
+        ("scissors", "a crease pattern: a sheet by name"),
+        ("none.toml", "none.toml: has no panels to triangulate"),
+        ("none.urdf", "none.urdf: has no panels to triangulate"),
+    ],
+)
+def test_only_a_crease_pattern_is_triangulated(source, words):
+    with pytest.raises((GeometryError, LinkageFileError), match=words):
+        linkages.load(source, triangulated=True)
 
 
 def test_a_bent_miura_ori_has_one_freedom_more_a_diagonal_at_its_vertex(tmp_path):
