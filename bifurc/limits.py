@@ -229,6 +229,7 @@ class _Cut:
         self._deadline = deadline
         self._around: _Cut | None = None
         self._is_armed = False
+        self.was_struck = False
 
     def __enter__(self) -> None:
         is_main = threading.current_thread() is threading.main_thread()
@@ -245,12 +246,16 @@ class _Cut:
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if not self._is_armed:
             return
+        # compiled code may raise an error of its own where `CutOff` was raised in it
+        is_hidden = self.was_struck and kind is not None and issubclass(kind, Exception)
         _Cut.innermost = self._around
         if self._around is not None:
-            self._around.set_alarm(AGAIN if kind is CutOff else GRACE)
-            return
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+            self._around.set_alarm(AGAIN if kind is CutOff or is_hidden else GRACE)
+        else:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        if is_hidden:
+            raise CutOff from None
 
     @property
     def _left(self) -> float:
@@ -275,6 +280,7 @@ def _strike(number: int, frame: FrameType | None) -> None:
     if _Cut.innermost is None or _is_whole(frame) or _is_importing(frame):
         return
     signal.setitimer(signal.ITIMER_REAL, GRACE, AGAIN)
+    _Cut.innermost.was_struck = True
     raise CutOff
 
 

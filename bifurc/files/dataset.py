@@ -360,5 +360,7 @@ def _read_completeness(text: str) -> Completeness:
 def _read_provenance(text: str) -> Provenance:
     values = mapping_from_text(text)
     settings = dict(values.pop("settings"))
+    if "prove" in settings:  # what it was called in older files
+        settings["count"] = settings.pop("prove")
     tracing = TraceSettings(**dict(settings.pop("tracing")))
     return Provenance(**values, settings=SearchSettings(**settings, tracing=tracing))

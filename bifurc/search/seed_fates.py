@@ -159,8 +159,7 @@ class SeedJudge:
         last = singular_values(deflated, solutions)[0, n - 2]
         if not are_solved[0] or may_be_singular(float(last)):
             return None
-        is_lower = seed.nullity > NULLITY_OF_SHAKY
-        if is_lower and not deflated.is_curve_alone(solutions[0]):
+        if not deflated.is_curve_alone(solutions[0]):
             return None
         branch = self.tracer.follow_deflated(deflated, Start(solutions[0]))
         if branch is None:

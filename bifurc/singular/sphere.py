@@ -368,14 +368,14 @@ def _sphere_section(sections: Sections, radius: float) -> Section:
     """What Gauss-Newton reaches from starts spread over the sphere."""
     problem, point = sections.problem, sections.point
     ends = _reached(sections, radius)
-    if not len(ends):
-        return Section(ends, 0)
+    cone = sections.cone
+    if not len(ends):  # there is nothing, or what leaves comes back within the sphere
+        return Section(ends, 0, cone.is_whole and len(cone.lone) > 0)
     if not problem.domain.are_inside(ends).any():
         inside = _led_inside(problem, ends, point, radius)
         ends = np.concatenate([ends, inside])
     cut = _separate_surfaces(problem, ends)
     points = without_duplicates(cut.points, radius)
-    cone = sections.cone
     is_doubtful = cone.is_whole and len(points) != len(cone.lone)
     return replace(cut, points=points, doubtful=is_doubtful)
 

@@ -475,8 +475,20 @@ def _whole_turns(advances: np.ndarray) -> np.ndarray:
     p joints whose turns count in ``advances`` (r, p).
 
     By lattice reduction (Lenstra, Lenstra and Lovász 1982): a short vector of the
-    lattice of the turns, each with the advance it makes in many digits, makes none.
+    lattice of the turns, each with the advance it makes in many digits, makes none. A
+    joint that advances nothing needs none.
     """
+    unit = np.eye(advances.shape[1], dtype=int)
+    advance_something = np.any(advances, axis=0)
+    idle = unit[~advance_something]
+    if not np.any(advance_something):
+        return idle
+    turns = _turns_that_cancel(advances[:, advance_something])
+    return np.concatenate([idle, turns @ unit[advance_something]])
+
+
+def _turns_that_cancel(advances: np.ndarray) -> np.ndarray:
+    """The same of joints each of which advances something."""
     from sympy.polys.domains import ZZ
     from sympy.polys.matrices import DomainMatrix
 

@@ -174,6 +174,21 @@ def test_what_python_swallows_is_cut_off_again():
         last(60.0)
 
 
+def test_an_error_that_compiled_code_makes_of_a_cut_is_one():
+    """As NumPy does in comparisons of structured arrays."""
+
+    def end_otherwise():
+        try:
+            last(60.0)
+        except CutOff:
+            raise TypeError("cannot compare") from None
+
+    with pytest.raises(CutOff), cut_off_after(Deadline(0.0)):
+        end_otherwise()
+    with pytest.raises(TypeError), cut_off_after(Deadline(60.0)):
+        raise TypeError("its own")
+
+
 @pytest.fixture
 def heard(monkeypatch):
     """Ctrl-C as a program of its own hears it."""

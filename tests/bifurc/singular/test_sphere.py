@@ -104,3 +104,17 @@ def test_a_section_is_made_once():
     sections = Sections(THREE_AXES, np.zeros(3), np.eye(3))
     assert sections.of_radius(0.1) is sections.of_radius(0.1)
     assert sections.of_radius(0.1) is not sections.of_radius(0.05)
+
+
+def test_small_curves_that_come_back_within_the_sphere_leave_it_in_doubt():
+    """Two figures of eight, of size 0.01, that cross in a point."""
+
+    def equations(u):
+        x, y, z = u
+        return [1e4 * (x**2 + y**2) ** 2 - x**2 + y**2, z * (z - x)]
+
+    problem = FunctionProblem(equations, [(-1.0, 1.0)] * 3)
+    sections = Sections(problem, np.zeros(3), np.eye(3))
+    outside, inside = sections.of_radius(0.04), sections.of_radius(0.0025)
+    assert (len(outside.points), outside.doubtful) == (0, True)
+    assert (len(inside.points), inside.doubtful) == (8, False)
