@@ -1134,6 +1134,48 @@ def _angle(c: arb, s: arb) -> arb:
     return arb.pi() - 2 * (c / s).atan()
 
 
+class Leaf:
+    """What holds all points of a ball at which F is no larger than ``misfit``: the middle and
+    all sums of ``directions`` (n,), one for each joint that is ``held`` and a ball of what is
+    left, times what is in the balls ``steps``. F' at the middle is ``slope``."""
+
+    def __init__(self, loop: Loop, hull: Vector, held: Sequence[int], misfit: arb):
+        middle = [x.mid() for x in hull]
+        centre = loop.at(middle)
+        self.slope, self.over = centre.jacobian, loop.at(hull)
+        away = _minus(hull, middle)
+        self.steps = [*(away[joint] for joint in held), arb(1)]
+        free = [joint for joint in range(loop.n) if joint not in held]
+        bent = self.over.second(away) * column(away) / 2
+        values = column([ball(misfit)] * EQUATIONS) - centre.value - bent
+        moved = self._solved(held, free, values, away)
+        self.directions = [
+            [arb(int(i == joint)) for i in range(loop.n)] for joint in held
+        ]
+        self.directions.append([arb(0)] * loop.n)
+        for direction, part in zip(self.directions, moved, strict=True):
+            for joint, value in zip(free, part, strict=True):
+                direction[joint] = value
+
+    def _solved(
+        self, held: Sequence[int], free: Sequence[int], values: arb_mat, away: Vector
+    ) -> list[Vector]:
+        """How the free joints follow each that is held, and a ball of what is left: with steps
+        a and any matrix C, a_free = C (values - F' a_held) + (I - C F') a_free."""
+        if not free:
+            return [[]] * len(self.steps)
+        columns = self.slope.transpose()
+        of_held, of_free = (rows_of(columns, some).transpose() for some in (held, free))
+        inverse = left_inverse(of_free)
+        follows = (-inverse * of_held).mid()
+        rest = inverse * values
+        rest += (identity(len(free)) - inverse * of_free) * column(
+            [away[i] for i in free]
+        )
+        rest -= (inverse * of_held + follows) * column([away[i] for i in held])
+        return [*follows.transpose().tolist(), rest.entries()]
+
+
 @dataclass(frozen=True)
 class Cell:
     """All configurations in which some joints are ``held`` in intervals, and the boxes of
@@ -1141,6 +1183,11 @@ class Cell:
 
     held: tuple[Held, ...]
     boxes: list[Box]
+
+    @property
+    def joints(self) -> list[int]:
+        """The joints that are held."""
+        return [joint for joint, one in enumerate(self.held) if one]
 
     @property
     def widest(self) -> tuple[int, float]:
@@ -1196,7 +1243,7 @@ class Motions:
             joint, half = cell.widest
             try:
                 u = self.configuration(cell)
-                if u is None or self._is_known(u, cell.boxes):
+                if u is None or self._is_known(u, cell):
                     continue
                 is_vague = not largest([x.rad() for x in u]) < VAGUE * half
             except DoesNotHold:
@@ -1207,14 +1254,14 @@ class Motions:
             require(wide > NARROWEST, f"configurations may be left about {cell}")
             open_cells += cell.halves(joint)
 
-    def _is_known(self, u: Vector, boxes: list[Box]) -> bool:
+    def _is_known(self, u: Vector, cell: Cell) -> bool:
         """Whether a ball holds no closed configuration but one, or known ones."""
         if largest([x.rad() for x in u]) > WIDE:
             return False
         for centre, radius in self.spheres:
             if _length(_minus(_near(u, centre), centre)) < radius:
                 return True
-        return _holds(self._is_on_map, u, boxes) or _holds(self._is_single, u)
+        return _holds(self._is_on_map, u, cell) or _holds(self._is_single, u, cell)
 
     def configuration(self, cell: Cell) -> Vector | None:
         """What holds all closed configurations of a cell; None if there are none. Raises
@@ -1250,15 +1297,15 @@ class Motions:
                     steps.append(ball(arb(interval[1])))
         return Family(_matrix_of(parts), slopes, steps)
 
-    def _is_on_map(self, u: Vector, boxes: list[Box]) -> bool:
+    def _is_on_map(self, u: Vector, cell: Cell) -> bool:
         """Whether a closed configuration in a ball u lies within the slack of a curve."""
-        nearest = sorted(boxes, key=lambda box: box.remoteness(u))[:PASSED]
+        nearest = sorted(cell.boxes, key=lambda box: box.remoteness(u))[:PASSED]
         require(nearest, "no curve is near")
         normal = nearest[0].normal
         height = _dot(normal, u)
         wider = height + ball(height.rad() / 64)
         ends = wider.lower(), wider.upper()
-        hull, heights, rates = u, [], []
+        hull, heights, rates, misfit = u, [], [], arb(0)
         for box in nearest:
             turns = _turns(u, box.point(arb(0)))
             shift = _dot(normal, turns)
@@ -1270,28 +1317,33 @@ class Motions:
                 curve = _plus(box.point(low.union(high)), turns)
                 hull = [x.union(y) for x, y in zip(hull, curve, strict=True)]
                 rates.append(box.misfit * box.skewness / box.slack)
+                misfit = max(misfit, box.misfit)
         if not _are_covered(height, heights):
             return False
-        return self._gain(hull, [normal]) * largest(rates) < 1
+        leaf = Leaf(self.loop, hull, cell.joints, misfit)
+        return self._gain(leaf, [normal]) * largest(rates) < 1
 
-    def _is_single(self, u: Vector) -> bool:
+    def _is_single(self, u: Vector, cell: Cell) -> bool:
         """Whether there is one closed configuration at most in a ball."""
-        return self._gain(u, []).is_finite()
+        leaf = Leaf(self.loop, u, cell.joints, arb(0))
+        return self._gain(leaf, []).is_finite()
 
-    def _gain(self, hull: Vector, rows: list[Vector]) -> arb:
-        """How many times as far from each other as their F are two points of a ball on one
+    def _gain(self, leaf: Leaf, rows: list[Vector]) -> arb:
+        """How many times as far from each other as their F are two points of a leaf on one
         section, in more ``rows``, at most: |Y| / (1 - q) in some weights, |I - Y A| < q for
-        all A whose rows are means of those of F' in the ball. Raises `DoesNotHold` unless
+        all A whose rows are means of those of F' in the leaf. Raises `DoesNotHold` unless
         q < 1."""
-        middle = [x.mid() for x in hull]
-        matrix = arb_mat([*self.loop.at(middle).jacobian.tolist(), *rows])
+        matrix = arb_mat([*leaf.slope.tolist(), *rows])
         inverse = left_inverse(matrix)
         of_rows = arb_mat([row[:EQUATIONS] for row in inverse.tolist()])
-        bend = self.loop.at(hull).second(_minus(hull, middle))
-        defect = identity(self.loop.n) - inverse * matrix - of_rows * bend
+        defect = identity(self.loop.n) - inverse * matrix
+        for direction, step in zip(leaf.directions, leaf.steps, strict=True):
+            defect = defect - of_rows * leaf.over.second(direction) * step
         contraction, weights = weighted_norm(defect)
         require(contraction < 1, "the left inverse does not contract")
-        gain: arb = norm(of_rows) * largest(weights) / min(weights) / (1 - contraction)
+        pairs = zip(of_rows.tolist(), weights, strict=True)
+        scaled = arb_mat([[x / weight for x in row] for row, weight in pairs])
+        gain: arb = norm(scaled) * largest(weights) / (1 - contraction)
         return gain
 
 

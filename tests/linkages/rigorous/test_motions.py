@@ -136,6 +136,28 @@ def test_cells_hold_the_configurations_that_they_are_about(name):
     assert count > 10
 
 
+@pytest.mark.parametrize("name", ["bennett", "goldberg-5r", "bricard-trihedral"])
+def test_a_leaf_holds_the_configurations_of_its_ball(name):
+    loop = Check(json.loads(named_certificate(name))).loop
+    branch = map_of(name).forms[0].branch
+    size = 1e-3
+    for s in np.linspace(0, branch.length, 7)[:-1]:
+        hull = [arb(float(x) + size / 3, size) for x in branch(s)]
+        leaf = check.Leaf(loop, hull, [0, 2], arb(1e-9))
+        *follows, rest = leaf.directions
+        assert max(float(x.rad()) for x in rest) < size / 4
+        for place in branch(s + np.linspace(-0.4, 0.4, 9) * size):
+            step = [arb(float(x)) - h.mid() for x, h in zip(place, hull, strict=True)]
+            for held, direction in zip((0, 2), follows, strict=True):
+                step = [x - d * step_ for x, d, step_ in _along(step, direction, held)]
+            assert all(ball.contains(x) for ball, x in zip(rest, step, strict=True))
+
+
+def _along(step, direction, held):
+    """A step, the direction that belongs to a held joint, and how far that one moves."""
+    return zip(step, direction, [step[held]] * len(step), strict=True)
+
+
 @pytest.mark.parametrize(
     ("parts", "is_covered"),
     [
