@@ -43,7 +43,8 @@ def angulated_ring(units: int, angle: float) -> Mechanism:
     half = pi / units
     most = 180.0 - 360.0 / units
     value = f"{angle * 180 / pi:g} degrees"
-    require(angle < pi - 2 * half, "angle", value, f"less than {most:g} degrees")
+    is_less = angle < (pi - 2 * half) * (1 - 1e-12)
+    require(is_less, "angle", value, f"less than {most:g} degrees")
     pivot = cos(0.5 * angle) / sin(half)
     foot, reach = pivot * cos(half), sin(0.5 * angle)
     outer, inner = foot + reach, foot - reach

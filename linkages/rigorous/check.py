@@ -1434,9 +1434,14 @@ class Check:
             yield self._all_motions(statements)
 
     @property
+    def _motions(self) -> Any:
+        """What an older certificate does not have."""
+        return self.certificate.get("motions", "the certificate is an older one")
+
+    @property
     def has_all_motions(self) -> bool:
         """Whether theorem 6 is claimed."""
-        return isinstance(self.certificate["motions"], dict)
+        return isinstance(self._motions, dict)
 
     def _no_jump(self) -> Statement:
         """Theorem 1, with the lemma on tubes."""
@@ -1655,7 +1660,7 @@ class Check:
             (numbers(point["centre"]), number(point["sphere"]))
             for point in self.certificate["points"]
         ]
-        choice = self.certificate["motions"]
+        choice = self._motions
         try:
             motions = Motions(self.loop, choice["first"], self._boxes, spheres)
             count = sum(1 for _ in motions.cells(choice["held"]))
@@ -1693,7 +1698,7 @@ class Check:
         may leave what it covers, and what no certificate of this format holds."""
         beyond = [f"where motions go beyond {place}" for place in self._open_ends]
         if not self.has_all_motions:
-            beyond.append(f"{UNPROVED} ({self.certificate['motions']})")
+            beyond.append(f"{UNPROVED} ({self._motions})")
         return [*self.certificate["open"], *beyond]
 
 

@@ -16,7 +16,9 @@ from linkages.rigorous.refinement import refined_piece
 from linkages.rigorous.selection import best_rows, floats_of
 
 ALONG, ACROSS = 0.7, 0.1  # of a contraction of 1 that a box takes along and across
-BEFORE, BEHIND = 2.0**-5, 2.0**-10  # how far boxes overlap, in lengths
+# How far boxes overlap, in lengths: by more than the slack of a reach, which is an eighth
+# of a length at most.
+BEFORE, BEHIND = 2.0**-5, 2.0**-7
 LONGEST = 0.5  # box, in arclength
 SHORTEST = 2.0**-12  # box, in the length that it may have to first order
 LONGER = 1.2  # by so much in first order after one that holds

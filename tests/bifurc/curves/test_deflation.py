@@ -59,3 +59,14 @@ def test_explore_finds_a_double_circle_once_and_says_its_multiplicity():
         (2, Outcome.CLOSED)
     ]
     assert atlas.points == ()
+
+
+def test_a_curve_of_lower_rank_on_a_surface_is_no_form():
+    """A plane, along a line of which the other equation vanishes to second order."""
+    atlas = explore(
+        FunctionProblem(
+            lambda u: [u[0] * u[1], u[0] * (u[1] + u[0])], [(-1.3, 1.2)] * 3
+        )
+    )
+    assert not atlas.forms
+    assert [surface.dimension for surface in atlas.surfaces] == [2]

@@ -88,6 +88,20 @@ def test_the_provenance_is_in_the_attributes(atlas: Atlas) -> None:
     assert attributes["version"] and attributes["derivatives"] == "recorded"
 
 
+def test_the_setting_of_the_count_is_read_by_its_older_name(
+    atlas: Atlas, tmp_path
+) -> None:
+    path = save_atlas(atlas, tmp_path / "older.nc")
+    older = xr.load_dataset(path)
+    provenance = older.attrs["provenance"]
+    assert '"count"' in provenance
+    older.attrs["provenance"] = provenance.replace('"count"', '"prove"')
+    older.attrs.pop("checksum", None)
+    older.to_netcdf(tmp_path / "older2.nc")
+    found = load_atlas(tmp_path / "older2.nc")
+    assert found.provenance.settings == atlas.provenance.settings
+
+
 def test_the_linkage_is_stored_along_the_joints(atlas: Atlas) -> None:
     dataset = to_dataset(atlas)
     assert dataset.attrs["linkage_name"] == "a pair"

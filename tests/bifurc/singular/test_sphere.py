@@ -115,6 +115,6 @@ def test_small_curves_that_come_back_within_the_sphere_leave_it_in_doubt():
 
     problem = FunctionProblem(equations, [(-1.0, 1.0)] * 3)
     sections = Sections(problem, np.zeros(3), np.eye(3))
-    outside, inside = sections.of_radius(0.04), sections.of_radius(0.0025)
+    outside, inside = sections.of_radius(0.04), sections.of_radius(0.005)
     assert (len(outside.points), outside.doubtful) == (0, True)
     assert (len(inside.points), inside.doubtful) == (8, False)

@@ -73,6 +73,11 @@ def test_a_locked_array_of_bennett_loops_moves_with_one_freedom(rows, columns):
             "angle: 229.183 is not allowed; it must be from 5",
         ),
         ("angulated-scissors", {"angle": 2.2}, "it must be less than 120 degrees"),
+        (
+            "angulated-scissors",
+            {"angle": 2 * np.pi / 3},
+            "must be less than 120 degrees",
+        ),
         ("bennett-array", {"rows": 0.5}, "rows: 0.5 is not allowed"),
         (
             "bennett-array",

@@ -368,11 +368,20 @@ def test_a_change_within_slack_is_accepted(seed):
 def test_a_certificate_that_is_not_whole_does_not_hold():
     whole = json.loads(named_certificate("bennett"))
     for key in whole:
-        if key == "name":
+        if key in ("name", "motions"):
             continue
         certificate = copy.deepcopy(whole)
         del certificate[key]
         assert failures(certificate)
+
+
+def test_of_an_older_certificate_all_motions_are_not_claimed():
+    older = json.loads(named_certificate("bennett"))
+    del older["motions"]
+    said = []
+    assert check.check_certificate(older, said.append)
+    assert not any(line.startswith("all motions") for line in said)
+    assert any("the certificate is an older one" in line for line in said)
 
 
 def test_a_certificate_that_states_nothing_does_not_hold():
