@@ -480,7 +480,7 @@ def _whole_turns(advances: np.ndarray) -> np.ndarray:
     """
     unit = np.eye(advances.shape[1], dtype=int)
     advance_something = np.any(advances, axis=0)
-    idle = unit[~advance_something]
+    idle: np.ndarray = unit[~advance_something]
     if not np.any(advance_something):
         return idle
     turns = _turns_that_cancel(advances[:, advance_something])
