@@ -30,6 +30,7 @@ from bifurc.search.records import Start, half_branch_starts
 from bifurc.search.seed_book import SeedFate
 from bifurc.search.solutions import polished
 from bifurc.search.tracing import Tracer
+from bifurc.singular.dimension import local_dimensions
 from bifurc.system import relative_gaps
 
 log = logging.getLogger(__name__)
@@ -159,7 +160,9 @@ class SeedJudge:
         last = singular_values(deflated, solutions)[0, n - 2]
         if not are_solved[0] or may_be_singular(float(last)):
             return None
-        if not deflated.is_curve_alone(solutions[0]):
+        if not deflated.is_curve_alone(solutions[0]) and (
+            seed.nullity > NULLITY_OF_SHAKY or self._is_on_surface(solutions)
+        ):
             return None
         branch = self.tracer.follow_deflated(deflated, Start(solutions[0]))
         if branch is None:
@@ -170,6 +173,11 @@ class SeedJudge:
             fate = self.findings.add_branch(examined.traced)
             self.tracer.branch_off(examined.starts)
         return fate
+
+    def _is_on_surface(self, solutions: np.ndarray) -> bool:
+        """Whether solutions fill two dimensions about one of some (k, n)."""
+        local = local_dimensions(self.problem, solutions, self.run.deadline)
+        return bool(np.any(local.dimension > 1))
 
     def _known_about(self, seed: Seed) -> SeedFate | None:
         """The known singular point or branch as near as it is known."""
