@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from bifurc.atlas import Atlas
+from bifurc.limits import Deadline, made_in_time, until
 from bifurc.tables import count_of
 from linkages.app.texts.configurations import show_configuration
 from linkages.app.texts.numbers import in_lengths
@@ -18,6 +19,8 @@ from linkages.readout.rigidity import (
     points_at,
 )
 from linkages.subject import subject_at
+
+PATIENCE = 1.0  # s, for a remark that takes seconds where a sheet has a hundred panels
 
 
 def assemblies_table(
@@ -53,8 +56,11 @@ def _places(readout: Readout, u: np.ndarray) -> list[str]:
 
 def how_held(readout: Readout, u: np.ndarray) -> str:
     """How many flexes and stresses there are at an isolated assembly (n,), and by what it
-    is known to be rigid."""
-    hold = hold_at(readout, u)
+    is known to be rigid, unless that takes long."""
+    with until(Deadline(PATIENCE)):
+        hold = made_in_time(lambda: hold_at(readout, u))
+    if hold is None:
+        return "what holds it was not found in time"
     flexes = count_of(hold.flexes, "flex")
     counts = f"{flexes}, {count_of(hold.stresses, 'stress')}"
     return f"{counts}, rigid by {hold.words}" if hold.order.is_rigid else counts
