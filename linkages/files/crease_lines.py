@@ -7,8 +7,8 @@ one vertex, and a line is split where another one ends on it or crosses it.
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple, TypeAlias
 
@@ -85,18 +85,17 @@ def _edges(
     """The edges between vertices with the line of each; the lines have their ends in
     ``pairs`` (l, 2) of them."""
     tree = KDTree(vertices.points)
-    edges = _Edges()
+    drawn: defaultdict[Edge, dict[str, CreaseLine]] = defaultdict(dict)
     split, beside = 0, 0.0
     for line, pair in zip(lines, pairs.tolist(), strict=True):
         chain, distance = _chain(tree, pair, within)
         split += len(chain) > 2
         beside = max(beside, distance)
         for edge in pairwise(chain):
-            edges.add((min(edge), max(edge)), line)
+            drawn[min(edge), max(edge)].setdefault(line.letter, line)
     empty = int(np.count_nonzero(pairs[:, 0] == pairs[:, 1]))
     _warn(vertices.moved, split, beside, empty, ROUNDING * within)
-    edges.warn()
-    return edges.lines
+    return _one_each(drawn)
 
 
 def _crossings(ends: np.ndarray, within: float) -> np.ndarray:
@@ -182,40 +181,34 @@ def _chain(tree: KDTree, pair: Sequence[int], within: float) -> tuple[list[int],
     return chain, float(beside[between].max(initial=0.0))
 
 
-@dataclass(frozen=True)
-class _Edges:
-    """The ``lines`` of edges, and which of them lie on others of another letter, with
-    those that do, ``on_others``."""
-
-    lines: dict[Edge, CreaseLine] = field(default_factory=dict)
-    on_others: dict[str, str] = field(default_factory=dict)
-
-    def add(self, edge: Edge, line: CreaseLine) -> None:
-        """Add an edge of a line."""
-        known = self.lines.setdefault(edge, line)
-        letters = {known.letter, line.letter}
-        if len(letters) == 1:
-            return
-        if CUT in letters and letters & FOLDS:
-            value = f"{line.letter}, and {known.letter} of {known.place} lies on it"
-            raise GeometryError(line.place, value, "no cut where a fold is")
-        if letters == MOUNTAIN_AND_VALLEY:
-            self.lines[edge] = known._replace(letter="U", angle=None)
-        else:
-            ranked = sorted((known, line), key=lambda one: RANKS.index(one.letter))
-            self.lines[edge] = ranked[1]
-        if FLAT not in letters:
-            self.on_others.setdefault(line.place, known.place)
-
-    def warn(self) -> None:
-        """Say that lines lie on others."""
-        if self.on_others:
-            pairs = [f"{one} on {other}" for one, other in self.on_others.items()]
-            log.warning(
-                "lines lie on others of another letter; a fold counts, and is unassigned "
-                "where it is a mountain and a valley: %s",
-                listed(pairs),
-            )
+def _one_each(
+    drawn: Mapping[Edge, Mapping[str, CreaseLine]],
+) -> dict[Edge, CreaseLine]:
+    """The line of each edge, of the first ones of each letter that are ``drawn`` there;
+    with a warning where there are several."""
+    lines = {}
+    several: dict[str, str] = {}
+    for edge, by_letter in drawn.items():
+        ranked = sorted(by_letter.values(), key=lambda one: RANKS.index(one.letter))
+        line = ranked[-1]
+        folds = FOLDS & by_letter.keys()
+        if CUT in by_letter and folds:
+            cut = by_letter[CUT]
+            value = f"C, and {line.letter} of {line.place} lies on it"
+            raise GeometryError(cut.place, value, "no cut where a fold is")
+        if folds >= MOUNTAIN_AND_VALLEY:
+            line = line._replace(letter="U", angle=None)
+        lines[edge] = line
+        places = [one.place for one in by_letter.values() if one.letter != FLAT]
+        for place in places[1:]:
+            several.setdefault(place, places[0])
+    if several:
+        log.warning(
+            "lines lie on others of another letter; a fold counts, and is unassigned "
+            "where it is a mountain and a valley: %s",
+            listed([f"{one} on {other}" for one, other in several.items()]),
+        )
+    return lines
 
 
 def _warn(moved: float, split: int, beside: float, empty: int, least: float) -> None:

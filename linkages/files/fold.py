@@ -140,7 +140,7 @@ def mechanism_of_fold(
         counts = Counter(edge.letter for edge in edges.values())
         drawn = ", ".join(f"{count} {letter}" for letter, count in counts.items())
         allowed = "lines that fold between two faces: M, V or U"
-        raise GeometryError("creases", f"none, of lines {drawn},", allowed)
+        raise GeometryError("creases", f"none, of {drawn or 'no lines'},", allowed)
     mechanism = Mechanism(
         tuple(joints),
         title or name,

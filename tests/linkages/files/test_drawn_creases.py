@@ -93,6 +93,9 @@ def test_opacity_is_the_fold_angle(tmp_path, caplog):
     ("line", "letters"),
     [
         pytest.param("3 0 0 2 2\n", {"0-4": None}, id="a valley on a mountain"),
+        pytest.param(
+            "3 0 0 2 2\n2 0 0 2 2\n", {"0-4": None}, id="and a mountain on both"
+        ),
         pytest.param("1 0 0 2 2\n", {"0-4": "M"}, id="a boundary on a mountain"),
         pytest.param("3 0 0 4 0\n", {}, id="a valley on the rim"),
     ],
@@ -135,6 +138,7 @@ def test_a_crease_inside_of_one_body_does_not_fold(tmp_path, caplog):
         ("2 0 0 1 1e999\n", "cp", "line 1: inf"),
         ("2 1 1 1 1\n", "cp", "lines: all in one point"),
         (CUT_ON_FOLD, "svg", "C, and M of <line> on line 5 lies on it"),
+        (RIM, "cp", "creases: none, of 4 B, is not allowed"),
         ("<svg><g></svg>", "svg", "mismatched tag"),
         ("<html/>", "svg", "first element, line 1: <html>"),
         (SVG.format('<path d="M0 0C1 1 2 2 3 3" stroke="red"/>'), "svg", '"C"'),
