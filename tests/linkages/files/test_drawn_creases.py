@@ -18,6 +18,8 @@ SVG = """<?xml version="1.0"?>
 <svg xmlns="http://www.w3.org/2000/svg"><style>.m, .n {{stroke: #F00}}</style>
 <defs><line x1="0" y1="0" x2="9" y2="9" stroke="red"/></defs>
 <g transform="translate(7, -3) rotate(30) scale(10)">{}</g></svg>"""
+LOOSE_TRIANGLE = "2 1 1 3 1\n2 3 1 2 3\n2 2 3 1 1\n"
+TRIANGLE_ON_A_CORNER = "2 0 0 3 1\n2 3 1 1 3\n2 1 3 0 0\n"
 CUT_ON_FOLD = SVG.format(
     '<line x2="4" stroke="red"/>\n<line x2="4" stroke="lime"/><rect width="4" height="4"/>'
 )
@@ -139,6 +141,8 @@ def test_a_crease_inside_of_one_body_does_not_fold(tmp_path, caplog):
         ("2 1 1 1 1\n", "cp", "lines: all in one point"),
         (CUT_ON_FOLD, "svg", "C, and M of <line> on line 5 lies on it"),
         (RIM, "cp", "creases: none, of 4 B, is not allowed"),
+        (RIM + LOOSE_TRIANGLE, "cp", "vertex 4: inside of face f0"),
+        (RIM + TRIANGLE_ON_A_CORNER, "cp", "edges at vertex: 0"),
         ("<svg><g></svg>", "svg", "mismatched tag"),
         ("<html/>", "svg", "first element, line 1: <html>"),
         (SVG.format('<path d="M0 0C1 1 2 2 3 3" stroke="red"/>'), "svg", '"C"'),
